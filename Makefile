@@ -1,0 +1,74 @@
+# `make run` and `make test` set up what a fresh machine lacks. `make help` lists the rest.
+PORT ?= 8000
+ONLY ?=
+PYTHON := .venv/bin/python
+PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
+	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
+
+.DEFAULT_GOAL := help
+.PHONY: help run test check bench generate firmware host-firmware setup setup-test clean
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
+
+run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
+	@exec .venv/bin/mucat run --port $(PORT)
+
+test: setup-test check host-firmware ## every test, after every check
+	$(PYTHON) -m pytest
+	cd frontend && npm test --silent
+
+check: setup-test ## style, types, imports, and whether generated files are current
+	.venv/bin/ruff check
+	.venv/bin/ruff format --check
+	.venv/bin/mypy
+	.venv/bin/lint-imports
+	$(PYTHON) -m robot_runtime.generate --check
+	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
+	cd frontend && npm run --silent check
+	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
+
+generate: .venv/.ready frontend/node_modules/.ready ## write the generated files from their definitions
+	$(PYTHON) -m robot_runtime.generate
+	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
+
+bench: setup-test ## measure; a part by name with ONLY=link; figures go to build/bench.json
+	$(PYTHON) -m bench $(ONLY)
+
+firmware: ## compile the firmware and the emulated board
+	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
+	@$(MAKE) --silent -C firmware robot
+	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
+	@$(MAKE) --silent -C firmware/emulator
+
+host-firmware:
+	@$(MAKE) --silent -C firmware host hang
+
+setup: build/.packages-run .venv/.ready server/page/index.html
+	@$(MAKE) --no-print-directory firmware
+
+setup-test: build/.packages-test setup
+
+build/.packages-%: setup.sh
+	@./setup.sh $*
+	@mkdir -p build && touch $@
+
+.venv/.ready: pyproject.toml constraints.txt | build/.packages-run
+	@echo "Python packages ..."
+	@python3 -m venv .venv
+	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
+	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --editable . --group dev
+	@touch $@
+
+frontend/node_modules/.ready: frontend/package.json frontend/package-lock.json | build/.packages-run
+	@echo "Packages of the page ..."
+	@cd frontend && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
+server/page/index.html: frontend/node_modules/.ready $(PAGE_SOURCES)
+	@echo "The page ..."
+	@cd frontend && npm run --silent build
+	@touch $@
+
+clean: ## remove everything that was built
+	rm -rf build .venv frontend/node_modules server/page

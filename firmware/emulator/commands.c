@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "commands.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "service.h"
+
+#define RUN_MAX 86400.0   // s
+#define STALL_MAX 3600.0  // s
+#define STATS_MAX (CLIENT_LINE_MAX / 2)
+
+static const char *const directions[] = {[TO_BOARD] = "to_board", [FROM_BOARD] = "from_board"};
+
+struct command {
+  const char *name;
+  void (*act)(struct service *service, struct client *client, char *argument);
+};
+
+static void refuse(struct service *service, struct client *client, const char *reason) {
+  clients_tell(&service->clients, client, "error %s", reason);
+}
+
+static void agree(struct service *service, struct client *client) {
+  clients_tell(&service->clients, client, "ok");
+}
+
+// NaN where the text is not exactly one number.
+static double number(const char *text) {
+  char *end;
+  double value = strtod(text, &end);
+  return end == text || *end ? NAN : value;
+}
+
+// The cycle from which to count. A run ends with the instruction that reaches its end; counting from that end
+// itself, many short runs are as long as a long one. One whose client went away has not come that far.
+static avr_cycle_count_t present(const struct service *service) {
+  avr_cycle_count_t now = chip_now(&service->board.chip);
+  return service->options->paused && service->run_until < now ? service->run_until : now;
+}
+
+static void attach(struct service *service, struct client *client, char *period) {
+  if (service->water.client && service->water.client != client) {
+    refuse(service, client, "another connection is the water");
+  } else if (!water_attach(&service->water, client, number(period), present(service))) {
+    refuse(service, client, "attach takes a period from 0.0005 to 1 s");
+  }
+}
+
+static void sense(struct service *service, struct client *client, char *numbers) {
+  if (service->water.client && service->water.client != client) {
+    refuse(service, client, "another connection is the water");
+  } else if (!water_sense(&service->water, numbers)) {
+    refuse(service, client, "sense takes eleven finite numbers, pressure and battery not negative");
+  }
+}
+
+static void fins(struct service *service, struct client *client, char *nothing) {
+  (void)nothing;
+  water_tell_fins(&service->water, client, "ok");
+}
+
+static void reset(struct service *service, struct client *client, char *nothing) {
+  (void)nothing;
+  chip_reset(&service->board.chip, CHIP_RESET_PIN);
+  agree(service, client);
+}
+
+static void load(struct service *service, struct client *client, char *path) {
+  char reason[CLIENT_LINE_MAX];
+  if (!chip_load(&service->board.chip, path, reason, sizeof reason / 2)) {
+    refuse(service, client, reason);
+    return;
+  }
+  reset(service, client, path);
+}
+
+static void run(struct service *service, struct client *client, char *seconds) {
+  double duration = number(seconds);
+  if (!service->options->paused) {
+    refuse(service, client, "run needs a board that was started with --paused");
+  } else if (service->runner) {
+    refuse(service, client, "a run is under way");
+  } else if (!(duration > 0 && duration <= RUN_MAX)) {
+    refuse(service, client, "run takes a number of seconds, up to a day");
+  } else {
+    service->runner = client;
+    service->run_until = present(service) + chip_cycles(duration);
+  }
+}
+
+static void tell_faults(struct service *service, char *text) {
+  size_t length = 0;
+  for (unsigned i = 0; i < DIRECTION_COUNT; i++) {
+    struct host_port *port = &service->board.host;
+    const struct line_fault_counts *counts = &host_port_line(port, (enum direction)i)->faults.counts;
+    const char *name = directions[i];
+    length += (size_t)snprintf(
+        text + length, STATS_MAX - length,
+        " %s_bit_errors=%lu %s_drops=%lu %s_doubles=%lu %s_inserts=%lu %s_bursts=%lu %s_burst_errors=%lu "
+        "%s_cuts=%lu %s_stalls=%lu",
+        name, counts->bit_errors, name, counts->drops, name, counts->doubles, name, counts->inserts, name,
+        counts->bursts, name, counts->burst_errors, name, counts->cuts, name, port->stalls[i]);
+  }
+}
+
+static void stats(struct service *service, struct client *client, char *nothing) {
+  (void)nothing;
+  const struct board *board = &service->board;
+  double time = chip_seconds(chip_now(&board->chip));
+  char faults[STATS_MAX];
+  tell_faults(service, faults);
+  double speed_x = service->busy > 0 ? time / service->busy : 0;
+  clients_tell(&service->clients, client,
+               "stats time=%.6f cycles=%llu speed_x=%.2f late=%lu skipped=%.3f sense_late=%lu resets=%lu "
+               "watchdog_resets=%lu crashes=%lu baud_host=%u baud_board=%.0f bytes_from_host=%lu "
+               "bytes_to_board=%lu framing_errors_board=%lu overruns=%lu bytes_from_board=%lu "
+               "bytes_to_host=%lu bytes_lost=%lu framing_errors_host=%lu%s",
+               time, (unsigned long long)chip_now(&board->chip), speed_x, service->pace.late,
+               service->pace.skipped, service->water.late, board->chip.resets, board->chip.watchdog_resets,
+               board->chip.crashes, board->host.baud, CHIP_FREQUENCY / uart_bit(&board->uart),
+               board->host.bytes_taken, board->uart.bytes_received, board->uart.framing_errors,
+               board->uart.overruns, board->uart.bytes_sent, board->host.bytes_given, board->host.bytes_lost,
+               board->host.framing_errors, faults);
+}
+
+static void fault(struct service *service, struct client *client, char *arguments) {
+  static const char *const kinds[] = {
+      [FAULT_NONE] = "none", [FAULT_ABSENT] = "absent", [FAULT_STUCK] = "stuck"};
+  char *kind = strchr(arguments, ' ');
+  if (kind) {
+    *kind++ = 0;
+  }
+  enum fault *device = board_fault(&service->board, arguments);
+  for (unsigned i = 0; device && kind && i < sizeof kinds / sizeof *kinds; i++) {
+    if (!strcmp(kind, kinds[i])) {
+      *device = (enum fault)i;
+      agree(service, client);
+      return;
+    }
+  }
+  refuse(service, client, "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck");
+}
+
+static bool disturb(struct host_port *port, enum direction direction, const char *kind, const char *value) {
+  bool clean = !strcmp(kind, "clean");
+  if (!strcmp(kind, "stall")) {
+    double seconds = number(value);
+    bool valid = seconds >= 0 && seconds <= STALL_MAX;
+    if (valid) {
+      host_port_stall(port, direction, seconds);
+    }
+    return valid;
+  }
+  bool valid = line_faults_set(&host_port_line(port, direction)->faults, kind, value);
+  if (valid && clean) {
+    host_port_stall(port, direction, 0);
+  }
+  return valid;
+}
+
+// The word that a text begins with; `text` becomes what follows it.
+static char *take_word(char **text) {
+  char *word = *text;
+  *text += strcspn(word, " ");
+  if (**text) {
+    *(*text)++ = 0;
+  }
+  return word;
+}
+
+static void line(struct service *service, struct client *client, char *arguments) {
+  const char *name = take_word(&arguments), *kind = take_word(&arguments);
+  for (unsigned i = 0; i < DIRECTION_COUNT; i++) {
+    if (!strcmp(name, directions[i]) && disturb(&service->board.host, (enum direction)i, kind, arguments)) {
+      agree(service, client);
+      return;
+    }
+  }
+  refuse(service, client,
+         "line takes to_board or from_board, and bit_errors, drop, double or insert with a rate from 0 to 1, "
+         "burst with a rate and a length in bits, stall with seconds up to an hour, cut with on or off, or "
+         "clean");
+}
+
+static void seed(struct service *service, struct client *client, char *text) {
+  char *end;
+  unsigned long long value = strtoull(text, &end, 10);
+  if (*text < '0' || *text > '9' || *end) {
+    refuse(service, client, "seed takes a whole number, not negative");
+    return;
+  }
+  host_port_seed(&service->board.host, value);
+  agree(service, client);
+}
+
+static void quit(struct service *service, struct client *client, char *nothing) {
+  (void)client, (void)nothing;
+  service->quitting = true;
+}
+
+static const struct command commands[] = {
+    {"attach", attach}, {"sense", sense}, {"fins", fins}, {"reset", reset}, {"load", load}, {"run", run},
+    {"stats", stats},   {"fault", fault}, {"line", line}, {"seed", seed},   {"quit", quit},
+};
+
+void commands_do(void *owner, struct client *client, char *line) {
+  char *argument = strchr(line, ' ');
+  if (argument) {
+    *argument++ = 0;
+  }
+  for (unsigned i = 0; i < sizeof commands / sizeof *commands; i++) {
+    if (!strcmp(line, commands[i].name)) {
+      commands[i].act(owner, client, argument ? argument : line + strlen(line));
+      return;
+    }
+  }
+  refuse(owner, client, "there is no such command");
+}

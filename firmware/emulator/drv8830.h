@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texas Instruments DRV8830: an H-bridge on I2C that holds a voltage of about 0.08 V for each step of its
+// VSET. Its logic lives on the motors' power: without that it does not answer, and forgets what it was told.
+#ifndef DRV8830_H
+#define DRV8830_H
+
+#include <stdint.h>
+
+#include "surroundings.h"
+
+struct drv8830 {
+  const bool *powered;
+  uint8_t pointer;
+  uint8_t control;
+  enum fault fault;
+};
+
+// Signed steps of voltage, -63 to 63; positive is IN1.
+int drv8830_drive(const struct drv8830 *bridge);
+
+bool drv8830_start(void *bridge);
+void drv8830_write(void *bridge, unsigned index, uint8_t byte);
+uint8_t drv8830_read(void *bridge);
+
+#endif

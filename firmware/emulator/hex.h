@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Intel HEX files.
+#ifndef HEX_H
+#define HEX_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// Puts what the file holds where it belongs in `memory`; `lowest` becomes its lowest address. False with a
+// reason where the file is no such file, is empty, or does not fit.
+bool hex_read(const char *path, uint8_t *memory, size_t size, size_t *lowest, char *reason,
+              size_t reason_size);
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One direction of a serial line as copper carries it: 8N1 characters put on it at the sender's bit time are
+// sampled at the receiver's, so that two ends at different speeds see garbage and framing errors.
+#ifndef LINE_H
+#define LINE_H
+
+#include "chip.h"
+#include "line_faults.h"
+
+#define LINE_CHARACTERS_MAX \
+  16  // a power of two; at most two are under way at a time, and two more for each by faults
+
+struct line_character {
+  double start;     // cycle of its start bit's edge
+  double bit;       // cycles
+  unsigned levels;  // of its ten bits, the start bit being bit 0
+};
+
+struct line {
+  struct chip *chip;
+  struct line_character characters[LINE_CHARACTERS_MAX];
+  unsigned head, tail;
+  double sender_free;    // cycle at which the last character ends
+  double receiver_bit;   // cycles
+  double receiver_free;  // cycle from which the receiver looks for a start bit
+  double edge;           // the start bit that it is sampling from
+  bool receiving;
+  struct line_faults faults;
+  struct chip_timer sampled;
+  void (*deliver)(void *owner, uint8_t byte, bool framing_error);
+  void *owner;
+};
+
+void line_create(struct line *line, struct chip *chip, double receiver_bit,
+                 void (*deliver)(void *owner, uint8_t byte, bool framing_error), void *owner);
+
+// Puts a character on the line, after those that are on it; the cycle at which it will have gone.
+double line_send(struct line *line, uint8_t byte, double bit);
+
+// The sender falls silent in the midst of a character: the line goes high.
+void line_cut(struct line *line);
+
+#endif

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The four gear motors with their fins and encoders: a motor's speed follows its H-bridge's voltage like a
+// first-order system, and a fin turns with its motor's shaft.
+#ifndef MOTORS_H
+#define MOTORS_H
+
+#include "as5040.h"
+#include "chip.h"
+#include "drv8830.h"
+
+#define FIN_COUNT 4
+
+struct motors {
+  struct chip *chip;
+  const struct drv8830 *bridges;
+  struct as5040 *encoders;
+  struct chip_timer step;
+  double shaft[FIN_COUNT];  // rad, growing with positive drive
+  double speed[FIN_COUNT];  // rad/s
+};
+
+void motors_create(struct motors *motors, struct chip *chip, const struct drv8830 bridges[FIN_COUNT],
+                   struct as5040 encoders[FIN_COUNT]);
+
+// A fin's angle (rad, -pi to pi) and speed (rad/s); fins count front right, back right, back left, front
+// left.
+double motors_fin_angle(const struct motors *motors, unsigned fin);
+double motors_fin_speed(const struct motors *motors, unsigned fin);
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mpu6050.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REGISTER_GYRO_CONFIG 0x1b
+#define REGISTER_ACCEL_CONFIG 0x1c
+#define REGISTER_FORCE 0x3b
+#define REGISTER_TEMPERATURE 0x41
+#define REGISTER_RATE 0x43
+#define REGISTER_POWER 0x6b
+#define REGISTER_WHO_AM_I 0x75
+
+#define POWER_RESET 0x80
+#define POWER_SLEEP 0x40
+#define WHO_AM_I 0x68
+#define RANGE_SHIFT 3
+
+#define GRAVITY 9.80665
+#define DEGREE (M_PI / 180)
+
+// Counts for 1 °/s, 1 g and 1 °C, as in the data sheet; each range is half as fine as the one before it.
+#define RATE_COUNTS 131.072
+#define FORCE_COUNTS 16384.0
+#define TEMPERATURE_COUNTS 340.0
+#define TEMPERATURE_ZERO 36.53
+
+static void reset(struct mpu6050 *imu) {
+  memset(imu->registers, 0, sizeof imu->registers);
+  imu->registers[REGISTER_POWER] = POWER_SLEEP;
+  imu->registers[REGISTER_WHO_AM_I] = WHO_AM_I;
+}
+
+static void put(struct mpu6050 *imu, unsigned address, double counts) {
+  int value = (int)lround(fmin(fmax(counts, INT16_MIN), INT16_MAX));
+  imu->registers[address] = (uint8_t)(value >> 8);
+  imu->registers[address + 1] = (uint8_t)value;
+}
+
+static double range(const struct mpu6050 *imu, unsigned address) {
+  return 1 << (imu->registers[address] >> RANGE_SHIFT & 3);
+}
+
+static void sample(struct mpu6050 *imu) {
+  const struct surroundings *now = imu->surroundings;
+  double force_counts = FORCE_COUNTS / range(imu, REGISTER_ACCEL_CONFIG) / GRAVITY;
+  double rate_counts = RATE_COUNTS / range(imu, REGISTER_GYRO_CONFIG) / DEGREE;
+  for (unsigned axis = 0; axis < 3; axis++) {
+    put(imu, REGISTER_FORCE + 2 * axis, now->force[axis] * force_counts);
+    put(imu, REGISTER_RATE + 2 * axis, now->rate[axis] * rate_counts);
+  }
+  put(imu, REGISTER_TEMPERATURE, (now->temperature - TEMPERATURE_ZERO) * TEMPERATURE_COUNTS);
+}
+
+void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings) {
+  *imu = (struct mpu6050){.surroundings = surroundings};
+  reset(imu);
+}
+
+// A transfer sees one sample, whole.
+bool mpu6050_start(void *device) {
+  struct mpu6050 *imu = device;
+  bool awake = !(imu->registers[REGISTER_POWER] & POWER_SLEEP);
+  if (awake && imu->fault == FAULT_NONE) {
+    sample(imu);
+  }
+  return imu->fault != FAULT_ABSENT;
+}
+
+static bool writable(unsigned address) {
+  return address < REGISTER_FORCE || (address > 0x60 && address != REGISTER_WHO_AM_I);
+}
+
+void mpu6050_write(void *device, unsigned index, uint8_t byte) {
+  struct mpu6050 *imu = device;
+  if (index == 0) {
+    imu->pointer = byte % MPU6050_REGISTERS;
+    return;
+  }
+  if (imu->pointer == REGISTER_POWER && byte & POWER_RESET) {
+    reset(imu);
+  } else if (writable(imu->pointer)) {
+    imu->registers[imu->pointer] = byte;
+  }
+  imu->pointer = (imu->pointer + 1) % MPU6050_REGISTERS;
+}
+
+uint8_t mpu6050_read(void *device) {
+  struct mpu6050 *imu = device;
+  uint8_t byte = imu->registers[imu->pointer];
+  imu->pointer = (imu->pointer + 1) % MPU6050_REGISTERS;
+  return byte;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line.
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include <stdbool.h>
+
+struct options {
+  const char *elf;         // NULL: its flash memory is empty
+  const char *bootloader;  // NULL: it starts with the program
+  const char *tty;
+  const char *socket;
+  const char *eeprom;  // NULL: it is forgotten
+  double speed;        // emulated seconds in a real one; 0: as fast as it goes
+  bool paused;         // time passes only when it is told to
+  bool reset_on_open;
+  bool with_parent;
+};
+
+// Ends the process where the command line is wrong or asks for help.
+struct options options_read(int count, char **arguments);
+
+#endif

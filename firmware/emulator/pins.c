@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pins.h"
+
+#include <avr_adc.h>
+#include <avr_ioport.h>
+#include <math.h>
+
+#define BATTERY_DIVIDER 2  // two equal resistors
+
+struct pin {
+  char port;
+  uint8_t bit;
+};
+
+static const struct pin select_pins[SELECT_COUNT] = {{'D', 7}, {'B', 0}, {'B', 1}, {'B', 2}};  // D7 to D10
+static const struct pin beacon_right_pin = {'D', 4};
+static const struct pin beacon_left_pin = {'D', 5};
+static const struct pin led_pin = {'C', 1};          // A1
+static const struct pin motor_power_pin = {'C', 3};  // A3
+static const int battery_input = ADC_IRQ_ADC2;       // A2
+
+static avr_irq_t *pin_irq(struct chip *chip, struct pin pin) {
+  return avr_io_getirq(chip->avr, AVR_IOCTL_IOPORT_GETIRQ(pin.port), pin.bit);
+}
+
+static void on_select(avr_irq_t *irq, uint32_t level, void *encoder) {
+  (void)irq;
+  as5040_select(encoder, !level);
+}
+
+static void on_led(avr_irq_t *irq, uint32_t level, void *param) {
+  (void)irq;
+  struct pins *pins = param;
+  pins->led = level;
+}
+
+static void set_motor_power(struct pins *pins, bool on) {
+  pins->motor_power = on;
+  for (unsigned i = 0; i < SELECT_COUNT && !on; i++) {
+    pins->bridges[i].control = 0;  // they start anew when their power comes back
+  }
+}
+
+static void on_motor_power(avr_irq_t *irq, uint32_t level, void *param) {
+  (void)irq;
+  set_motor_power(param, level);
+}
+
+// Resistors hold the levels of what nothing drives: selects high, LED and motor power low, detectors as
+// shown.
+static void pull(struct pins *pins, char port, uint8_t mask, uint8_t levels) {
+  avr_ioport_external_t external = {.name = port, .mask = mask, .value = levels};
+  avr_ioctl(pins->chip->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &external);
+}
+
+void pins_create(struct pins *pins, struct chip *chip, struct as5040 encoders[SELECT_COUNT],
+                 struct drv8830 bridges[SELECT_COUNT]) {
+  *pins = (struct pins){.chip = chip, .encoders = encoders, .bridges = bridges};
+  pins->beacon_right = pin_irq(chip, beacon_right_pin);
+  pins->beacon_left = pin_irq(chip, beacon_left_pin);
+  pins->battery = avr_io_getirq(chip->avr, AVR_IOCTL_ADC_GETIRQ, battery_input);
+  for (unsigned i = 0; i < SELECT_COUNT; i++) {
+    bridges[i].powered = &pins->motor_power;
+    avr_irq_register_notify(pin_irq(chip, select_pins[i]), on_select, &encoders[i]);
+  }
+  avr_irq_register_notify(pin_irq(chip, led_pin), on_led, pins);
+  avr_irq_register_notify(pin_irq(chip, motor_power_pin), on_motor_power, pins);
+}
+
+void pins_reset(struct pins *pins, const struct surroundings *surroundings) {
+  for (unsigned i = 0; i < SELECT_COUNT; i++) {
+    as5040_select(&pins->encoders[i], false);
+    pin_irq(pins->chip, select_pins[i])->flags |= IRQ_FLAG_INIT;
+  }
+  pins->led = false;
+  set_motor_power(pins, false);
+  // The chip has forgotten the levels of its pins; without this flag an unchanged one would not be shown.
+  pin_irq(pins->chip, led_pin)->flags |= IRQ_FLAG_INIT;
+  pin_irq(pins->chip, motor_power_pin)->flags |= IRQ_FLAG_INIT;
+  pins->beacon_right->flags |= IRQ_FLAG_INIT;
+  pins->beacon_left->flags |= IRQ_FLAG_INIT;
+  pull(pins, 'B', 0x07, 0x07);
+  pull(pins, 'C', 1 << led_pin.bit | 1 << motor_power_pin.bit, 0);
+  pins_show(pins, surroundings);
+}
+
+void pins_show(struct pins *pins, const struct surroundings *surroundings) {
+  bool right = surroundings->beacon_right, left = surroundings->beacon_left;
+  uint8_t beacons = (uint8_t)(right << beacon_right_pin.bit | left << beacon_left_pin.bit);
+  uint8_t select = 1 << select_pins[0].bit;
+  pull(pins, 'D', (uint8_t)(1 << beacon_right_pin.bit | 1 << beacon_left_pin.bit | select), beacons | select);
+  avr_raise_irq(pins->beacon_right, right);
+  avr_raise_irq(pins->beacon_left, left);
+  avr_raise_irq(pins->battery, (uint32_t)lround(surroundings->battery * 1000 / BATTERY_DIVIDER));
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pty.h"
+
+#include <asm/termbits.h>  // and not termios.h: only this one knows of arbitrary speeds
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define FIRST_BAUD 115200
+
+// Until the host sets it up, it must not echo what the board says.
+static bool make_raw(int master) {
+  struct termios2 settings;
+  if (ioctl(master, TCGETS2, &settings)) {
+    return false;
+  }
+  settings.c_iflag = settings.c_oflag = settings.c_lflag = 0;
+  settings.c_cflag = BOTHER | CS8 | CREAD | CLOCAL;
+  settings.c_ispeed = settings.c_ospeed = FIRST_BAUD;
+  return ioctl(master, TCSETS2, &settings) == 0;
+}
+
+static bool open_pair(struct pty *pty) {
+  pty->master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (pty->master < 0 || grantpt(pty->master) || unlockpt(pty->master) || !make_raw(pty->master) ||
+      ptsname_r(pty->master, pty->device, sizeof pty->device)) {
+    return false;
+  }
+  // Only once it has been open can be seen that it is closed.
+  int device = open(pty->device, O_RDWR | O_NOCTTY | O_CLOEXEC);
+  return device >= 0 && close(device) == 0;
+}
+
+static bool make_link(const struct pty *pty, char *reason, size_t size) {
+  struct stat status;
+  if (lstat(pty->link, &status) == 0 && !S_ISLNK(status.st_mode)) {
+    snprintf(reason, size, "%s is in the way: it is not a link", pty->link);
+    return false;
+  }
+  unlink(pty->link);
+  if (symlink(pty->device, pty->link)) {
+    snprintf(reason, size, "cannot make %s: %s", pty->link, strerror(errno));
+    return false;
+  }
+  return true;
+}
+
+bool pty_create(struct pty *pty, const char *link, char *reason, size_t reason_size) {
+  *pty = (struct pty){.master = -1};
+  if (strlen(link) >= sizeof pty->link) {
+    snprintf(reason, reason_size, "the path of the serial port is too long");
+    return false;
+  }
+  strcpy(pty->link, link);
+  if (!open_pair(pty)) {
+    snprintf(reason, reason_size, "cannot open a pseudo-terminal: %s", strerror(errno));
+    return false;
+  }
+  return make_link(pty, reason, reason_size);
+}
+
+void pty_remove(struct pty *pty) {
+  char target[sizeof pty->device];
+  ssize_t length = readlink(pty->link, target, sizeof target - 1);
+  if (length > 0) {
+    target[length] = 0;
+    if (!strcmp(target, pty->device)) {
+      unlink(pty->link);
+    }
+  }
+  close(pty->master);
+}
+
+bool pty_check(struct pty *pty) {
+  struct pollfd state = {.fd = pty->master, .events = POLLIN};
+  poll(&state, 1, 0);
+  bool before = pty->open;
+  // What was written before closing can still be read.
+  pty->open = !(state.revents & POLLHUP) || state.revents & POLLIN;
+  return pty->open && !before;
+}
+
+unsigned pty_baud(const struct pty *pty) {
+  struct termios2 settings;
+  return ioctl(pty->master, TCGETS2, &settings) == 0 && settings.c_ospeed ? settings.c_ospeed : FIRST_BAUD;
+}
+
+size_t pty_read(struct pty *pty, uint8_t *bytes, size_t size) {
+  ssize_t count = read(pty->master, bytes, size);
+  return count > 0 ? (size_t)count : 0;
+}
+
+size_t pty_write(struct pty *pty, const uint8_t *bytes, size_t size) {
+  ssize_t count = write(pty->master, bytes, size);
+  return count > 0 ? (size_t)count : 0;
+}

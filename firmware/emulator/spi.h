@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The SPI bus with the chip as its master. libsimavr takes 100 µs for every byte whatever the clock is; here
+// a byte takes eight of the clock's periods.
+#ifndef SPI_H
+#define SPI_H
+
+#include <avr_spi.h>
+
+#include "chip.h"
+
+struct spi {
+  struct chip *chip;
+  avr_spi_t *module;
+  struct chip_write_hook data_written;
+  uint8_t (*exchange)(void *owner, uint8_t sent);
+  void *owner;
+};
+
+// `exchange` is called with every byte that has been sent and returns what the line to the chip held.
+void spi_create(struct spi *spi, struct chip *chip, uint8_t (*exchange)(void *owner, uint8_t sent),
+                void *owner);
+
+#endif

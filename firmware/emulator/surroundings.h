@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the sensors feel. Body axes are forward, right, down.
+#ifndef SURROUNDINGS_H
+#define SURROUNDINGS_H
+
+#include <stdbool.h>
+
+struct surroundings {
+  double pressure;     // Pa, absolute
+  double temperature;  // °C
+  double force[3];     // m/s², specific force
+  double rate[3];      // rad/s
+  bool beacon_right, beacon_left;
+  double battery;  // V
+};
+
+// At the surface of still water, level and at rest, with a charged battery.
+#define STILL_WATER \
+  { .pressure = 101325, .temperature = 20, .force = {0, 0, -9.80665}, .battery = 7.4 }
+
+// What may be wrong with a device: it does not answer, or it goes on showing what it last showed.
+enum fault { FAULT_NONE, FAULT_ABSENT, FAULT_STUCK };
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "twi.h"
+
+#include "registers.h"
+
+#define CHARACTER_BITS 9
+#define START_BITS 1
+
+// The TWSR codes of a master, as in the chip's data sheet.
+enum status {
+  START = 0x08,
+  REPEATED_START = 0x10,
+  ADDRESS_WRITE_ACK = 0x18,
+  ADDRESS_WRITE_NACK = 0x20,
+  DATA_WRITE_ACK = 0x28,
+  DATA_WRITE_NACK = 0x30,
+};
+
+static void answer(struct twi *twi, uint8_t condition, uint8_t data) {
+  uint8_t address = twi->selected->address;
+  avr_raise_irq(twi->module->io.irq + TWI_IRQ_INPUT, avr_twi_irq_msg(condition, address, data));
+}
+
+static void select_device(struct twi *twi, uint8_t address) {
+  twi->selected = NULL;
+  twi->index = 0;
+  for (unsigned i = 0; i < twi->device_count; i++) {
+    struct twi_device *device = &twi->devices[i];
+    if (device->address == address && device->start(device->device)) {
+      twi->selected = device;
+    }
+  }
+}
+
+static void on_bus(avr_irq_t *irq, uint32_t value, void *param) {
+  (void)irq;
+  struct twi *twi = param;
+  avr_twi_msg_irq_t message = {.u.v = value};
+  uint8_t condition = message.u.twi.msg;
+  if (condition & TWI_COND_START) {
+    twi->addressed = true;
+    select_device(twi, message.u.twi.addr >> 1);
+    if (twi->selected) {
+      answer(twi, TWI_COND_ACK, 1);
+    }
+    return;
+  }
+  struct twi_device *device = twi->selected;
+  if (!device) {
+    return;
+  }
+  if (condition & TWI_COND_WRITE) {
+    device->write(device->device, twi->index++, message.u.twi.data);
+    answer(twi, TWI_COND_ACK, 1);
+  }
+  if (condition & TWI_COND_READ) {
+    answer(twi, TWI_COND_READ, device->read(device->device));
+  }
+  if (condition & TWI_COND_STOP) {
+    twi->selected = NULL;
+  }
+}
+
+static avr_cycle_count_t bit_cycles(const struct twi *twi) {
+  const uint8_t *data = twi->chip->avr->data;
+  return 16 + 2u * data[REGISTER_TWBR] * (1u << 2 * (data[REGISTER_TWSR] & 3));
+}
+
+static uint8_t corrected_status(struct twi *twi, uint8_t status) {
+  bool address = twi->addressed;
+  twi->addressed = false;
+  if (address && status == DATA_WRITE_ACK) {
+    return ADDRESS_WRITE_ACK;
+  }
+  if (address && status == DATA_WRITE_NACK) {
+    return ADDRESS_WRITE_NACK;
+  }
+  return status;
+}
+
+static void on_control_written(void *owner, uint8_t value) {
+  struct twi *twi = owner;
+  if (value & TWCR_TWINT) {
+    // Writing a 1 clears the flag, which libsimavr lets a program that polls find set.
+    twi->chip->avr->data[REGISTER_TWCR] &= (uint8_t)~TWCR_TWINT;
+  }
+  avr_cycle_timer_slot_p slot = chip_module_timer(twi->chip, twi->module);
+  if (!slot || slot->when == twi->timer_when) {
+    return;
+  }
+  uint8_t status = corrected_status(twi, twi->module->next_twstate);
+  twi->module->next_twstate = status;
+  unsigned bits = status == START || status == REPEATED_START ? START_BITS : CHARACTER_BITS;
+  avr_cycle_count_t delay = bits * bit_cycles(twi);
+  twi->timer_when = chip_now(twi->chip) + delay;
+  avr_cycle_timer_register(twi->chip->avr, delay, slot->timer, slot->param);
+}
+
+void twi_create(struct twi *twi, struct chip *chip) {
+  *twi = (struct twi){.chip = chip, .module = chip_module(chip, "twi")};
+  chip_hook_write(chip, REGISTER_TWCR, &twi->control_written, on_control_written, twi);
+  avr_irq_register_notify(twi->module->io.irq + TWI_IRQ_OUTPUT, on_bus, twi);
+}
+
+void twi_attach(struct twi *twi, struct twi_device device) {
+  if (twi->device_count < TWI_DEVICES_MAX) {
+    twi->devices[twi->device_count++] = device;
+  }
+}
+
+void twi_reset(struct twi *twi) {
+  twi->selected = NULL;
+  twi->addressed = false;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "water.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PERIOD_MIN 0.5e-3
+#define PERIOD_MAX 1.0
+
+static void on_due(void *owner) {
+  struct water *water = owner;
+  chip_timer_start(&water->due, water->due.when + water->period);
+  water->fins_due = true;
+  chip_interrupt(&water->board->chip);
+}
+
+void water_create(struct water *water, struct board *board, struct clients *clients, double patience) {
+  *water = (struct water){.board = board, .clients = clients, .patience = patience};
+  chip_timer_add(&board->chip, &water->due, on_due, water);
+}
+
+bool water_attach(struct water *water, struct client *client, double period, avr_cycle_count_t start) {
+  if (!(period >= PERIOD_MIN && period <= PERIOD_MAX)) {
+    return false;
+  }
+  water->client = client;
+  water->period = chip_cycles(period);
+  water->waiting = water->fins_due = false;
+  chip_timer_start(&water->due, start + water->period);
+  return true;
+}
+
+void water_gone(struct water *water, const struct client *client) {
+  if (client == water->client) {
+    water->client = NULL;
+    water->waiting = water->fins_due = false;
+    chip_timer_stop(&water->due);
+  }
+}
+
+void water_tell_fins(struct water *water, struct client *client, const char *word) {
+  const struct board *board = water->board;
+  double angle[FIN_COUNT], speed[FIN_COUNT];
+  int drive[FIN_COUNT];
+  for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
+    angle[fin] = motors_fin_angle(&board->motors, fin);
+    speed[fin] = motors_fin_speed(&board->motors, fin);
+    drive[fin] = drv8830_drive(&board->bridges[fin]);
+  }
+  clients_tell(water->clients, client, "%s %.6f %.5f %.5f %.5f %.5f %.4f %.4f %.4f %.4f %d %d %d %d %d %d",
+               word, chip_seconds(chip_now(&board->chip)), angle[0], angle[1], angle[2], angle[3], speed[0],
+               speed[1], speed[2], speed[3], drive[0], drive[1], drive[2], drive[3], board->pins.motor_power,
+               board->pins.led);
+}
+
+void water_ask(struct water *water, double now) {
+  if (water->fins_due) {
+    water->fins_due = false;
+    water->waiting = true;
+    water->waiting_until = now + water->patience;
+    water_tell_fins(water, water->client, "fins");
+  }
+}
+
+bool water_awaited(struct water *water, double now) {
+  if (water->waiting && now >= water->waiting_until) {
+    water->waiting = false;
+    water->late++;
+  }
+  return water->waiting;
+}
+
+bool water_sense(struct water *water, const char *numbers) {
+  struct surroundings felt;
+  double right, left;
+  char rest;
+  int count = sscanf(numbers, "%lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %c", &felt.pressure,
+                     &felt.temperature, &felt.force[0], &felt.force[1], &felt.force[2], &felt.rate[0],
+                     &felt.rate[1], &felt.rate[2], &right, &left, &felt.battery, &rest);
+  if (count != 11) {
+    return false;
+  }
+  double sum = felt.pressure + felt.temperature + right + left + felt.battery;
+  for (unsigned axis = 0; axis < 3; axis++) {
+    sum += felt.force[axis] + felt.rate[axis];
+  }
+  if (!isfinite(sum) || felt.pressure < 0 || felt.battery < 0) {
+    return false;
+  }
+  felt.beacon_right = right != 0;
+  felt.beacon_left = left != 0;
+  board_feel(water->board, &felt);
+  water->waiting = false;
+  return true;
+}

@@ -1,0 +1,25 @@
+// Constants in flash, which an AVR reads by instructions of its own; on a host they are ordinary memory.
+#pragma once
+#include <stdint.h>
+
+#ifdef __AVR__
+#include <avr/pgmspace.h>
+#else
+#define PROGMEM
+#define PSTR(text) (text)
+inline uint8_t pgm_read_byte(const void* at) { return *static_cast<const uint8_t*>(at); }
+inline uint32_t pgm_read_dword(const void* at) { return *static_cast<const uint32_t*>(at); }
+#endif
+
+namespace mucat {
+
+// A zero-terminated text in flash, so that it is not taken for one in RAM.
+struct FlashText {
+  // Not by braces: PSTR within braces makes avr-gcc 5.4 fail at link time.
+  explicit FlashText(const char* text) : at(text) {}
+  const char* at;
+};
+
+}  // namespace mucat
+
+#define FLASH_TEXT(text) (::mucat::FlashText(PSTR(text)))

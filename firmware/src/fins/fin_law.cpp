@@ -1,0 +1,35 @@
+#include "fins/fin_law.h"
+
+#include <math.h>
+
+namespace mucat {
+namespace {
+
+float limit(float value, float most) { return value > most ? most : value < -most ? -most : value; }
+
+}  // namespace
+
+float wrap_angle(float angle) {
+  while (angle >= kPi) angle -= 2 * kPi;
+  while (angle < -kPi) angle += 2 * kPi;
+  return angle;
+}
+
+void FinLaw::start(float angle) {
+  now_ = {wrap_angle(angle), 0};
+  arrived_ = true;
+}
+
+float FinLaw::step(const FinDemand& demand, uint16_t phase) {
+  const float turn = wrap_angle(demand.direction - now_.direction);
+  arrived_ = turn == 0;
+  now_.direction = fabsf(turn) <= kDirectionPerTick
+                       ? demand.direction
+                       : wrap_angle(now_.direction + limit(turn, kDirectionPerTick));
+  now_.amplitude += limit(demand.amplitude - now_.amplitude, kAmplitudePerTick);
+  // The full circle is 65536, which -32768 to 32767 covers once.
+  const float angle = static_cast<int16_t>(phase) * (kPi / 32768.0f);
+  return wrap_angle(now_.direction + now_.amplitude / 2 * sinf(angle));
+}
+
+}  // namespace mucat

@@ -1,0 +1,132 @@
+#include "fins/fins.h"
+
+#include <math.h>
+
+#include "board/board.h"
+#include "fins/calibration.h"
+#include "sensors/as5040.h"
+#include "sensors/drv8830.h"
+
+namespace mucat {
+namespace {
+
+constexpr float kTipsDown = 1.57f;
+constexpr uint8_t kTicksPerQuestion = 10;
+
+void assign(uint8_t* bits, uint8_t index, bool on) {
+  const uint8_t bit = 1 << index;
+  *bits = on ? *bits | bit : *bits & ~bit;
+}
+
+}  // namespace
+
+void Fins::start() {
+  // An H-bridge keeps its command over a reset of this chip. Where motor power feeds it, it may not answer
+  // now.
+  for (uint8_t i = 0; i < kFinCount; ++i) drive_bridge(i, 0);
+}
+
+void Fins::step(Motion motion) {
+  read_encoders();
+  const bool was_powered = powered();
+  if (motion == Motion::kOff) {
+    if (was_powered) power(false);
+    for (uint8_t i = 0; i < kFinCount; ++i) wanted_[i] = angles_[i];
+    motion_ = motion;
+    return;
+  }
+  motion_ = motion;
+  if (!was_powered) {
+    power(true);
+    return;  // an H-bridge needs some milliseconds of power before it answers
+  }
+  if (!mixed_) mix(command_, demands_);
+  mixed_ = true;
+  phase_ += kPhasePerTick;
+  for (uint8_t i = 0; i < kFinCount; ++i) {
+    wanted_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i]);
+    const FinCalibration& fin = kFinCalibration[i];
+    const bool blind = encoder_faults_ & 1 << i;
+    drive(i, blind ? 0 : loops_[i].step(fin, counts_from_angle(fin, wanted_[i]), counts_[i]));
+  }
+  ask_bridges();
+}
+
+FinDemand Fins::demand(uint8_t fin) const {
+  switch (motion_) {
+    case Motion::kSwim:
+      return demands_[fin];
+    case Motion::kDown:
+      return {kTipsDown, 0};
+    default:
+      return {demands_[fin].direction, 0};
+  }
+}
+
+void Fins::read_encoders() {
+  for (uint8_t i = 0; i < kFinCount; ++i) {
+    const bool valid = read_encoder_counts(i, &counts_[i]);
+    assign(&encoder_faults_, i, !valid);
+    if (valid) angles_[i] = angle_from_counts(kFinCalibration[i], counts_[i]);
+  }
+}
+
+void Fins::power(bool on) {
+  silent_bridges_ = 0;
+  reported_faults_ = 0;
+  phase_ = 0;
+  mixed_ = true;
+  for (uint8_t i = 0; i < kFinCount; ++i) {
+    if (!on) drive_bridge(i, 0);
+    drives_[i] = 0;
+    // Resting where they are, so that power alone moves nothing.
+    laws_[i].start(angles_[i]);
+    loops_[i].restart();
+    demands_[i] = {angles_[i], 0};
+    wanted_[i] = angles_[i];
+  }
+  board::set_motor_power(on);
+}
+
+// Each chip every 400 ms, so that a fault, cleared by asking, still stands in some of the ten statuses a
+// second.
+void Fins::ask_bridges() {
+  asked_ = (asked_ + 1) % (kFinCount * kTicksPerQuestion);
+  if (asked_ % kTicksPerQuestion) return;
+  const uint8_t fin = asked_ / kTicksPerQuestion;
+  assign(&reported_faults_, fin, bridge_failed(fin));
+}
+
+void Fins::drive(uint8_t fin, int8_t drive) {
+  drives_[fin] = drive;
+  assign(&silent_bridges_, fin, !drive_bridge(fin, drive));
+}
+
+bool Fins::neutral() const {
+  for (const FinLaw& law : laws_) {
+    if (law.flapping()) return false;
+  }
+  return motion_ != Motion::kSwim;
+}
+
+bool Fins::settled() const {
+  for (const FinLaw& law : laws_) {
+    if (!law.arrived()) return false;
+  }
+  return neutral();
+}
+
+uint8_t Fins::faults() const {
+  static_assert(static_cast<uint8_t>(SensorFault::kFinFrontRight) == 1 << 2, "the fins' bits moved");
+  return (encoder_faults_ | silent_bridges_ | reported_faults_) << 2;
+}
+
+void Fins::report(Motor* packet) const {
+  for (uint8_t i = 0; i < kFinCount; ++i) {
+    packet->wanted[i] = lroundf(wanted_[i] * 1000);
+    packet->angle[i] = lroundf(angles_[i] * 1000);
+    packet->drive[i] = drives_[i];
+  }
+}
+
+}  // namespace mucat

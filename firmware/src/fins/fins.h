@@ -1,0 +1,64 @@
+// The four fins: demands in, H-bridges and encoders out.
+#pragma once
+#include <stdint.h>
+
+#include "fins/fin_law.h"
+#include "fins/position_loop.h"
+#include "packets.gen.h"
+
+namespace mucat {
+
+enum class Motion : uint8_t {
+  kOff,   // no drive, no motor power
+  kSwim,  // flap as commanded
+  kRest,  // stop flapping, rest where the fins point
+  kDown,  // stop flapping, turn the tips down
+};
+
+class Fins {
+ public:
+  // Takes drive from the motors, whatever was before the start.
+  void start();
+  // The newest command wins; it is mixed at the next tick, for that takes 1.5 ms.
+  void command(const Navigation& command) {
+    command_ = command;
+    mixed_ = false;
+  }
+  // One tick of 10 ms.
+  void step(Motion motion);
+
+  // No fin flaps, and none is told to.
+  bool neutral() const;
+  // Neutral, and every fin has turned where it should.
+  bool settled() const;
+  bool powered() const { return motion_ != Motion::kOff; }
+  // Bits of SensorFault: encoders that gave nonsense, H-bridges that failed while powered.
+  uint8_t faults() const;
+  // Wanted and measured angles and drives, as the packet carries them; its time is left alone.
+  void report(Motor* packet) const;
+
+ private:
+  void read_encoders();
+  void power(bool on);
+  void ask_bridges();
+  void drive(uint8_t fin, int8_t drive);
+  FinDemand demand(uint8_t fin) const;
+
+  Navigation command_ = {};
+  bool mixed_ = true;
+  FinDemand demands_[kFinCount] = {};
+  FinLaw laws_[kFinCount];
+  PositionLoop loops_[kFinCount];
+  float wanted_[kFinCount] = {};
+  float angles_[kFinCount] = {};
+  int16_t counts_[kFinCount] = {};
+  int8_t drives_[kFinCount] = {};
+  uint8_t encoder_faults_ = 0;
+  uint8_t silent_bridges_ = 0;
+  uint8_t reported_faults_ = 0;
+  Motion motion_ = Motion::kOff;
+  uint16_t phase_ = 0;
+  uint8_t asked_ = 0;
+};
+
+}  // namespace mucat

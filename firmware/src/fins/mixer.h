@@ -1,0 +1,22 @@
+// From a navigation command to what each fin is to do.
+//
+// A flapping fin pushes from tip to root: with its zero direction at 0 along its mount, at -90° down, at 90°
+// up and at 180° against its mount. So each fin's share is a vector in the plane it turns in: along its mount
+// and down. The direction of that vector is the fin's zero direction, its length the fin's amplitude.
+#pragma once
+#include "packets.gen.h"
+
+namespace mucat {
+
+// Peak to peak, at a command of 1.
+constexpr float kAmplitudeMax = 1.6f;
+
+struct FinDemand {
+  float direction;  // rad, the angle about which the fin flaps
+  float amplitude;  // rad, peak to peak
+};
+
+// A fin that is to push nothing keeps its direction, so that a command of nought does not turn fins.
+void mix(const Navigation& command, FinDemand (&demands)[kFinCount]);
+
+}  // namespace mucat

@@ -1,0 +1,31 @@
+// A fin's position loop: encoder counts in, H-bridge command out, the shortest way round.
+#pragma once
+#include <stdint.h>
+
+#include "fins/calibration.h"
+
+namespace mucat {
+
+constexpr int16_t kCountsPerTurn = 1024;
+constexpr int8_t kDriveMax = 40;
+
+// Into -512 to 511.
+int16_t wrap_counts(int16_t counts);
+// The encoder's counts at a fin angle (rad).
+int16_t counts_from_angle(const FinCalibration& fin, float angle);
+// The fin angle at these counts, within -π to π.
+float angle_from_counts(const FinCalibration& fin, int16_t counts);
+// Brings one fin to where it is wanted.
+class PositionLoop {
+ public:
+  // Forgets how the fin moved: to be called where the loop was not stepped for a while.
+  void restart() { restarted_ = true; }
+  // One tick: the H-bridge command, within ±kDriveMax, for these counts.
+  int8_t step(const FinCalibration& fin, int16_t wanted, int16_t measured);
+
+ private:
+  int16_t last_error_ = 0;
+  bool restarted_ = true;
+};
+
+}  // namespace mucat

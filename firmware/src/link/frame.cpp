@@ -1,0 +1,103 @@
+#include "link/frame.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "link/crc32.h"
+
+namespace mucat {
+namespace {
+
+uint32_t read_u32(const uint8_t* at) {
+  uint32_t value;
+  memcpy(&value, at, sizeof value);
+  return value;
+}
+
+// Bytes of the message at `at`, its type included; 0 where its type is unknown or it does not fit.
+uint8_t message_bytes(const uint8_t* at, uint8_t available) {
+  int16_t payload = payload_bytes(at[0]);
+  if (at[0] == Debug::kType) {
+    constexpr uint8_t kHead = offsetof(Debug, text);
+    if (available < 1 + kHead) return 0;
+    const uint8_t text = at[1 + offsetof(Debug, text_size)];
+    if (text > Debug::kTextMax) return 0;
+    payload = kHead + text;
+  }
+  return payload < 0 || payload >= available ? 0 : payload + 1;
+}
+
+}  // namespace
+
+bool FrameDecoder::feed(uint8_t byte) {
+  if (byte != 0) {
+    if (size_ < sizeof block_) {
+      block_[size_++] = byte;
+    } else {
+      oversized_ = true;
+    }
+    return false;
+  }
+  // Zeros in a row are no frame: a sender may put one before a frame to end whatever noise came earlier.
+  if (size_ == 0) return false;
+  const bool valid = !oversized_ && accept();
+  if (!valid) ++invalid_;
+  size_ = 0;
+  oversized_ = false;
+  return valid;
+}
+
+bool FrameDecoder::accept() {
+  const uint8_t size = decode_cobs(block_, size_);
+  if (size <= kControlBytes + kCrcBytes) return false;
+  messages_end_ = size - kCrcBytes;
+  cursor_ = kControlBytes;
+  const uint32_t key = crc32(block_, messages_end_) ^ read_u32(block_ + messages_end_);
+  open_ = key == kOpen;
+  if (!open_ && key != key_) return false;
+  if (!reliable()) messages_end_ -= kNumberBytes;
+  return cursor_ < messages_end_ && well_formed();
+}
+
+bool FrameDecoder::well_formed() const {
+  uint8_t at = kControlBytes;
+  while (at < messages_end_) {
+    const uint8_t bytes = message_bytes(block_ + at, messages_end_ - at);
+    if (bytes == 0) return false;
+    at += bytes;
+  }
+  return true;
+}
+
+bool FrameDecoder::next(Message* message) {
+  if (cursor_ >= messages_end_) return false;
+  const uint8_t* const at = block_ + cursor_;
+  const uint8_t bytes = message_bytes(at, messages_end_ - cursor_);
+  cursor_ += bytes;
+  *message = Message{at[0], static_cast<uint8_t>(bytes - 1), at + 1};
+  return true;
+}
+
+void FramePacker::add(uint8_t type, const void* payload, uint8_t payload_size) {
+  block_[size_] = type;
+  memcpy(block_ + size_ + 1, payload, payload_size);
+  size_ += 1 + payload_size;
+}
+
+uint8_t FramePacker::close(uint16_t number, uint8_t acknowledged, uint32_t key,
+                           uint8_t (&frame)[kFrameBytesMax]) {
+  uint8_t upper = number;
+  if (!is_reliable(block_[kControlBytes])) {
+    block_[size_++] = number;
+    upper = number >> 8;
+  }
+  block_[0] = static_cast<uint8_t>(upper << 4 | acknowledged);
+  const uint32_t crc = crc32(block_, size_) ^ key;
+  memcpy(block_ + size_, &crc, kCrcBytes);
+  const uint8_t size = encode_cobs(block_, size_ + kCrcBytes, frame);
+  frame[size] = 0;
+  clear();
+  return size + 1;
+}
+
+}  // namespace mucat

@@ -1,0 +1,95 @@
+// The board's end of the serial line: frames in, frames out, lines of text. Never waits.
+//
+// Telemetry is sent once. Lines of text are reliable, and arrive exactly once and in order: they stay in
+// their queue until they are acknowledged, and the queue is the only store of what is in flight. Up to four
+// reliable frames are, of several lines each, numbered modulo 16, and no more bytes than the host can take
+// in. A frame that the host says is missing goes out again at once, and any other after the timeout of
+// RoundTrip, for as long as it takes. Of the host's reliable frames only the next in order is taken: there is
+// no room to hold others. What is taken is acknowledged by the next frame of telemetry, or by a frame of its
+// own.
+//
+// A session begins with a HELLO that carries another epoch than the last. Its frames have a key made of both
+// epochs, so that none from before a restart is believed. Of open frames only HELLO and STOP are taken then.
+#pragma once
+#include <stdint.h>
+
+#include "board/board.h"
+#include "link/debug.h"
+#include "link/frame.h"
+#include "link/round_trip.h"
+#include "packets.gen.h"
+
+namespace mucat {
+
+class Link {
+ public:
+  // Takes bytes from the line up to the end of one frame; true where that frame is valid.
+  bool receive();
+  // The received frame's next message that is new; false after the last. Ask until then.
+  bool next(Message* message);
+
+  // Numbers start anew, and lines that were not acknowledged are sent again. Does nothing where the session
+  // goes on.
+  void begin(uint32_t key);
+  // Bytes that the host can take in at once.
+  void set_credit(uint16_t bytes) { credit_ = bytes; }
+
+  // Puts a packet into the frame in the making; closes that first where the packet does not fit.
+  template <typename Packet>
+  void send(const Packet& packet) {
+    put(Packet::kType, &packet, sizeof packet);
+  }
+  // Closes the frame in the making. Where the line has no room for it, it is dropped: what it held is old by
+  // the time there is.
+  void flush() { flush(key_); }
+  // Sends a HELLO at once, in an open frame of its own.
+  void send_open(const Hello& hello);
+
+  // Queues a line of text.
+  void say(DebugLine& line);
+  // Sends one frame of lines, or an acknowledgement, where one is due and the line is calm.
+  void step(uint16_t now_ms);
+
+  uint16_t frames_invalid() const { return decoder_.invalid(); }
+  uint16_t lines_lost() const { return lines_.lost(); }
+
+ private:
+  static constexpr uint8_t kWindow = 4;
+  struct Flight {
+    uint16_t sent_ms;
+    uint8_t bytes;  // of lines
+    bool again;     // sent more than once
+    bool held;      // the host has it, but not one before it
+    bool lost;      // the host has a later one
+  };
+
+  void put(uint8_t type, const void* payload, uint8_t size);
+  void flush(uint32_t key);
+  void write(uint16_t number, uint32_t key);
+  bool in_session() const { return decoder_.open() == (key_ == kOpen); }
+  void take_number();
+  void take_acknowledgement();
+  void take_held(uint8_t held);
+  uint16_t bytes_in_flight() const;
+  bool repeat(uint16_t now_ms);
+  bool start_flight(uint16_t now_ms);
+  uint8_t pack(uint8_t offset, uint8_t limit);
+
+  FrameDecoder decoder_;
+  FramePacker packer_;
+  DebugQueue lines_;
+  RoundTrip round_trip_;
+  Flight flights_[kWindow];
+  uint32_t key_ = kOpen;
+  uint16_t credit_ = kFrameBytesMax;
+  uint16_t number_ = 0;      // of the next unreliable frame
+  uint8_t in_flight_ = 0;    // reliable frames
+  uint8_t lines_bytes_ = 0;  // of lines in flight
+  uint8_t base_ = 0;         // number of the oldest in flight
+  uint8_t expected_ = 0;     // number of the host's next reliable frame
+  bool fresh_ = false;       // the received frame's reliable messages are new
+  bool acknowledge_ = false;
+  uint16_t heard_ms_ = 0;
+};
+
+}  // namespace mucat

@@ -1,0 +1,33 @@
+#include "link/round_trip.h"
+
+#include "link/baud.h"
+
+namespace mucat {
+namespace {
+
+constexpr uint16_t kCapMs = 100;
+// A pause of the host's may be long; the mean must not overflow.
+constexpr uint16_t kLongestMs = 4000;
+
+}  // namespace
+
+void RoundTrip::measure(uint16_t ms) {
+  if (ms > kLongestMs) ms = kLongestMs;
+  if (!measured_) {
+    measured_ = true;
+    mean_ = ms << 3;
+    deviation_ = ms << 1;
+    return;
+  }
+  const int16_t error = static_cast<int16_t>(ms - (mean_ >> 3));
+  mean_ += error;
+  deviation_ += (error < 0 ? -error : error) - (deviation_ >> 2);
+}
+
+uint16_t RoundTrip::timeout(uint16_t bytes_in_flight) const {
+  const uint16_t wait = measured_ ? (mean_ >> 3) + deviation_ : kCapMs;
+  const uint16_t airtime = bytes_in_flight * 10000UL / kBaud;
+  return (wait < kCapMs ? wait : kCapMs) + airtime;
+}
+
+}  // namespace mucat

@@ -1,0 +1,3 @@
+// The library as a sketch sees it.
+#pragma once
+#include "robot.h"

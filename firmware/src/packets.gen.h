@@ -1,0 +1,181 @@
+// Written by `make generate` from robot_runtime/packets/definitions.py. Do not edit.
+#pragma once
+#include <stdint.h>
+
+namespace mucat {
+
+constexpr uint32_t kDefinitionsHash = 0xf3db8247UL;
+constexpr uint8_t kFinCount = 4;
+constexpr uint8_t kFrameBytesMax = 64;
+
+enum class DebugLevel : uint8_t {
+  kDebug = 0,
+  kInfo = 1,
+  kWarning = 2,
+  kError = 3,
+};
+
+enum class StatusFlag : uint8_t {
+  kArmed = 1,
+  kHostAlive = 2,
+  kNeutral = 4,
+  kMotorPower = 8,
+  kBatteryLow = 16,
+  kDefinitionsDiffer = 32,
+};
+
+enum class SensorFault : uint8_t {
+  kImu = 1,
+  kPressure = 2,
+  kFinFrontRight = 4,
+  kFinBackRight = 8,
+  kFinBackLeft = 16,
+  kFinFrontLeft = 32,
+};
+
+enum class ResetCause : uint8_t {
+  kUnknown = 0,
+  kPowerOn = 1,
+  kExternal = 2,
+  kBrownOut = 3,
+  kWatchdog = 4,
+};
+
+// Host to board: disarm at once. Accepted always, from anybody, as often as it comes.
+struct __attribute__((packed)) Stop {
+  static constexpr uint8_t kType = 0x00;
+};
+static_assert(sizeof(Stop) == 1, "Stop has another size");
+
+// Host to board: arm. Refused unless the epoch is this boot's and valid traffic came for 500 ms.
+struct __attribute__((packed)) Start {
+  static constexpr uint8_t kType = 0x01;
+  uint16_t epoch;  // the boot that is meant, from the board's Hello; 0: none, void
+};
+static_assert(sizeof(Start) == 2, "Start has another size");
+
+// Host to board: the wanted force and torque, each as a share of the most. Expires after 500 ms.
+struct __attribute__((packed)) Navigation {
+  static constexpr uint8_t kType = 0x02;
+  int8_t x;  // forwards; x 0.00787401575
+  int8_t y;  // to the right; x 0.00787401575
+  int8_t z;  // downwards; x 0.00787401575
+  int8_t roll;  // right side down; x 0.00787401575
+  int8_t pitch;  // nose up; x 0.00787401575
+  int8_t yaw;  // to the right; x 0.00787401575
+};
+static_assert(sizeof(Navigation) == 6, "Navigation has another size");
+
+// Board to host, 100 Hz: attitude, turn rate and specific force, body axes forward, right, down.
+struct __attribute__((packed)) Imu {
+  static constexpr uint8_t kType = 0x03;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  int16_t attitude[4];  // unit quaternion w, x, y, z that turns body into world; x 6.10351562e-05
+  int16_t rate[3];  // turn rate (65.5 counts per °/s); x 0.00026632423 rad/s
+  int16_t force[3];  // specific force (8192 counts per g); x 0.0011971008 m/s²
+};
+static_assert(sizeof(Imu) == 24, "Imu has another size");
+
+// Board to host, 50 Hz: depth below the surface, from pressure.
+struct __attribute__((packed)) Depth {
+  static constexpr uint8_t kType = 0x04;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  int16_t depth;  // depth below the surface, downwards; x 0.001 m
+  uint32_t pressure;  // absolute pressure; Pa
+  int16_t temperature;  // temperature of the water; x 0.01 °C
+};
+static_assert(sizeof(Depth) == 12, "Depth has another size");
+
+// Board to host, 10 Hz: which light-beacon detectors hear their tone.
+struct __attribute__((packed)) Beacon {
+  static constexpr uint8_t kType = 0x05;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  uint8_t right;  // 1 while the right detector sees the beacon
+  uint8_t left;  // 1 while the left detector sees the beacon
+};
+static_assert(sizeof(Beacon) == 6, "Beacon has another size");
+
+// Board to host, 50 Hz: the four fins, wanted and measured, and what drives them.
+struct __attribute__((packed)) Motor {
+  static constexpr uint8_t kType = 0x06;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  int16_t wanted[4];  // wanted fin angle; x 0.001 rad
+  int16_t angle[4];  // measured fin angle; x 0.001 rad
+  int8_t drive[4];  // H-bridge command, -63 to 63
+};
+static_assert(sizeof(Motor) == 24, "Motor has another size");
+
+// Board to host: a line of text.
+struct __attribute__((packed)) Debug {
+  static constexpr uint8_t kType = 0x09;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  uint8_t level;  // see DebugLevel
+  uint8_t text_size;
+  char text[40];
+  static constexpr uint8_t kTextMax = 40;
+};
+static_assert(sizeof(Debug) == 46, "Debug has another size");
+
+// Both ways: who speaks. The board answers each Hello with its own, and says one when it starts.
+struct __attribute__((packed)) Hello {
+  static constexpr uint8_t kType = 0x0a;
+  uint32_t definitions;  // hash of the packet definitions
+  uint16_t epoch;  // this boot of the board, or this run of the host
+  uint16_t credit;  // bytes that the sender can take in at once; B
+};
+static_assert(sizeof(Hello) == 8, "Hello has another size");
+
+// Board to host, 10 Hz: its state and its health.
+struct __attribute__((packed)) Status {
+  static constexpr uint8_t kType = 0x0b;
+  uint32_t time;  // the board's own clock, which wraps after 71 minutes; µs
+  uint16_t epoch;  // this boot of the board
+  uint8_t flags;  // see StatusFlag
+  uint8_t faults;  // see SensorFault
+  uint8_t reset_cause;  // see ResetCause
+  uint16_t battery;  // battery; x 0.001 V
+  uint16_t loop_worst;  // longest pass of the main loop since the last status; µs
+  uint16_t missed_ticks;  // passes of the main loop missed since the start
+  uint16_t frames_invalid;  // frames thrown away since the start
+  uint16_t bytes_lost;  // received bytes lost for want of room since the start
+  uint16_t debug_lost;  // debug lines lost for want of room since the start
+  uint16_t stack_free;  // memory that the stack never touched; B
+};
+static_assert(sizeof(Status) == 23, "Status has another size");
+
+// Host to board, 10 Hz: somebody is there.
+struct __attribute__((packed)) Heartbeat {
+  static constexpr uint8_t kType = 0x0c;
+  uint32_t time;  // the host's clock, for the log alone; ms
+};
+static_assert(sizeof(Heartbeat) == 4, "Heartbeat has another size");
+
+// Both ways: which reliable frames came after the first that is missing.
+struct __attribute__((packed)) Acknowledge {
+  static constexpr uint8_t kType = 0x0d;
+  uint8_t held;  // bit n: frame acknowledged + 1 + n is here
+};
+static_assert(sizeof(Acknowledge) == 1, "Acknowledge has another size");
+
+// Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
+inline int8_t payload_bytes(uint8_t type) {
+  switch (type) {
+    case Stop::kType: return 0;
+    case Start::kType: return 2;
+    case Navigation::kType: return 6;
+    case Imu::kType: return 24;
+    case Depth::kType: return 12;
+    case Beacon::kType: return 6;
+    case Motor::kType: return 24;
+    case Hello::kType: return 8;
+    case Status::kType: return 23;
+    case Heartbeat::kType: return 4;
+    case Acknowledge::kType: return 1;
+    default: return -1;
+  }
+}
+
+// Whether a packet of this type is repeated until it is acknowledged.
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType; }
+
+}  // namespace mucat

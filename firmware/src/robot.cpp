@@ -1,0 +1,184 @@
+#include "robot.h"
+
+#include <string.h>
+
+#include "board/board.h"
+#include "led.h"
+#include "schedule.h"
+
+namespace mucat {
+namespace {
+
+constexpr uint8_t kTicksPerSecond = 100;
+constexpr uint16_t kNoBoot = 0;
+// How long the fins have for turning down once the battery is low; half a turn takes 0.64 s.
+constexpr uint32_t kLoweringMs = 1500;
+
+template <typename Packet>
+Packet unpack(const Message& message) {
+  Packet packet;
+  memcpy(&packet, message.payload, sizeof packet);
+  return packet;
+}
+
+template <typename Enum>
+constexpr uint8_t bit(Enum flag, bool on) {
+  return on ? static_cast<uint8_t>(flag) : 0;
+}
+
+}  // namespace
+
+void Robot::start() {
+  board::start();
+  fins_.start();
+  epoch_ = board::next_epoch();
+  arming_.begin(epoch_);
+  sensors_.start(board::reset_cause() == ResetCause::kPowerOn);
+  say_boot();
+  send_hello();
+}
+
+void Robot::step() {
+  const uint32_t started = board::microseconds();
+  if (link_.receive()) {
+    arming_.hear(board::milliseconds());
+    for (Message message; link_.next(&message);) handle(message);
+  }
+  const uint8_t ticks = board::take_ticks();
+  if (ticks == 0) {
+    board::rest();
+    return;
+  }
+  missed_ticks_ += ticks - 1;
+  tick(ticks);
+  board::feed_watchdog();
+  const uint32_t took = board::microseconds() - started;
+  if (took > loop_worst_) loop_worst_ = took > UINT16_MAX ? UINT16_MAX : took;
+}
+
+void Robot::handle(const Message& message) {
+  switch (message.type) {
+    case Stop::kType:
+      say_disarmed(arming_.stop());
+      lowering_ = false;
+      // Not at the next tick: now.
+      fins_.step(Motion::kOff);
+      break;
+    case Hello::kType:
+      greet(unpack<Hello>(message));
+      break;
+    case Start::kType:
+      arm(unpack<Start>(message));
+      break;
+    case Navigation::kType:
+      if (arming_.navigate(board::milliseconds())) fins_.command(unpack<Navigation>(message));
+      break;
+    default:
+      break;  // a heartbeat has done its work by coming; the rest is the board's own to say
+  }
+}
+
+void Robot::greet(const Hello& hello) {
+  say_disarmed(arming_.greet(hello));
+  link_.begin(static_cast<uint32_t>(hello.epoch) << 16 | epoch_);
+  link_.set_credit(hello.credit);
+  send_hello();
+}
+
+void Robot::arm(const Start& start) {
+  // The host took it back while it was on its way.
+  if (start.epoch == kNoBoot) return;
+  const bool was_armed = armed();
+  const Refusal refusal = arming_.start(start, board::milliseconds());
+  if (refusal != Refusal::kNone) {
+    link_.say(DebugLine(DebugLevel::kWarning) << FLASH_TEXT("START refused: ") << describe(refusal));
+  } else if (!was_armed) {
+    link_.say(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("armed"));
+  }
+}
+
+void Robot::tick(uint8_t ticks) {
+  const uint32_t now = board::milliseconds();
+  say_disarmed(arming_.tick(now));
+  sensors_.step(ticks, !armed());
+  watch_battery(now);
+  fins_.step(motion(now));
+  board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
+  tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
+  if (++slot_tick_ >= kTicksPerSlot) {
+    slot_tick_ = 0;
+    send_telemetry();
+    slot_ = (slot_ + 1) % kSlots;
+  }
+  // Before a host has greeted, nobody reads: what the start has to say waits for it.
+  if (arming_.greeted()) link_.step(now);
+}
+
+void Robot::watch_battery(uint32_t now_ms) {
+  const uint16_t millivolts = sensors_.battery_millivolts();
+  if (!battery_alarm_.update(millivolts, now_ms)) return;
+  DebugLine line(DebugLevel::kError);
+  line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
+  link_.say(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));
+  lowering_ = armed();
+  lowering_since_ms_ = now_ms;
+  say_disarmed(arming_.fail_battery());
+}
+
+Motion Robot::motion(uint32_t now_ms) {
+  if (armed()) return arming_.commanded() ? Motion::kSwim : Motion::kRest;
+  if (lowering_ && now_ms - lowering_since_ms_ >= kLoweringMs) lowering_ = false;
+  return lowering_ ? Motion::kDown : Motion::kOff;
+}
+
+void Robot::send_telemetry() {
+  Imu imu;
+  if (sensors_.take(&imu)) link_.send(imu);
+  if (has_motor(slot_)) {
+    Motor motor;
+    motor.time = board::microseconds();
+    fins_.report(&motor);
+    link_.send(motor);
+  }
+  Depth depth;
+  if (has_depth(slot_) && sensors_.take(&depth)) link_.send(depth);
+  if (slot_ == kBeaconSlot) {
+    Beacon beacon;
+    sensors_.read(&beacon);
+    link_.send(beacon);
+  }
+  if (slot_ == kStatusSlot) {
+    say_changed_faults();
+    send_status();
+  }
+  link_.flush();
+}
+
+void Robot::send_status() {
+  Status status;
+  status.time = board::microseconds();
+  status.epoch = epoch_;
+  status.flags = flags();
+  status.faults = faults();
+  status.reset_cause = static_cast<uint8_t>(board::reset_cause());
+  status.battery = sensors_.battery_millivolts();
+  status.loop_worst = loop_worst_;
+  status.missed_ticks = missed_ticks_;
+  status.frames_invalid = link_.frames_invalid();
+  status.bytes_lost = board::bytes_lost();
+  status.debug_lost = link_.lines_lost();
+  status.stack_free = board::stack_free();
+  loop_worst_ = 0;
+  link_.send(status);
+}
+
+void Robot::send_hello() { link_.send_open(Hello{kDefinitionsHash, epoch_, board::kLineCredit}); }
+
+uint8_t Robot::flags() const {
+  return bit(StatusFlag::kArmed, armed()) | bit(StatusFlag::kHostAlive, arming_.host_alive()) |
+         bit(StatusFlag::kNeutral, fins_.neutral()) | bit(StatusFlag::kMotorPower, fins_.powered()) |
+         bit(StatusFlag::kBatteryLow, battery_alarm_.on()) |
+         bit(StatusFlag::kDefinitionsDiffer, arming_.definitions_differ());
+}
+
+}  // namespace mucat

@@ -1,0 +1,105 @@
+#include "safety/arming.h"
+
+namespace mucat {
+namespace {
+
+constexpr uint32_t kTrafficMs = 500;
+constexpr uint32_t kGapMs = 250;
+constexpr uint32_t kCommandMs = 250;
+constexpr uint32_t kSilenceMs = 1000;
+
+}  // namespace
+
+FlashText describe(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNoHello:
+      return FLASH_TEXT("say HELLO first");
+    case Refusal::kDefinitions:
+      return FLASH_TEXT("other definitions");
+    case Refusal::kEpoch:
+      return FLASH_TEXT("epoch of another boot");
+    case Refusal::kTraffic:
+      return FLASH_TEXT("no steady traffic yet");
+    case Refusal::kBattery:
+      return FLASH_TEXT("battery is low");
+    case Refusal::kNone:
+      break;
+  }
+  return FLASH_TEXT("");
+}
+
+FlashText describe(Disarming reason) {
+  switch (reason) {
+    case Disarming::kStop:
+      return FLASH_TEXT("STOP");
+    case Disarming::kSilence:
+      return FLASH_TEXT("host silent for 1 s");
+    case Disarming::kBattery:
+      return FLASH_TEXT("battery is low");
+    case Disarming::kDefinitions:
+      return FLASH_TEXT("other definitions");
+    case Disarming::kHost:
+      return FLASH_TEXT("another host");
+    case Disarming::kNone:
+      break;
+  }
+  return FLASH_TEXT("");
+}
+
+void Arming::hear(uint32_t now_ms) {
+  if (!alive_ || now_ms - heard_ms_ > kGapMs) steady_since_ms_ = now_ms;
+  heard_ms_ = now_ms;
+  alive_ = true;
+}
+
+Disarming Arming::greet(const Hello& hello) {
+  const bool another = greeted_ && hello.epoch != host_epoch_;
+  greeted_ = true;
+  agreed_ = hello.definitions == kDefinitionsHash;
+  host_epoch_ = hello.epoch;
+  if (!agreed_) return disarm(Disarming::kDefinitions);
+  return another ? disarm(Disarming::kHost) : Disarming::kNone;
+}
+
+Disarming Arming::fail_battery() {
+  battery_failed_ = true;
+  return disarm(Disarming::kBattery);
+}
+
+Disarming Arming::tick(uint32_t now_ms) {
+  if (commanded_ && now_ms - commanded_ms_ >= kCommandMs) commanded_ = false;
+  if (!alive_ || now_ms - heard_ms_ < kSilenceMs) return Disarming::kNone;
+  alive_ = false;
+  return disarm(Disarming::kSilence);
+}
+
+Refusal Arming::refusal(const Start& start, uint32_t now_ms) const {
+  if (!greeted_) return Refusal::kNoHello;
+  if (!agreed_) return Refusal::kDefinitions;
+  if (start.epoch != epoch_) return Refusal::kEpoch;
+  if (now_ms - steady_since_ms_ < kTrafficMs) return Refusal::kTraffic;
+  if (battery_failed_) return Refusal::kBattery;
+  return Refusal::kNone;
+}
+
+Refusal Arming::start(const Start& start, uint32_t now_ms) {
+  const Refusal reason = refusal(start, now_ms);
+  if (reason == Refusal::kNone) armed_ = true;
+  return reason;
+}
+
+bool Arming::navigate(uint32_t now_ms) {
+  if (!armed_) return false;
+  commanded_ = true;
+  commanded_ms_ = now_ms;
+  return true;
+}
+
+Disarming Arming::disarm(Disarming reason) {
+  commanded_ = false;
+  if (!armed_) return Disarming::kNone;
+  armed_ = false;
+  return reason;
+}
+
+}  // namespace mucat

@@ -1,0 +1,34 @@
+#include "sensors/as5040.h"
+
+#include "board/board.h"
+
+namespace mucat {
+namespace {
+
+// The word after the leading one: D9 to D0, then these, then even parity over all sixteen.
+constexpr uint16_t kOffsetDone = 1 << 5;
+constexpr uint16_t kCordicOverflow = 1 << 4;
+constexpr uint16_t kFieldOutOfRange = 3 << 1;
+
+bool odd(uint16_t word) {
+  word ^= word >> 8;
+  word ^= word >> 4;
+  word ^= word >> 2;
+  word ^= word >> 1;
+  return word & 1;
+}
+
+}  // namespace
+
+bool read_encoder_counts(uint8_t fin, int16_t* counts) {
+  uint8_t bytes[board::kEncoderBytes];
+  board::read_encoder(fin, bytes);
+  const uint16_t word =
+      static_cast<uint16_t>(bytes[0]) << 9 | static_cast<uint16_t>(bytes[1]) << 1 | bytes[2] >> 7;
+  if (odd(word) || !(word & kOffsetDone) || word & kCordicOverflow) return false;
+  if ((word & kFieldOutOfRange) == kFieldOutOfRange) return false;
+  *counts = word >> 6;
+  return true;
+}
+
+}  // namespace mucat

@@ -1,0 +1,45 @@
+#include "sensors/depth.h"
+
+#include "board/board.h"
+
+namespace mucat {
+namespace {
+
+// Pa per m: fresh water of 1000 kg/m³, 9.81 m/s².
+constexpr int32_t kPressurePerMetre = 9810;
+// Pa: the air between a high mountain and the deepest low is within these.
+constexpr int32_t kSurfaceMin = 50000;
+constexpr int32_t kSurfaceMax = 120000;
+// Pa: 32 m, where a depth of 16 bits ends.
+constexpr int32_t kAboveMax = 32 * kPressurePerMetre;
+
+bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <= kSurfaceMax; }
+
+}  // namespace
+
+void Surface::start(bool power_on) {
+  const board::KeptMemory& kept = board::kept_memory();
+  const int32_t pressure = static_cast<int32_t>(kept.value);
+  if (power_on || kept.complement != ~kept.value || !plausible(pressure)) return;
+  pressure_ = pressure;
+  readings_ = kReadings;
+}
+
+void Surface::add(int32_t pressure) {
+  if (known() || !plausible(pressure)) return;
+  pressure_ += pressure;
+  if (++readings_ < kReadings) return;
+  pressure_ /= kReadings;
+  board::kept_memory().value = pressure_;
+  board::kept_memory().complement = ~static_cast<uint32_t>(pressure_);
+}
+
+int16_t Surface::depth(int32_t pressure) const {
+  const int32_t above = pressure - pressure_;
+  if (above >= kAboveMax) return INT16_MAX;
+  if (above <= -kAboveMax) return INT16_MIN;
+  const int32_t half = kPressurePerMetre / 2;
+  return (above * 1000 + (above < 0 ? -half : half)) / kPressurePerMetre;
+}
+
+}  // namespace mucat

@@ -1,0 +1,26 @@
+// Depth from pressure: P = P_surface + ρ g d.
+#pragma once
+#include <stdint.h>
+
+namespace mucat {
+
+// The pressure at the surface: the mean of the first readings after power-on, kept over every other reset, so
+// that a restart under water does not move the surface.
+class Surface {
+ public:
+  // Takes the kept pressure, unless this is a power-on or what is kept is nonsense.
+  void start(bool power_on);
+  bool known() const { return readings_ == kReadings; }
+  // A reading (Pa) at the surface; ignored once the surface is known.
+  void add(int32_t pressure);
+  // m, downwards, as a count of 1 mm; only once the surface is known.
+  int16_t depth(int32_t pressure) const;
+
+ private:
+  static constexpr uint8_t kReadings = 16;
+
+  int32_t pressure_ = 0;  // the sum of the readings until known
+  uint8_t readings_ = 0;
+};
+
+}  // namespace mucat

@@ -1,0 +1,122 @@
+#include "sensors/ms5837.h"
+
+#include "board/board.h"
+
+namespace mucat {
+namespace {
+
+constexpr uint8_t kAddress = 0x76;
+constexpr uint8_t kReset = 0x1E;
+constexpr uint8_t kReadProm = 0xA0;
+constexpr uint8_t kReadConversion = 0x00;
+// 2048 samples take 4.6 ms, which fits a tick whenever in it the conversion starts; 4096 take 9.1 ms and
+// would not. The resolution is 4 mm of water.
+constexpr uint8_t kConvertPressure = 0x46;
+constexpr uint8_t kConvertTemperature = 0x56;
+
+constexpr uint8_t kRetry = 10;
+
+bool command(uint8_t byte) { return board::exchange_i2c(kAddress, &byte, 1, nullptr, 0); }
+
+}  // namespace
+
+// The four-bit CRC of AN520 (TE Connectivity), polynomial x^4 + x + 1, kept in the first word's upper four
+// bits.
+bool prom_valid(const uint16_t (&prom)[kPromWords]) {
+  uint16_t remainder = 0;
+  for (uint8_t byte = 0; byte < 16; ++byte) {
+    uint16_t word = byte / 2 < kPromWords ? prom[byte / 2] : 0;
+    if (byte < 2) word &= 0x0FFF;
+    remainder ^= byte % 2 ? word & 0xFF : word >> 8;
+    for (uint8_t bit = 0; bit < 8; ++bit)
+      remainder = remainder & 0x8000 ? remainder << 1 ^ 0x3000 : remainder << 1;
+  }
+  return remainder >> 12 == prom[0] >> 12;
+}
+
+PressureReading compensate(const uint16_t (&prom)[kPromWords], uint32_t d1, uint32_t d2) {
+  // Shifts, not divisions: the data sheet's example rounds downwards, and a shift is quicker.
+  const int32_t from_reference = static_cast<int32_t>(d2) - (static_cast<int32_t>(prom[5]) << 8);
+  const int64_t squared = static_cast<int64_t>(from_reference) * from_reference;
+  int32_t temperature = 2000 + static_cast<int32_t>(static_cast<int64_t>(from_reference) * prom[6] >> 23);
+  int64_t offset =
+      (static_cast<int64_t>(prom[2]) << 16) + (static_cast<int64_t>(from_reference) * prom[4] >> 7);
+  int64_t sensitivity =
+      (static_cast<int64_t>(prom[1]) << 15) + (static_cast<int64_t>(from_reference) * prom[3] >> 8);
+
+  const int64_t from_20 = static_cast<int64_t>(temperature - 2000) * (temperature - 2000);
+  if (temperature < 2000) {
+    offset -= 3 * from_20 >> 1;
+    sensitivity -= 5 * from_20 >> 3;
+    if (temperature < -1500) {
+      const int64_t from_15_below = static_cast<int64_t>(temperature + 1500) * (temperature + 1500);
+      offset -= 7 * from_15_below;
+      sensitivity -= 4 * from_15_below;
+    }
+    temperature -= static_cast<int32_t>(3 * squared >> 33);
+  } else {
+    offset -= from_20 >> 4;
+    temperature -= static_cast<int32_t>(2 * squared >> 37);
+  }
+  // The data sheet's unit is 0.1 mbar; ten times that is Pa.
+  const int64_t counts = (static_cast<int64_t>(d1) * sensitivity >> 21) - offset;
+  return {static_cast<int32_t>(counts * 10 >> 13), static_cast<int16_t>(temperature)};
+}
+
+bool Ms5837::step(PressureReading* reading) {
+  if (wait_) {
+    --wait_;
+    return false;
+  }
+  bool fresh = false;
+  if (!advance(reading, &fresh)) {
+    faulty_ = true;
+    stage_ = Stage::kReset;
+    wait_ = kRetry;
+  }
+  return fresh;
+}
+
+bool Ms5837::advance(PressureReading* reading, bool* fresh) {
+  uint32_t counts;
+  switch (stage_) {
+    case Stage::kReset:
+      stage_ = Stage::kProm;
+      return command(kReset);
+    case Stage::kProm:
+      stage_ = Stage::kTemperature;
+      return read_prom() && command(kConvertTemperature);
+    case Stage::kTemperature:
+      stage_ = Stage::kPressure;
+      return take_conversion(&temperature_counts_) && command(kConvertPressure);
+    case Stage::kPressure:
+      stage_ = Stage::kTemperature;
+      if (!take_conversion(&counts)) return false;
+      *reading = compensate(prom_, counts, temperature_counts_);
+      *fresh = true;
+      faulty_ = false;
+      return command(kConvertTemperature);
+  }
+  return false;
+}
+
+bool Ms5837::read_prom() {
+  for (uint8_t i = 0; i < kPromWords; ++i) {
+    uint8_t bytes[2];
+    if (!command(kReadProm + 2 * i) || !board::exchange_i2c(kAddress, nullptr, 0, bytes, sizeof bytes))
+      return false;
+    prom_[i] = static_cast<uint16_t>(bytes[0]) << 8 | bytes[1];
+  }
+  return prom_valid(prom_);
+}
+
+bool Ms5837::take_conversion(uint32_t* counts) {
+  uint8_t bytes[3];
+  if (!command(kReadConversion) || !board::exchange_i2c(kAddress, nullptr, 0, bytes, sizeof bytes))
+    return false;
+  *counts = static_cast<uint32_t>(bytes[0]) << 16 | static_cast<uint16_t>(bytes[1]) << 8 | bytes[2];
+  // The chip answers 0 where no conversion was ready.
+  return *counts != 0;
+}
+
+}  // namespace mucat

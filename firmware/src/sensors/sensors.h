@@ -1,0 +1,50 @@
+// Everything that is measured but the fins: read in turn, once a tick.
+#pragma once
+#include <stdint.h>
+
+#include "packets.gen.h"
+#include "sensors/attitude.h"
+#include "sensors/battery.h"
+#include "sensors/depth.h"
+#include "sensors/mpu6050.h"
+#include "sensors/ms5837.h"
+
+namespace mucat {
+
+class Sensors {
+ public:
+  void start(bool power_on) { surface_.start(power_on); }
+  // Call every tick; `ticks` have passed since the last call. The surface is only sought while `at_surface`.
+  void step(uint8_t ticks, bool at_surface);
+
+  // Whether there is a reading that was not taken yet; takes it.
+  bool take(Imu* packet);
+  bool take(Depth* packet);
+  void read(Beacon* packet) const;
+
+  uint16_t battery_millivolts() const { return battery_millivolts_; }
+  // Bits of SensorFault.
+  uint8_t faults() const;
+
+ private:
+  void read_imu(uint8_t ticks);
+  void read_pressure(bool at_surface);
+  void read_battery();
+
+  Mpu6050 imu_;
+  Attitude attitude_;
+  ImuReading imu_reading_ = {};
+  uint32_t imu_time_ = 0;
+  bool imu_fresh_ = false;
+
+  Ms5837 pressure_;
+  Surface surface_;
+  PressureReading pressure_reading_ = {};
+  uint32_t pressure_time_ = 0;
+  bool depth_fresh_ = false;
+
+  uint16_t battery_millivolts_ = 0;
+  uint8_t battery_tick_ = 0;
+};
+
+}  // namespace mucat

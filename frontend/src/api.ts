@@ -1,0 +1,57 @@
+/** The server's HTTP interface. Every call answers `null` or its result, or what went wrong in words. */
+import type { components } from './generated/api';
+
+type Schemas = components['schemas'];
+export type Part = Schemas['PartHealth'];
+export type Session = Schemas['Session'];
+
+export type Answer<T> = { readonly value: T } | { readonly problem: string };
+
+const TIMEOUT = 5000;
+const TIMEOUT_STOP = 2000;
+
+async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
+  try {
+    const response = await fetch(`/api${path}`, {
+      method,
+      headers: body ? { 'Content-Type': 'application/json' } : {},
+      ...(body ? { body: JSON.stringify(body) } : {}),
+      signal: AbortSignal.timeout(timeout),
+    });
+    const text = await response.text();
+    if (!response.ok) return { problem: describe(response.status, text) };
+    return { value: (text === '' ? null : JSON.parse(text)) as T };
+  } catch {
+    return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
+  }
+}
+
+function describe(status: number, text: string): string {
+  try {
+    const { detail } = JSON.parse(text) as { detail?: unknown };
+    if (typeof detail === 'string') return detail;
+    if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
+  } catch {
+    // Not JSON: something between the page and the server answered in its place.
+  }
+  return `The server refused with status ${status} and gave no reason. Try again, and look into its log.`;
+}
+
+async function command(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
+  const answer = await request<null>(method, path, body, timeout);
+  return 'problem' in answer ? answer.problem : null;
+}
+
+export const api = {
+  stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
+  arm: () => command('POST', '/robot/arm'),
+  controller: (name: string, gains: Record<string, number>) => command('PUT', '/robot/controller', { name, gains }),
+  setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
+  card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
+  vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
+  health: () => request<Schemas['Health']>('GET', '/health'),
+  sessions: () => request<Session[]>('GET', '/sessions'),
+  startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
+  stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
+  csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
+};

@@ -1,0 +1,462 @@
+// Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
+
+/** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
+export const DEFINITIONS_HASH = 'f3db8247';
+
+export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
+
+/** One field of a row: `offset` counts from the row's first byte; the first eight are the time (f64, s). */
+export interface Field {
+  readonly name: string;
+  readonly code: Code;
+  readonly offset: number;
+  readonly count: number;
+  readonly scale: number;
+  readonly unit: string;
+  readonly meaning: string;
+}
+
+export interface RowTopic {
+  readonly id: number;
+  readonly name: string;
+  readonly rowBytes: number;
+  readonly meaning: string;
+  readonly fields: readonly Field[];
+}
+
+export const DebugLevel = {
+  DEBUG: 0,
+  INFO: 1,
+  WARNING: 2,
+  ERROR: 3,
+} as const;
+
+export const StatusFlag = {
+  ARMED: 1,
+  HOST_ALIVE: 2,
+  NEUTRAL: 4,
+  MOTOR_POWER: 8,
+  BATTERY_LOW: 16,
+  DEFINITIONS_DIFFER: 32,
+} as const;
+
+export const SensorFault = {
+  IMU: 1,
+  PRESSURE: 2,
+  FIN_FRONT_RIGHT: 4,
+  FIN_BACK_RIGHT: 8,
+  FIN_BACK_LEFT: 16,
+  FIN_FRONT_LEFT: 32,
+} as const;
+
+export const ResetCause = {
+  UNKNOWN: 0,
+  POWER_ON: 1,
+  EXTERNAL: 2,
+  BROWN_OUT: 3,
+  WATCHDOG: 4,
+} as const;
+
+export const ROW_TOPICS = {
+  imu: {
+    id: 1,
+    name: 'imu',
+    rowBytes: 32,
+    meaning: 'attitude, turn rate and specific force',
+    fields: [
+      { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
+      { name: 'attitude', code: 'h', offset: 12, count: 4, scale: 6.103515625e-05, unit: '', meaning: 'unit quaternion w, x, y, z that turns body into world' },
+      { name: 'rate', code: 'h', offset: 20, count: 3, scale: 0.00026632423, unit: 'rad/s', meaning: 'turn rate (65.5 counts per °/s)' },
+      { name: 'force', code: 'h', offset: 26, count: 3, scale: 0.0011971008, unit: 'm/s²', meaning: 'specific force (8192 counts per g)' },
+    ],
+  },
+  depth: {
+    id: 2,
+    name: 'depth',
+    rowBytes: 20,
+    meaning: 'depth and pressure',
+    fields: [
+      { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
+      { name: 'depth', code: 'h', offset: 12, count: 1, scale: 0.001, unit: 'm', meaning: 'depth below the surface, downwards' },
+      { name: 'pressure', code: 'I', offset: 14, count: 1, scale: 1, unit: 'Pa', meaning: 'absolute pressure' },
+      { name: 'temperature', code: 'h', offset: 18, count: 1, scale: 0.01, unit: '°C', meaning: 'temperature of the water' },
+    ],
+  },
+  beacon: {
+    id: 3,
+    name: 'beacon',
+    rowBytes: 14,
+    meaning: 'light-beacon detectors',
+    fields: [
+      { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
+      { name: 'right', code: 'B', offset: 12, count: 1, scale: 1, unit: '', meaning: '1 while the right detector sees the beacon' },
+      { name: 'left', code: 'B', offset: 13, count: 1, scale: 1, unit: '', meaning: '1 while the left detector sees the beacon' },
+    ],
+  },
+  motor: {
+    id: 4,
+    name: 'motor',
+    rowBytes: 32,
+    meaning: 'fins: wanted, measured, driven',
+    fields: [
+      { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
+      { name: 'wanted', code: 'h', offset: 12, count: 4, scale: 0.001, unit: 'rad', meaning: 'wanted fin angle' },
+      { name: 'angle', code: 'h', offset: 20, count: 4, scale: 0.001, unit: 'rad', meaning: 'measured fin angle' },
+      { name: 'drive', code: 'b', offset: 28, count: 4, scale: 1, unit: '', meaning: 'H-bridge command, -63 to 63' },
+    ],
+  },
+  status: {
+    id: 5,
+    name: 'status',
+    rowBytes: 31,
+    meaning: 'the board\'s state and health',
+    fields: [
+      { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
+      { name: 'epoch', code: 'H', offset: 12, count: 1, scale: 1, unit: '', meaning: 'this boot of the board' },
+      { name: 'flags', code: 'B', offset: 14, count: 1, scale: 1, unit: '', meaning: 'see StatusFlag' },
+      { name: 'faults', code: 'B', offset: 15, count: 1, scale: 1, unit: '', meaning: 'see SensorFault' },
+      { name: 'reset_cause', code: 'B', offset: 16, count: 1, scale: 1, unit: '', meaning: 'see ResetCause' },
+      { name: 'battery', code: 'H', offset: 17, count: 1, scale: 0.001, unit: 'V', meaning: 'battery' },
+      { name: 'loop_worst', code: 'H', offset: 19, count: 1, scale: 1, unit: 'µs', meaning: 'longest pass of the main loop since the last status' },
+      { name: 'missed_ticks', code: 'H', offset: 21, count: 1, scale: 1, unit: '', meaning: 'passes of the main loop missed since the start' },
+      { name: 'frames_invalid', code: 'H', offset: 23, count: 1, scale: 1, unit: '', meaning: 'frames thrown away since the start' },
+      { name: 'bytes_lost', code: 'H', offset: 25, count: 1, scale: 1, unit: '', meaning: 'received bytes lost for want of room since the start' },
+      { name: 'debug_lost', code: 'H', offset: 27, count: 1, scale: 1, unit: '', meaning: 'debug lines lost for want of room since the start' },
+      { name: 'stack_free', code: 'H', offset: 29, count: 1, scale: 1, unit: 'B', meaning: 'memory that the stack never touched' },
+    ],
+  },
+  navigation: {
+    id: 6,
+    name: 'navigation',
+    rowBytes: 14,
+    meaning: 'navigation commands sent to the board',
+    fields: [
+      { name: 'x', code: 'b', offset: 8, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'forwards' },
+      { name: 'y', code: 'b', offset: 9, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'to the right' },
+      { name: 'z', code: 'b', offset: 10, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'downwards' },
+      { name: 'roll', code: 'b', offset: 11, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'right side down' },
+      { name: 'pitch', code: 'b', offset: 12, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'nose up' },
+      { name: 'yaw', code: 'b', offset: 13, count: 1, scale: 0.007874015748031496, unit: '', meaning: 'to the right' },
+    ],
+  },
+  control: {
+    id: 7,
+    name: 'control',
+    rowBytes: 28,
+    meaning: 'ticks of the control node',
+    fields: [
+      { name: 'set_point', code: 'f', offset: 8, count: 1, scale: 1, unit: 'm', meaning: 'wanted depth' },
+      { name: 'depth', code: 'f', offset: 12, count: 1, scale: 1, unit: 'm', meaning: 'depth that the controller saw' },
+      { name: 'error', code: 'f', offset: 16, count: 1, scale: 1, unit: 'm', meaning: 'set point minus depth' },
+      { name: 'output', code: 'f', offset: 20, count: 1, scale: 1, unit: '', meaning: 'vertical command, -1 to 1, downwards' },
+      { name: 'latency', code: 'f', offset: 24, count: 1, scale: 1, unit: 's', meaning: 'age of the depth when it was used' },
+    ],
+  },
+  link: {
+    id: 8,
+    name: 'link',
+    rowBytes: 74,
+    meaning: 'the serial line',
+    fields: [
+      { name: 'bytes_received', code: 'I', offset: 8, count: 1, scale: 1, unit: 'B', meaning: 'received' },
+      { name: 'bytes_sent', code: 'I', offset: 12, count: 1, scale: 1, unit: 'B', meaning: 'sent' },
+      { name: 'bytes_delivered', code: 'I', offset: 16, count: 1, scale: 1, unit: 'B', meaning: 'received payloads that were passed on' },
+      { name: 'frames_received', code: 'I', offset: 20, count: 1, scale: 1, unit: '', meaning: 'valid frames received' },
+      { name: 'frames_sent', code: 'I', offset: 24, count: 1, scale: 1, unit: '', meaning: 'frames sent' },
+      { name: 'frames_invalid', code: 'I', offset: 28, count: 1, scale: 1, unit: '', meaning: 'frames thrown away: garbage, wrong checksum or length' },
+      { name: 'frames_missed', code: 'I', offset: 32, count: 1, scale: 1, unit: '', meaning: 'unreliable frames that their numbers show to be missing' },
+      { name: 'frames_repeated', code: 'I', offset: 36, count: 1, scale: 1, unit: '', meaning: 'reliable frames sent again' },
+      { name: 'frames_duplicate', code: 'I', offset: 40, count: 1, scale: 1, unit: '', meaning: 'frames that came again and were not passed on again' },
+      { name: 'messages_discarded', code: 'I', offset: 44, count: 1, scale: 1, unit: '', meaning: 'unacknowledged messages to a board that restarted' },
+      { name: 'round_trip', code: 'f', offset: 48, count: 1, scale: 1, unit: 's', meaning: 'time from a frame to its acknowledgement' },
+      { name: 'round_trip_deviation', code: 'f', offset: 52, count: 1, scale: 1, unit: 's', meaning: 'mean deviation of the round trip' },
+      { name: 'timeout', code: 'f', offset: 56, count: 1, scale: 1, unit: 's', meaning: 'wait for an acknowledgement before sending again' },
+      { name: 'goodput', code: 'f', offset: 60, count: 1, scale: 1, unit: 'B/s', meaning: 'received payloads in the last second' },
+      { name: 'credit', code: 'H', offset: 64, count: 1, scale: 1, unit: 'B', meaning: 'bytes that the board can take in at once' },
+      { name: 'clock_error', code: 'f', offset: 66, count: 1, scale: 1, unit: 's', meaning: 'standard deviation of the board\'s mapped time' },
+      { name: 'clock_drift', code: 'f', offset: 70, count: 1, scale: 1, unit: '', meaning: 'how much the board\'s clock is slow, as a share' },
+    ],
+  },
+  truth: {
+    id: 9,
+    name: 'truth',
+    rowBytes: 76,
+    meaning: 'the simulated body',
+    fields: [
+      { name: 'position', code: 'f', offset: 8, count: 3, scale: 1, unit: 'm', meaning: 'north, east, down' },
+      { name: 'attitude', code: 'f', offset: 20, count: 4, scale: 1, unit: '', meaning: 'unit quaternion w, x, y, z, body to world' },
+      { name: 'velocity', code: 'f', offset: 36, count: 3, scale: 1, unit: 'm/s', meaning: 'in body axes' },
+      { name: 'rate', code: 'f', offset: 48, count: 3, scale: 1, unit: 'rad/s', meaning: 'in body axes' },
+      { name: 'fins', code: 'f', offset: 60, count: 4, scale: 1, unit: 'rad', meaning: 'fin angles' },
+    ],
+  },
+} as const;
+
+export interface ImuRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** µs, the board's own clock, which wraps after 71 minutes */
+  board_time: number;
+  /** unit quaternion w, x, y, z that turns body into world */
+  attitude: number[];
+  /** rad/s, turn rate (65.5 counts per °/s) */
+  rate: number[];
+  /** m/s², specific force (8192 counts per g) */
+  force: number[];
+}
+
+export interface DepthRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** µs, the board's own clock, which wraps after 71 minutes */
+  board_time: number;
+  /** m, depth below the surface, downwards */
+  depth: number;
+  /** Pa, absolute pressure */
+  pressure: number;
+  /** °C, temperature of the water */
+  temperature: number;
+}
+
+export interface BeaconRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** µs, the board's own clock, which wraps after 71 minutes */
+  board_time: number;
+  /** 1 while the right detector sees the beacon */
+  right: number;
+  /** 1 while the left detector sees the beacon */
+  left: number;
+}
+
+export interface MotorRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** µs, the board's own clock, which wraps after 71 minutes */
+  board_time: number;
+  /** rad, wanted fin angle */
+  wanted: number[];
+  /** rad, measured fin angle */
+  angle: number[];
+  /** H-bridge command, -63 to 63 */
+  drive: number[];
+}
+
+export interface StatusRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** µs, the board's own clock, which wraps after 71 minutes */
+  board_time: number;
+  /** this boot of the board */
+  epoch: number;
+  /** see StatusFlag */
+  flags: number;
+  /** see SensorFault */
+  faults: number;
+  /** see ResetCause */
+  reset_cause: number;
+  /** V, battery */
+  battery: number;
+  /** µs, longest pass of the main loop since the last status */
+  loop_worst: number;
+  /** passes of the main loop missed since the start */
+  missed_ticks: number;
+  /** frames thrown away since the start */
+  frames_invalid: number;
+  /** received bytes lost for want of room since the start */
+  bytes_lost: number;
+  /** debug lines lost for want of room since the start */
+  debug_lost: number;
+  /** B, memory that the stack never touched */
+  stack_free: number;
+}
+
+export interface NavigationRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** forwards */
+  x: number;
+  /** to the right */
+  y: number;
+  /** downwards */
+  z: number;
+  /** right side down */
+  roll: number;
+  /** nose up */
+  pitch: number;
+  /** to the right */
+  yaw: number;
+}
+
+export interface ControlRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** m, wanted depth */
+  set_point: number;
+  /** m, depth that the controller saw */
+  depth: number;
+  /** m, set point minus depth */
+  error: number;
+  /** vertical command, -1 to 1, downwards */
+  output: number;
+  /** s, age of the depth when it was used */
+  latency: number;
+}
+
+export interface LinkRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** B, received */
+  bytes_received: number;
+  /** B, sent */
+  bytes_sent: number;
+  /** B, received payloads that were passed on */
+  bytes_delivered: number;
+  /** valid frames received */
+  frames_received: number;
+  /** frames sent */
+  frames_sent: number;
+  /** frames thrown away: garbage, wrong checksum or length */
+  frames_invalid: number;
+  /** unreliable frames that their numbers show to be missing */
+  frames_missed: number;
+  /** reliable frames sent again */
+  frames_repeated: number;
+  /** frames that came again and were not passed on again */
+  frames_duplicate: number;
+  /** unacknowledged messages to a board that restarted */
+  messages_discarded: number;
+  /** s, time from a frame to its acknowledgement */
+  round_trip: number;
+  /** s, mean deviation of the round trip */
+  round_trip_deviation: number;
+  /** s, wait for an acknowledgement before sending again */
+  timeout: number;
+  /** B/s, received payloads in the last second */
+  goodput: number;
+  /** B, bytes that the board can take in at once */
+  credit: number;
+  /** s, standard deviation of the board's mapped time */
+  clock_error: number;
+  /** how much the board's clock is slow, as a share */
+  clock_drift: number;
+}
+
+export interface TruthRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** m, north, east, down */
+  position: number[];
+  /** unit quaternion w, x, y, z, body to world */
+  attitude: number[];
+  /** m/s, in body axes */
+  velocity: number[];
+  /** rad/s, in body axes */
+  rate: number[];
+  /** rad, fin angles */
+  fins: number[];
+}
+
+export interface Rows {
+  imu: ImuRow;
+  depth: DepthRow;
+  beacon: BeaconRow;
+  motor: MotorRow;
+  status: StatusRow;
+  navigation: NavigationRow;
+  control: ControlRow;
+  link: LinkRow;
+  truth: TruthRow;
+}
+
+export const OTHER_TOPICS = {
+  state: 16,
+  detection: 17,
+  debug: 18,
+  event: 19,
+  notice: 20,
+  picture: 32,
+} as const;
+
+/** A rectangle in the picture; each number a share of the picture's width or height. */
+export interface Box {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+/** One number of a controller that may be tuned. */
+export interface Gain {
+  name: string;
+  value: number;
+  minimum: number;
+  maximum: number;
+  unit: string;
+  meaning: string;
+}
+
+/** A controller that can be chosen, and its gains as they stand. */
+export interface ControllerChoice {
+  name: string;
+  title: string;
+  gains: Gain[];
+}
+
+/** The robot as a whole; sent once a second and at every change. */
+export interface State {
+  time: number;
+  mode: 'disarmed' | 'automatic';
+  armed: boolean;
+  armed_since: number | null;
+  refusals: string[];
+  connected: boolean;
+  connection: string;
+  port: string;
+  baud: number;
+  epoch: number | null;
+  controller: string;
+  controllers: ControllerChoice[];
+  set_point: number;
+  set_point_default: number;
+  set_point_detected: number;
+  control_rate: number;
+  vision_rate: number;
+  vision_colour: string;
+  colours: string[];
+  card: string | null;
+  camera: string;
+}
+
+/** What the vision node found in one picture: the largest patch of each wanted colour that it saw. */
+export interface Detection {
+  time: number;
+  taken: number;
+  colour: string | null;
+  box: Box | null;
+  area: number;
+  processing: number;
+}
+
+/** A line of text that the firmware wrote; level as in DebugLevel. */
+export interface DebugLine {
+  time: number;
+  level: number;
+  text: string;
+}
+
+/** Something that happened, in words for a person; `kind` is one word for programs. */
+export interface RobotEvent {
+  time: number;
+  kind: string;
+  severity: 'info' | 'caution' | 'alarm';
+  text: string;
+}
+
+export interface Documents {
+  state: State;
+  detection: Detection;
+  debug: DebugLine;
+  event: RobotEvent;
+  notice: RobotEvent;
+}

@@ -1,0 +1,30 @@
+/** The text messages of the live socket. */
+import type { Part, Session } from '../api';
+
+export interface Hello {
+  op: 'hello';
+  definitions: string;
+  robot: string;
+  /** s, the robot's steady clock */
+  steady: number;
+  /** the same instant, s since 1970 */
+  utc: number;
+  page_version: string;
+}
+
+export type ServerMessage =
+  | Hello
+  | { op: 'health'; parts: Part[] }
+  | { op: 'session'; recording: Session | null }
+  | { op: 'error'; text: string }
+  | { op: 'dropped'; topic: string; count: number }
+  | { op: 'pong'; id: number };
+
+const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'error', 'dropped', 'pong']);
+
+/** The message in `text`; null where this page does not know its operation. */
+export function readMessage(text: string): ServerMessage | null {
+  const message: unknown = JSON.parse(text);
+  const known = typeof message === 'object' && message !== null && 'op' in message && OPERATIONS.has(message.op);
+  return known ? (message as ServerMessage) : null;
+}

@@ -1,0 +1,20 @@
+import type { Rows } from '../generated/topics';
+
+export type Timed = keyof Rows | 'state' | 'detection' | 'picture';
+
+/** s between two samples of each topic where it flows as it should; docs/architecture.md and the packets say so. */
+export const PERIODS: Record<keyof Rows | 'state', number> = {
+  imu: 0.01,
+  depth: 0.02,
+  beacon: 0.1,
+  motor: 0.02,
+  status: 0.1,
+  navigation: 0.1,
+  control: 0.1,
+  link: 1,
+  truth: 0.02,
+  state: 1,
+};
+
+/** s that the rings hold: what the server keeps, and a little more. */
+export const HISTORY = 310;

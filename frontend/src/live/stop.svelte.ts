@@ -1,0 +1,45 @@
+import { api } from '../api';
+
+const RETRY_EVERY = 250;
+const CONFIRMED_SHOWN = 2000;
+
+export type StopState = 'idle' | 'sending' | 'confirmed';
+
+/**
+ * STOP, sent by every way there is and again until the server says that it was taken.
+ *
+ * The socket is the quicker way and HTTP the one that answers, so both are used.
+ */
+export class Stop {
+  state = $state<StopState>('idle');
+  attempts = $state(0);
+  problem = $state('');
+  #rest: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(private readonly bySocket: () => boolean) {}
+
+  readonly press = (): void => {
+    this.bySocket();
+    if (this.state === 'sending') return;
+    clearTimeout(this.#rest);
+    this.state = 'sending';
+    this.attempts = 0;
+    void this.#insist();
+  };
+
+  async #insist(): Promise<void> {
+    for (;;) {
+      this.attempts += 1;
+      const refusal = await api.stop();
+      if (refusal === null) break;
+      this.problem = refusal;
+      await new Promise((resolve) => setTimeout(resolve, RETRY_EVERY));
+      this.bySocket();
+    }
+    this.problem = '';
+    this.state = 'confirmed';
+    this.#rest = setTimeout(() => {
+      this.state = 'idle';
+    }, CONFIRMED_SHOWN);
+  }
+}

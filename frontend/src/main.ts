@@ -1,0 +1,15 @@
+import { mount } from 'svelte';
+import App from './App.svelte';
+import { Live } from './live/live.svelte';
+import { Router } from './router.svelte';
+import './styles/tokens.css';
+import './styles/base.css';
+import { Theme } from './theme.svelte';
+
+const place = document.getElementById('page');
+if (place === null) throw new Error('index.html has no element "page"');
+const protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+mount(App, {
+  target: place,
+  props: { live: new Live(`${protocol}//${location.host}/api/live`), router: new Router(), theme: new Theme() },
+});

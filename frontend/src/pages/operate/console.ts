@@ -1,0 +1,20 @@
+import type { DebugLine } from '../../generated/topics';
+
+/** Words of DebugLevel, in its order. */
+export const LEVELS = ['debug', 'info', 'warning', 'error'] as const;
+
+export function levelWord(level: number): string {
+  return LEVELS[level] ?? `level ${level}`;
+}
+
+/** The lines of at least this level that hold this text, upper and lower case alike. */
+export function matching(lines: readonly DebugLine[], level: number, text: string): readonly DebugLine[] {
+  const wanted = text.trim().toLowerCase();
+  if (level === 0 && wanted === '') return lines;
+  return lines.filter((line) => line.level >= level && line.text.toLowerCase().includes(wanted));
+}
+
+/** The lines as a person would paste them: time, level and text. */
+export function asText(lines: readonly DebugLine[], date: (time: number) => Date): string {
+  return lines.map((line) => `${date(line.time).toISOString()} ${levelWord(line.level)} ${line.text}`).join('\n');
+}

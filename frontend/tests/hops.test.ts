@@ -1,0 +1,36 @@
+import { describe, expect, it } from 'vitest';
+import { findBroken, type Heard } from '../src/live/hops';
+
+const WELL: Heard = {
+  connection: 'open',
+  farewell: '',
+  parts: [{ name: 'runtime', state: 'ok', text: 'It runs.' }],
+  stateFresh: true,
+  state: { connected: true, connection: 'connected' },
+};
+
+describe('findBroken', () => {
+  it('finds nothing where all is well, or while nothing is known yet', () => {
+    expect(findBroken(WELL)).toBeNull();
+    expect(findBroken({ ...WELL, connection: 'connecting', stateFresh: false })).toBeNull();
+    expect(findBroken({ ...WELL, parts: [], stateFresh: false, state: null })).toBeNull();
+  });
+
+  it('blames the hop nearest to the page', () => {
+    const all: Heard = { ...WELL, stateFresh: false, state: { connected: false, connection: 'no answer' } };
+    expect(findBroken({ ...all, connection: 'lost' })?.hop).toBe(0);
+    expect(findBroken(all)?.hop).toBe(1);
+    expect(findBroken({ ...all, stateFresh: true })?.hop).toBe(2);
+  });
+
+  it.each(['starting', 'failed', 'absent'] as const)('says in the words of the server that the runtime is %s', (state) => {
+    const broken = findBroken({ ...WELL, parts: [{ name: 'runtime', state, text: 'Exit code 3' }] });
+    expect(broken?.hop).toBe(1);
+    expect(broken?.what).toContain('Exit code 3');
+  });
+
+  it('passes on why the server ended the connection', () => {
+    const broken = findBroken({ ...WELL, connection: 'lost', farewell: '50 pages are open already; close one.' });
+    expect(broken?.what).toMatch(/^50 pages are open already; close one\. /);
+  });
+});

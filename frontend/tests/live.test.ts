@@ -1,0 +1,169 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { DEFINITIONS_HASH, OTHER_TOPICS } from '../src/generated/topics';
+import { Live } from '../src/live/live.svelte';
+import { depthBlock, documentBlock, join } from './bytes';
+
+/** Stands in for the browser's WebSocket; the test plays the server. */
+class ServerEnd {
+  static readonly OPEN = 1;
+  static opened: ServerEnd[] = [];
+  readyState = 0;
+  onopen: (() => void) | null = null;
+  onmessage: ((event: { data: unknown }) => void) | null = null;
+  onclose: ((event: { reason: string }) => void) | null = null;
+  sent: string[] = [];
+
+  constructor() {
+    ServerEnd.opened.push(this);
+  }
+
+  send(text: string) {
+    this.sent.push(text);
+  }
+
+  close(reason = '') {
+    this.readyState = 3;
+    this.onclose?.({ reason });
+  }
+
+  greet(hello: object = {}) {
+    this.readyState = ServerEnd.OPEN;
+    this.onopen?.();
+    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', ...hello });
+  }
+
+  tell(message: object) {
+    this.onmessage?.({ data: JSON.stringify(message) });
+  }
+
+  give(...blocks: Uint8Array[]) {
+    this.onmessage?.({ data: join(...blocks).buffer });
+  }
+}
+
+const server = () => ServerEnd.opened.at(-1) ?? new ServerEnd();
+let live: Live;
+let end: () => void;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  ServerEnd.opened = [];
+  vi.stubGlobal('WebSocket', ServerEnd);
+  vi.stubGlobal('window', new EventTarget());
+  vi.stubGlobal('requestAnimationFrame', () => 0);
+  live = new Live('ws://robot/api/live');
+  end = live.start();
+});
+
+afterEach(() => {
+  end();
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+const depths = () => Array.from({ length: live.rings.depth.length }, (_, order) => live.rings.depth.column('depth')[order]);
+
+describe('Live', () => {
+  it('takes in rows and documents', () => {
+    server().greet();
+    server().give(depthBlock(99, [0.1, 0.2]), documentBlock(OTHER_TOPICS.debug, [{ time: 99, level: 1, text: 'hello' }]));
+    expect(live.rings.depth.latest()?.depth).toBeCloseTo(0.2, 6);
+    expect(live.debug.entries.map(({ text }) => text)).toEqual(['hello']);
+  });
+
+  it('opens again for ever, and takes a replay only once', () => {
+    server().greet();
+    const line = (time: number, text: string) => ({ time, level: 1, text });
+    server().give(depthBlock(99, [0.1, 0.2], 0), documentBlock(OTHER_TOPICS.debug, [line(99, 'one')]));
+    for (let attempt = 0; attempt < 20; attempt += 1) {
+      server().close();
+      expect(live.connection).toBe('lost');
+      const before = ServerEnd.opened.length;
+      vi.advanceTimersByTime(3000);
+      expect(ServerEnd.opened.length).toBe(before + 1);
+    }
+    // Twenty times three seconds have passed, on the robot's clock as well.
+    server().greet({ steady: 160 });
+    expect(live.connection).toBe('open');
+    server().give(
+      depthBlock(99, [0.1, 0.2, 0.3], 0),
+      documentBlock(OTHER_TOPICS.debug, [line(99, 'one'), line(99.5, 'two')]),
+    );
+    expect(depths()).toHaveLength(3);
+    expect(live.debug.entries.map(({ text }) => text)).toEqual(['one', 'two']);
+  });
+
+  it('gives up a connection that has fallen silent', () => {
+    server().greet();
+    const silent = server();
+    vi.advanceTimersByTime(3900);
+    expect(live.connection).toBe('open');
+    vi.advanceTimersByTime(2000);
+    expect(ServerEnd.opened.at(-1)).not.toBe(silent);
+  });
+
+  it('counts samples that never came', () => {
+    server().greet();
+    server().give(depthBlock(99, [0.1, 0.2], 10));
+    server().give(depthBlock(99.1, [0.3], 15));
+    expect(live.gaps.missed(2)).toBe(3);
+  });
+
+  it('asks for a reload, and reads no rows, where definitions differ', () => {
+    server().greet({ definitions: 'deadbeef' });
+    server().give(depthBlock(99, [0.1]));
+    expect(live.outdated).toBe(true);
+    expect(live.rings.depth.length).toBe(0);
+  });
+
+  it('asks for a reload where the server has got another page', () => {
+    server().greet();
+    expect(live.outdated).toBe(false);
+    server().close();
+    vi.advanceTimersByTime(3000);
+    server().greet({ page_version: 'b' });
+    expect(live.outdated).toBe(true);
+  });
+
+  it('forgets what was, where the robot was restarted', () => {
+    server().greet({ steady: 5000 });
+    server().give(depthBlock(4999, [0.1]));
+    server().close();
+    vi.advanceTimersByTime(3000);
+    server().greet({ steady: 20 });
+    server().give(depthBlock(19, [0.7]));
+    expect(depths()[0]).toBeCloseTo(0.7, 6);
+    expect(live.rings.depth.length).toBe(1);
+    expect(live.now).toBeCloseTo(20, 3);
+  });
+
+  it('keeps why the server ended the connection', () => {
+    server().greet();
+    server().close('Nothing was read for 5 s.');
+    expect(live.farewell).toBe('Nothing was read for 5 s.');
+  });
+});
+
+describe('STOP', () => {
+  it('goes by socket and by HTTP, until the server has taken it', async () => {
+    const answers = [new Response('{"detail":"no runtime"}', { status: 503 }), new Response(null, { status: 204 })];
+    let calls = 0;
+    vi.stubGlobal('fetch', (address: string) => {
+      calls += 1;
+      expect(address).toBe('/api/robot/stop');
+      // The first attempt meets no server at all.
+      return calls === 1 ? Promise.reject(new TypeError('refused')) : Promise.resolve(answers[calls - 2]);
+    });
+    server().greet();
+    live.stop.press();
+    expect(server().sent).toContain('{"op":"stop"}');
+    expect(live.stop.state).toBe('sending');
+    await vi.advanceTimersByTimeAsync(300);
+    expect(live.stop.problem).toBe('no runtime');
+    await vi.advanceTimersByTimeAsync(300);
+    expect(live.stop.state).toBe('confirmed');
+    await vi.advanceTimersByTimeAsync(3000);
+    expect(live.stop.state).toBe('idle');
+    expect(calls).toBe(3);
+  });
+});

@@ -1,0 +1,50 @@
+import { readFileSync } from 'node:fs';
+import { describe, expect, it } from 'vitest';
+
+const CSS = readFileSync(new URL('../src/styles/tokens.css', import.meta.url), 'utf8');
+
+function colours(selector: string): Map<string, string> {
+  const start = CSS.indexOf(`${selector} {`);
+  const block = CSS.slice(start, CSS.indexOf('}', start));
+  return new Map([...block.matchAll(/--([\w-]+): (#[0-9a-f]{6});/g)].map(([, name = '', value = '']) => [name, value]));
+}
+
+/** Relative luminance, as in WCAG 2. */
+function luminance(hex: string): number {
+  const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((at) => {
+    const share = parseInt(hex.slice(at, at + 2), 16) / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+function contrast(one: string, other: string): number {
+  const [low = 0, high = 0] = [luminance(one), luminance(other)].sort((a, b) => a - b);
+  return (high + 0.05) / (low + 0.05);
+}
+
+const dark = colours(':root');
+const sunlight = new Map([...dark, ...colours(":root[data-theme='sunlight']")]);
+
+describe.each([
+  ['dark', dark, 4.5, 3],
+  ['sunlight', sunlight, 7, 4.5],
+] as const)('%s', (_theme, tokens, textLeast, lineLeast) => {
+  const of = (name: string) => tokens.get(name) ?? '';
+
+  it.each(['text', 'muted', 'accent', 'caution', 'alarm'])('text in %s can be read on every ground', (name) => {
+    for (const ground of ['ground', 'panel', 'well']) {
+      expect(contrast(of(name), of(ground)), `${name} on ${ground}`).toBeGreaterThanOrEqual(textLeast);
+    }
+  });
+
+  it('buttons can be read', () => {
+    expect(contrast(of('text'), of('raised'))).toBeGreaterThanOrEqual(textLeast);
+    expect(contrast(of('on-accent'), of('accent'))).toBeGreaterThanOrEqual(textLeast);
+    expect(contrast(of('on-stop'), of('stop'))).toBeGreaterThanOrEqual(4.5);
+  });
+
+  it.each(['series-measured', 'series-wanted', 'series-third'])('the line %s stands out', (name) => {
+    expect(contrast(of(name), of('panel'))).toBeGreaterThanOrEqual(lineLeast);
+  });
+});

@@ -1,0 +1,17 @@
+"""Run by Alembic: brings the database of the connection that it is handed to the wanted revision."""
+
+from alembic import context
+from sqlmodel import SQLModel
+
+import server.models  # noqa: F401 - declares the tables
+
+
+def migrate() -> None:
+    """Run the migrations in one transaction. Raises KeyError where no connection was handed over."""
+    connection = context.config.attributes["connection"]
+    context.configure(connection=connection, target_metadata=SQLModel.metadata, render_as_batch=True)
+    with context.begin_transaction():
+        context.run_migrations()
+
+
+migrate()

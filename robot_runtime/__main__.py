@@ -1,0 +1,54 @@
+"""`python -m robot_runtime`: the robot's runtime, without the web."""
+
+import argparse
+import logging
+import signal
+import sys
+from pathlib import Path
+
+from robot_runtime.commands import Commands
+from robot_runtime.config import ConfigError, load
+from robot_runtime.lifetime import end_with_parent
+from robot_runtime.messages import Messages
+from robot_runtime.robot import Robot
+
+
+def main() -> int:
+    """Exit status: 2 where the configuration or the endpoints cannot be used."""
+    options = _options()
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    if options.with_parent:
+        end_with_parent()
+    try:
+        config = load(options.config)
+        with Messages(
+            config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
+        ) as messages:
+            robot = Robot(config, options.port or config.link.port, messages)
+            Commands(robot, messages)
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, lambda *_: robot.close())
+            robot.run()
+    except (ConfigError, OSError) as problem:
+        logging.error("%s", problem)
+        return 2
+    return 0
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m robot_runtime", description=__doc__)
+    parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
+    parser.add_argument("--data", type=Path, default=Path("data"), help="the folder of all that is stored")
+    parser.add_argument("--port", help="serial port, instead of the configuration's")
+    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    return parser.parse_args()
+
+
+def _endpoints(data: Path, more: list[str]) -> tuple[list[str], list[str]]:
+    run = (data / "run").resolve()
+    run.mkdir(parents=True, exist_ok=True)
+    return [f"unixsock-stream/{run}/runtime.sock", *more], [f"unixsock-stream/{run}/server.sock"]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

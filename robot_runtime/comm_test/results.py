@@ -1,0 +1,141 @@
+"""What a cell of a communication test counted, and what that means in words."""
+
+from dataclasses import asdict, dataclass, fields
+from typing import Literal
+
+Direction = Literal["to_board", "to_host", "both"]
+Finding = tuple[str, str]
+"""A cause by name, and what it did, in words."""
+RING_BYTES = 63
+"""What the Arduino core's ring of 64 holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """One end's count of what it received; `bytes_read` without the question for the result.
+
+    `right`: numbers of the test, each above all right ones before it. `ring_full`: times that the chip found
+    its ring full; 0 on the host.
+    """
+
+    right: int = 0
+    out_of_sequence: int = 0
+    checksum_errors: int = 0
+    framing_errors: int = 0
+    ring_full: int = 0
+    bytes_read: int = 0
+
+    def __add__(self, other: "Counts") -> "Counts":
+        mine, theirs = asdict(self), asdict(other)
+        return Counts(**{field.name: mine[field.name] + theirs[field.name] for field in fields(Counts)})
+
+
+@dataclass(frozen=True, slots=True)
+class LineErrors:
+    """What happened on the wire below the programs, as the emulated board's UARTs saw it."""
+
+    framing_board: int = 0
+    framing_host: int = 0
+    overruns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One place of the grid: baud in bit/s, delays in s."""
+
+    baud: int
+    arduino_delay: float
+    pi_delay: float
+
+
+@dataclass(frozen=True, slots=True)
+class CellResult:
+    """What a cell gave. `board` is None where the chip's answer never came; `lost` are bytes written to the
+    line and not read from it, towards the board and towards the host. `seconds` is emulated time.
+    """
+
+    cell: Cell
+    direction: Direction
+    expected: int
+    board: Counts | None
+    host: Counts
+    lost_to_board: int
+    lost_to_host: int
+    line: LineErrors
+    seconds: float
+
+    @property
+    def rate(self) -> float:
+        """Share of the expected numbers that arrived right, 0 to 1; 0 where the result is lost."""
+        if self.direction == "to_host":
+            return self.host.right / self.expected
+        if self.board is None:
+            return 0.0
+        if self.direction == "to_board":
+            return self.board.right / self.expected
+        return (self.board.right + self.host.right) / (2 * self.expected)
+
+    @property
+    def counts(self) -> Counts:
+        """What the receiving ends counted, both together where both receive."""
+        if self.direction == "to_host":
+            return self.host
+        return (self.board or Counts()) + self.host
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """The names of what went wrong; none where every number arrived."""
+        return tuple(dict.fromkeys(cause for cause, _ in self._findings()))
+
+    @property
+    def explanation(self) -> str:
+        """Why the rate is what it is, for a person."""
+        return "; ".join(f"{cause}: {words}" for cause, words in self._findings()) or "every number arrived"
+
+    def _findings(self) -> list[Finding]:
+        findings = []
+        if self.board is None:
+            findings.append(("lost result", "the chip did not answer when it was asked for its counts"))
+        if self.direction != "to_host" and self.board:
+            findings += _explain(self.board, self.expected, self.lost_to_board, "the chip")
+        if self.direction != "to_board":
+            findings += _explain(self.host, self.expected, self.lost_to_host, "the host")
+        if self.line.framing_board or self.line.framing_host:
+            where = f"{self.line.framing_board} at the chip, {self.line.framing_host} at the host"
+            findings.append(("line", f"stop bits were not where they belong, {where}"))
+        if self.line.overruns:
+            findings.append(
+                ("UART overrun", f"{self.line.overruns} bytes came before the chip had fetched those before")
+            )
+        return findings
+
+
+def _explain(counts: Counts, expected: int, lost: int, who: str) -> list[Finding]:
+    findings = []
+    missing = f"{expected - counts.right} of {expected} numbers did not reach {who}"
+    if lost > 0 and counts.ring_full:
+        findings.append(
+            (
+                "ring overrun",
+                f"the bytes came faster than the sketch read them, its ring of {RING_BYTES} bytes was full "
+                f"and {lost} bytes were dropped; {missing}",
+            )
+        )
+    elif lost > 0:
+        findings.append(("lost bytes", f"{lost} bytes did not reach {who}; {missing}"))
+    if counts.framing_errors:
+        why = "bytes of theirs were missing" if lost > 0 else "a byte within was the end mark \\n"
+        findings.append(
+            ("framing error", f"messages of the wrong length at {who}: {counts.framing_errors}; {why}")
+        )
+    if counts.checksum_errors:
+        findings.append(("checksum", f"packets that were not what had been sent: {counts.checksum_errors}"))
+    if counts.out_of_sequence:
+        findings.append(
+            (
+                "out of sequence",
+                f"numbers that were not among those still to come: {counts.out_of_sequence}, as when halves "
+                "of two numbers are read as one",
+            )
+        )
+    return findings or ([("lost numbers", missing)] if counts.right < expected else [])

@@ -1,0 +1,81 @@
+"""What the other processes may ask of the robot: each command is checked here, then done or refused."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from robot_runtime.config import VISION_RATE
+from robot_runtime.errors import Refused
+from robot_runtime.messages import Messages
+from robot_runtime.robot import Robot
+
+
+class Commands:
+    """Answers every command for one robot."""
+
+    def __init__(self, robot: Robot, messages: Messages) -> None:
+        self._robot = robot
+        handlers: dict[str, Callable[[Mapping[str, Any]], None]] = {
+            "stop": self._stop,
+            "arm": self._arm,
+            "controller": self._controller,
+            "set_points": self._set_points,
+            "card": self._card,
+            "vision": self._vision,
+        }
+        for name, handler in handlers.items():
+            messages.answer(f"command/{name}", self._announcing(handler))
+
+    def _announcing(self, handler: Callable[[Mapping[str, Any]], None]) -> Callable[[dict[str, Any]], None]:
+        def handle(question: dict[str, Any]) -> None:
+            handler(question)
+            self._robot.announce()
+
+        return handle
+
+    def _stop(self, _: Mapping[str, Any]) -> None:
+        self._robot.supervisor.stop("Stopped by the operator.")
+
+    def _arm(self, _: Mapping[str, Any]) -> None:
+        self._robot.supervisor.arm()
+
+    def _controller(self, question: Mapping[str, Any]) -> None:
+        gains = question.get("gains") or {}
+        if not isinstance(gains, dict):
+            raise Refused("gains must be numbers by name")
+        self._robot.control.choose(_text(question, "name"), gains)
+
+    def _set_points(self, question: Mapping[str, Any]) -> None:
+        control = self._robot.control
+        default = _number(question, "default", control.set_point_default)
+        control.set_points(default, _number(question, "detected", control.set_point_detected))
+
+    def _card(self, question: Mapping[str, Any]) -> None:
+        self._robot.vision.show_card(None if question.get("colour") is None else _text(question, "colour"))
+
+    def _vision(self, question: Mapping[str, Any]) -> None:
+        rate = _number(question, "rate", self._robot.vision.rate)
+        low, high = VISION_RATE.minimum, VISION_RATE.maximum
+        if not low <= rate <= high:
+            raise Refused(f"a vision rate of {rate:g} Hz is not between {low:g} and {high:g} Hz")
+        colour = question.get("colour") or self._robot.control.colour
+        if colour not in self._robot.vision.colours:
+            raise Refused(f"no colour is named {colour!r}; there are {', '.join(self._robot.vision.colours)}")
+        self._robot.vision.rate = rate
+        self._robot.vision.colour = self._robot.control.colour = colour
+
+
+def _text(question: Mapping[str, Any], name: str) -> str:
+    value = question.get(name)
+    if not isinstance(value, str):
+        raise Refused(f"{name} is missing or no text")
+    return value
+
+
+def _number(question: Mapping[str, Any], name: str, default: float) -> float:
+    value = question.get(name)
+    if value is None:
+        return default
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise Refused(f"{name} is {value!r}; it must be a number")
+    return float(value)

@@ -1,0 +1,159 @@
+"""robot.toml as typed, checked values. What the file leaves out has the default written here."""
+
+import math
+import tomllib
+import types
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+T = TypeVar("T")
+
+
+class ConfigError(ValueError):
+    """A configuration that cannot be used; the text names the entry and what it may be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Limits of a number, both included."""
+
+    minimum: float
+    maximum: float
+
+
+SET_POINT = Range(0, 10)
+"""m; what a wanted depth may be, in the file and later."""
+VISION_RATE = Range(2, 30)
+"""Hz; slower, and what was seen would be stale before the next look."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotConfig:
+    """Who this robot is."""
+
+    name: str = "turtle"
+    mode: Literal["emulated", "robot"] = "emulated"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkConfig:
+    """The serial line; baud in bit/s."""
+
+    port: str = "/dev/serial0"
+    baud: Annotated[int, Range(1200, 500_000)] = 250_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlConfig:
+    """The control node; rate in Hz, set points in m, gains by controller and name."""
+
+    rate: Annotated[float, Range(1, 50)] = 10.0
+    controller: str = "bang_bang"
+    set_point: Annotated[float, SET_POINT] = 0.5
+    set_point_detected: Annotated[float, SET_POINT] = 1.0
+    gains: dict[str, dict[str, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionConfig:
+    """The vision node; rate in Hz, picture size in pixels, area as a share of the picture."""
+
+    camera: Literal["card", "file", "pi"] = "card"
+    file: str = ""
+    rate: Annotated[float, VISION_RATE] = 4.0
+    width: Annotated[int, Range(64, 1920)] = 320
+    height: Annotated[int, Range(48, 1080)] = 240
+    colour: str = "yellow"
+    area_min: Annotated[float, Range(0.0001, 1)] = 0.01
+    colours: dict[str, dict[str, list[int]]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ZenohConfig:
+    """What the runtime offers beyond its own computer."""
+
+    listen: list[str] = field(default_factory=list)
+    scouting: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServerConfig:
+    """The web server; the names by which browsers may call it."""
+
+    host: str = "127.0.0.1"
+    port: Annotated[int, Range(1, 65535)] = 8000
+    allowed_hosts: list[str] = field(default_factory=lambda: ["localhost", "127.0.0.1", "[::1]"])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Config:
+    """All of robot.toml."""
+
+    robot: RobotConfig = RobotConfig()
+    link: LinkConfig = LinkConfig()
+    control: ControlConfig = ControlConfig()
+    vision: VisionConfig = VisionConfig()
+    zenoh: ZenohConfig = ZenohConfig()
+    server: ServerConfig = ServerConfig()
+
+
+def load(path: Path) -> Config:
+    """The configuration in this file. Raises ConfigError where it cannot be read or used."""
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        raise ConfigError(f"{path} cannot be read: {problem}") from problem
+    return parse(Config, table, path.name)
+
+
+def parse(cls: type[T], table: Mapping[str, Any], where: str) -> T:
+    """A dataclass from a table. Raises ConfigError on unknown names, wrong types and numbers out of range."""
+    hints = get_type_hints(cls, include_extras=True)
+    known = [one.name for one in fields(cls)]  # type: ignore[arg-type]
+    for name in table:
+        if name not in known:
+            raise ConfigError(f"{where}: {name!r} is not known here; known are {', '.join(known)}")
+    return cls(**{name: _value(hints[name], value, f"{where}: {name}") for name, value in table.items()})
+
+
+def _value(hint: Any, value: Any, where: str) -> Any:
+    if get_origin(hint) is Annotated:
+        inner, limits = get_args(hint)
+        number = _value(inner, value, where)
+        if not limits.minimum <= number <= limits.maximum:
+            raise ConfigError(
+                f"{where} is {value}; it must lie between {limits.minimum:g} and {limits.maximum:g}"
+            )
+        return number
+    if is_dataclass(hint) and isinstance(hint, type):
+        if not isinstance(value, dict):
+            raise ConfigError(f"{where} must be a table")
+        return parse(hint, value, where)
+    if get_origin(hint) is Literal:
+        if value not in get_args(hint):
+            raise ConfigError(
+                f"{where} is {value!r}; it must be one of {', '.join(map(repr, get_args(hint)))}"
+            )
+        return value
+    return _plain(hint, value, where)
+
+
+def _plain(hint: Any, value: Any, where: str) -> Any:
+    origin = get_origin(hint)
+    if origin is list and isinstance(value, list):
+        return [_value(get_args(hint)[0], one, f"{where}[{index}]") for index, one in enumerate(value)]
+    if origin is dict and isinstance(value, dict):
+        return {name: _value(get_args(hint)[1], one, f"{where}.{name}") for name, one in value.items()}
+    if (
+        hint is float
+        and isinstance(value, int | float)
+        and not isinstance(value, bool)
+        and math.isfinite(value)
+    ):
+        return float(value)
+    if isinstance(hint, type) and type(value) is hint and hint is not float:
+        return value
+    wanted = hint if isinstance(hint, types.GenericAlias) else getattr(hint, "__name__", hint)
+    raise ConfigError(f"{where} is {value!r}; it must be a {wanted}")

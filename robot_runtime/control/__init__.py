@@ -1,0 +1,1 @@
+"""Control: what the robot should do next, from what it senses."""

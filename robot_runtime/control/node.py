@@ -1,0 +1,98 @@
+"""The control node: depth and vision in, navigation commands out, once a tick."""
+
+from collections.abc import Callable
+
+from robot_runtime.bus import Bus
+from robot_runtime.clock import Clock
+from robot_runtime.config import SET_POINT
+from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Depth, Navigation
+from robot_runtime.samples import Control, Detection, Document, Event
+
+VISION_STALE = 1.0
+"""s after which what the vision node saw no longer counts."""
+
+
+class ControlNode:
+    """Holds the depth: the default set point, or another while the wanted colour is seen.
+
+    `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
+    thread, since each change is one assignment that the next tick picks up.
+    """
+
+    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None]) -> None:
+        self.controllers = {cls.name: cls() for cls in CONTROLLERS}
+        self.controller: Controller = self.controllers[CONTROLLERS[0].name]
+        self.set_point_default = 0.5
+        self.set_point_detected = 1.0
+        self.colour = ""
+        self.set_point = self.set_point_default
+        self._bus = bus
+        self._clock = clock
+        self._send = send
+        self._depth: tuple[float, float] | None = None
+        self._seen = float("-inf")
+        self._ticked: float | None = None
+        bus.on_row("depth", self._take_depth)
+        bus.on_document("detection", self._take_detection)
+
+    def choose(self, name: str, gains: dict[str, float] | None = None) -> None:
+        """Take another controller, or other gains. Raises Refused where either is unknown or out of range."""
+        controller = self.controllers.get(name)
+        if controller is None:
+            raise Refused(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")
+        try:
+            controller.tune(gains or {})
+        except ValueError as problem:
+            raise Refused(str(problem)) from problem
+        if controller is not self.controller:
+            controller.start()
+            self.controller = controller
+            self._tell("controller", f"Controller: {controller.title}.")
+
+    def set_points(self, default: float, detected: float) -> None:
+        """Set both wanted depths, m. Raises Refused where one is not between 0 and 10."""
+        low, high = SET_POINT.minimum, SET_POINT.maximum
+        for depth in (default, detected):
+            if not low <= depth <= high:
+                raise Refused(f"a set point of {depth} m is not between {low:g} and {high:g} m")
+        self.set_point_default, self.set_point_detected = default, detected
+
+    def tick(self, armed: bool) -> None:
+        """Decide, and send the command where the robot is armed."""
+        now = self._clock.now()
+        self._choose_set_point(now)
+        if self._depth is None:
+            return
+        time, depth = self._depth
+        if armed and self._ticked is None:
+            self.controller.start()
+        output = self.controller.step(self.set_point, depth, now - (self._ticked or now)) if armed else 0.0
+        self._ticked = now if armed else None
+        if armed:
+            command = Navigation(x=0.0, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=0.0)
+            self._send(command)
+            self._bus.publish_row("navigation", now, command.to_bytes())
+        error = self.set_point - depth
+        tick = Control(set_point=self.set_point, depth=depth, error=error, output=output, latency=now - time)
+        self._bus.publish_row("control", now, tick.to_bytes())
+
+    def _choose_set_point(self, now: float) -> None:
+        seen = now - self._seen <= VISION_STALE
+        wanted = self.set_point_detected if seen else self.set_point_default
+        if wanted != self.set_point:
+            self.set_point = wanted
+            because = f": {self.colour} is seen" if seen else ""
+            self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
+
+    def _take_depth(self, _: str, time: float, record: bytes) -> None:
+        self._depth = (time, Depth.from_bytes(record).depth)
+
+    def _take_detection(self, _: str, document: Document) -> None:
+        if isinstance(document, Detection):
+            self._seen = document.taken if document.colour == self.colour else float("-inf")
+
+    def _tell(self, kind: str, text: str) -> None:
+        event = Event(time=self._clock.now(), kind=kind, severity="info", text=text)
+        self._bus.publish_document("event", event)

@@ -1,0 +1,153 @@
+"""Who may move the fins: arming with reasons, stopping without, and noticing a board that disarms itself."""
+
+import threading
+from collections.abc import Callable
+from typing import Protocol
+
+from robot_runtime.clock import Clock
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
+from robot_runtime.samples import Event, Mode, Severity
+
+DEPTH_STALE = 0.5
+"""s without a depth after which there is nothing to steer by."""
+_STATUS_STALE = 0.5
+_ARM_TRIES = 10
+_ARM_WAIT = 0.1
+
+
+class Line(Protocol):
+    """What the supervisor needs of the connection to the board."""
+
+    text: str
+
+    @property
+    def connected(self) -> bool:
+        """Whether the board answers and speaks the same definitions."""
+        ...
+
+    @property
+    def board(self) -> Hello | None:
+        """The greeting of the board."""
+        ...
+
+    def send(self, *packets: Packet) -> bool:
+        """Hand these packets to the line; False where nobody is there to take them."""
+        ...
+
+
+class Supervisor:
+    """Knows whether the robot is armed, and decides whether it may be.
+
+    `tick` runs with the control loop; `arm` and `stop` may be called from any thread.
+    """
+
+    def __init__(self, clock: Clock, line: Line, tell: Callable[[Event], None]) -> None:
+        self.armed_since: float | None = None
+        self._clock = clock
+        self._line = line
+        self._tell = tell
+        self._status: Status | None = None
+        self._status_time = float("-inf")
+        self._depth_time = float("-inf")
+        # Reentrant: telling an event may come back here to read the state.
+        self._changed = threading.Condition(threading.RLock())
+
+    @property
+    def armed(self) -> bool:
+        """Whether the board is armed and this process armed it."""
+        return self.armed_since is not None
+
+    @property
+    def mode(self) -> Mode:
+        """The mode in one word."""
+        return "automatic" if self.armed else "disarmed"
+
+    def see_depth(self) -> None:
+        """Note that a depth has come now.
+
+        Its arrival counts, not its stamp: an emulated board that had to pause keeps its clock behind.
+        """
+        self._depth_time = self._clock.now()
+
+    def see_status(self, status: Status) -> None:
+        """Note what the board says of itself now."""
+        with self._changed:
+            old, self._status, self._status_time = self._status, status, self._clock.now()
+            if old is not None and old.epoch != status.epoch:
+                self._disarmed("alarm", "The board restarted by itself; it is disarmed.")
+            elif self.armed and not status.flags & StatusFlag.ARMED:
+                self._disarmed("alarm", "The board disarmed itself; the console says why.")
+            self._changed.notify_all()
+
+    def refusals(self) -> list[str]:
+        """Why arming would be refused now; empty where it would not."""
+        if not self._line.connected:
+            return [f"There is no connection to the board: {self._line.text}."]
+        now, status = self._clock.now(), self._status
+        if status is None or now - self._status_time > _STATUS_STALE:
+            return ["The board says nothing of its state. Wait a moment, or reset it."]
+        reasons = [_FAULTS[fault] for fault in SensorFault if status.faults & fault]
+        if now - self._depth_time > DEPTH_STALE:
+            reasons.append("There is no fresh depth. Check the pressure sensor.")
+        if status.flags & StatusFlag.BATTERY_LOW:
+            reasons.append(f"The battery is low ({status.battery:.2f} V). Charge it.")
+        return reasons
+
+    def arm(self) -> None:
+        """Arm the board. Raises Refused with every reason where it may not be, or does not follow."""
+        if self.armed:
+            return
+        reasons = self.refusals()
+        board = self._line.board
+        if reasons or board is None:
+            raise Refused(" ".join(reasons))
+        for _ in range(_ARM_TRIES):
+            # Repeated because the board wants half a second of steady traffic first. It ignores what it
+            # has, and the line does not carry the same twice at a time.
+            self._line.send(Start(epoch=board.epoch))
+            with self._changed:
+                if self._changed.wait_for(self._board_armed, _ARM_WAIT):
+                    self.armed_since = self._clock.now()
+                    self._event("armed", "info", "Armed.")
+                    return
+        self._line.send(Stop())
+        raise Refused("The board did not arm; the console says why. Try again in a moment.")
+
+    def stop(self, why: str, severity: Severity = "info") -> None:
+        """Disarm at once, whatever was before."""
+        with self._changed:
+            # First, so that the board's own word of it is no surprise.
+            self._disarmed(severity, why)
+        self._line.send(Stop())
+
+    def tick(self) -> None:
+        """Look for what should end an armed run; repeat STOP until the board follows."""
+        with self._changed:
+            if self.armed and not self._line.connected:
+                self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
+            elif self.armed and self._clock.now() - self._depth_time > DEPTH_STALE:
+                self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
+            elif not self.armed and self._board_armed():
+                self._line.send(Stop())
+
+    def _board_armed(self) -> bool:
+        return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)
+
+    def _disarmed(self, severity: Severity, text: str) -> None:
+        if self.armed:
+            self.armed_since = None
+            self._event("disarmed", severity, text)
+
+    def _event(self, kind: str, severity: Severity, text: str) -> None:
+        self._tell(Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
+
+
+_FAULTS = {
+    SensorFault.IMU: "The IMU does not answer.",
+    SensorFault.PRESSURE: "The pressure sensor does not answer.",
+    SensorFault.FIN_FRONT_RIGHT: "The front right fin does not answer.",
+    SensorFault.FIN_BACK_RIGHT: "The back right fin does not answer.",
+    SensorFault.FIN_BACK_LEFT: "The back left fin does not answer.",
+    SensorFault.FIN_FRONT_LEFT: "The front left fin does not answer.",
+}

@@ -1,0 +1,39 @@
+"""`python -m robot_runtime.generate`: write every generated file; with --check only say which differ."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from robot_runtime.generate import cpp, json_schema, typescript
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def main() -> int:
+    """Exit status: 1 where --check finds a file that is not current."""
+    parser = argparse.ArgumentParser(prog="python -m robot_runtime.generate", description=__doc__)
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; fail where a file is not current"
+    )
+    only_check = parser.parse_args().check
+    files = {
+        "firmware/src/packets.gen.h": cpp.header(),
+        "robot_runtime/packets/packets.schema.json": json_schema.schema(),
+        "frontend/src/generated/topics.ts": typescript.module(),
+    }
+    old = [name for name, text in files.items() if _read(ROOT / name) != text]
+    for name in old:
+        if only_check:
+            print(f"{name} is not current: run `make generate` and commit it")  # noqa: T201
+        else:
+            (ROOT / name).parent.mkdir(parents=True, exist_ok=True)
+            (ROOT / name).write_text(files[name], encoding="utf-8")
+    return 1 if only_check and old else 0
+
+
+def _read(path: Path) -> str | None:
+    return path.read_text(encoding="utf-8") if path.exists() else None
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,90 @@
+"""The firmware's packet header."""
+
+from enum import IntEnum, IntFlag
+
+from robot_runtime.packets import (
+    DEFINITIONS_HASH,
+    FIN_COUNT,
+    FRAME_BYTES_MAX,
+    PACKETS,
+    DebugLevel,
+    Packet,
+    ResetCause,
+    SensorFault,
+    StatusFlag,
+)
+from robot_runtime.packets.layout import C_TYPES, Wire
+
+_HEAD = """\
+// Written by `make generate` from robot_runtime/packets/definitions.py. Do not edit.
+#pragma once
+#include <stdint.h>
+
+namespace mucat {
+
+constexpr uint32_t kDefinitionsHash = 0x%08xUL;
+constexpr uint8_t kFinCount = %d;
+constexpr uint8_t kFrameBytesMax = %d;
+"""
+
+
+def header() -> str:
+    """The whole text of packets.gen.h."""
+    head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX)
+    enums = [_enum(enum) for enum in (DebugLevel, StatusFlag, SensorFault, ResetCause)]
+    structs = [_struct(cls) for _, cls in sorted(PACKETS.items())]
+    return "\n".join([head, *enums, *structs, _sizes(), _reliability(), "}  // namespace mucat", ""])
+
+
+def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
+    members = "".join(f"  k{_camel(member.name or '')} = {member.value},\n" for member in enum)
+    return f"enum class {enum.__name__} : uint8_t {{\n{members}}};\n"
+
+
+def _struct(cls: type[Packet]) -> str:
+    lines = [f"// {cls.__doc__}", f"struct __attribute__((packed)) {cls.__name__} {{"]
+    lines.append(f"  static constexpr uint8_t kType = 0x{cls.type:02x};")
+    lines += [_field(name, wire) for name, wire in cls.wires.items()]
+    size = cls.layout.size
+    if cls.tail:
+        name, text = cls.tail
+        lines += [f"  uint8_t {name}_size;", f"  char {name}[{text.max_bytes}];"]
+        lines.append(f"  static constexpr uint8_t k{_camel(name)}Max = {text.max_bytes};")
+        size += 1 + text.max_bytes
+    lines.append("};")
+    # C++ gives an empty struct a size of one.
+    lines.append(
+        f'static_assert(sizeof({cls.__name__}) == {max(size, 1)}, "{cls.__name__} has another size");'
+    )
+    return "\n".join([*lines, ""])
+
+
+def _field(name: str, wire: Wire) -> str:
+    array = f"[{wire.count}]" if wire.count > 1 else ""
+    scale = f"x {wire.scale:.9g} {wire.unit}".strip() if wire.scale != 1 else wire.unit
+    note = "; ".join(part for part in (wire.meaning, scale) if part)
+    return f"  {C_TYPES[wire.code]} {name}{array};" + (f"  // {note}" if note else "")
+
+
+def _sizes() -> str:
+    fixed = [cls for _, cls in sorted(PACKETS.items()) if cls.tail is None]
+    cases = "".join(f"    case {cls.__name__}::kType: return {cls.layout.size};\n" for cls in fixed)
+    return (
+        "// Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.\n"
+        "inline int8_t payload_bytes(uint8_t type) {\n  switch (type) {\n"
+        f"{cases}    default: return -1;\n  }}\n}}\n"
+    )
+
+
+def _reliability() -> str:
+    tests = " || ".join(
+        f"type == {cls.__name__}::kType" for _, cls in sorted(PACKETS.items()) if cls.reliable
+    )
+    return (
+        "// Whether a packet of this type is repeated until it is acknowledged.\n"
+        f"constexpr bool is_reliable(uint8_t type) {{ return {tests}; }}\n"
+    )
+
+
+def _camel(name: str) -> str:
+    return "".join(part.capitalize() for part in name.lower().split("_"))

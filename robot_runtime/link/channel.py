@@ -1,0 +1,308 @@
+"""Delivery of messages over a line that damages frames, without I/O and without a clock of its own.
+
+A state machine for either end. Reliable messages arrive exactly once and in order; of unreliable ones the
+newest of each type is sent, once, and not at all where it has waited too long.
+
+Selective repeat: several messages share a frame, and reliable frames are numbered modulo 16. Up to seven are
+in flight, and no more bytes than the other end can take in at once, though one frame always may. Seven and
+not eight, so that the number in an acknowledgement always tells a new one from an old one that a noisy line
+repeated. Every frame tells which reliable frame its sender waits for. One that holds later frames already
+says which, in an ACKNOWLEDGE beside its other messages. A line keeps its order: what was sent before a frame
+that has arrived, and has not arrived itself, is lost and goes out again at once (as in RFC 8985). Where no
+news comes at all, the timeout of `RoundTrip` sends it again, for as long as it takes. Where the window is
+full and more waits, a frame without news goes out again after little more than a mean round trip: the line
+has nothing better to do.
+
+A receiver may have no room to hold frames out of order. It then drops them and says ACKNOWLEDGE never, and
+the timers make of it what is called go-back-n.
+
+Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while.
+
+The line's pace is respected: a frame is handed over when the one before it has gone, so that what is urgent
+never waits behind more than one frame.
+"""
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from robot_runtime.link.framing import (
+    MESSAGES_BYTES_MAX,
+    OPEN,
+    RELIABLE_NUMBERS,
+    UNRELIABLE_NUMBERS,
+    Frame,
+    assemble,
+)
+from robot_runtime.link.round_trip import RoundTrip
+from robot_runtime.packets import PACKETS, Acknowledge, Packet
+
+WINDOW = 7
+"""Reliable frames in flight, at most."""
+EXPIRY = 0.3
+"""s that an unreliable message may wait for the line."""
+_ACKNOWLEDGE_DELAY = 0.005
+_STALLED_WAIT = 1.25
+"""Mean round trips."""
+_FRAME_OVERHEAD = 7
+_BITS_PER_BYTE = 10
+_NEVER = float("inf")
+
+
+@dataclass(slots=True)
+class Counters:
+    """What passed, since the port was opened."""
+
+    bytes_sent: int = 0
+    bytes_delivered: int = 0
+    frames_received: int = 0
+    frames_sent: int = 0
+    frames_missed: int = 0
+    frames_repeated: int = 0
+    frames_duplicate: int = 0
+    messages_discarded: int = 0
+
+
+@dataclass(slots=True)
+class _Flight:
+    """A reliable frame that is not acknowledged; `order` counts every transmission of the channel."""
+
+    messages: list[bytes]
+    sent: float
+    first_order: int
+    order: int
+    held: bool = False
+    lost: bool = False
+
+    @property
+    def size(self) -> int:
+        return sum(map(len, self.messages)) + _FRAME_OVERHEAD
+
+
+class Channel:
+    """One end of one session, for a line of this many baud."""
+
+    def __init__(
+        self,
+        baud: int,
+        credit: int,
+        key: int = OPEN,
+        counters: Counters | None = None,
+        packets: Mapping[int, type[Packet]] = PACKETS,
+    ) -> None:
+        self.counters = counters or Counters()
+        self.round_trip = RoundTrip()
+        self.credit = credit
+        self.key = key
+        self._packets = packets
+        self._second_per_byte = _BITS_PER_BYTE / baud
+        self._line_free = float("-inf")
+        self._waiting: deque[bytes] = deque()
+        self._flights: deque[_Flight] = deque()
+        self._base = 0
+        self._order = 0
+        self._newest_order = -1
+        self._latest: dict[int, tuple[bytes, float]] = {}
+        self._number = 0
+        self._expected = 0
+        self._held: dict[int, Frame] = {}
+        self._heard: int | None = None
+        self._acknowledge_at = _NEVER
+
+    @property
+    def urgent(self) -> bool:
+        """Whether the other end should be listened to closely now."""
+        return bool(self._flights or self._waiting) or self._acknowledge_at < _NEVER
+
+    def pending(self) -> list[bytes]:
+        """The reliable messages that are not acknowledged, oldest first."""
+        return [message for flight in self._flights for message in flight.messages] + list(self._waiting)
+
+    def queue(self, message: bytes) -> None:
+        """Send a reliable message (type and payload) as soon as its turn comes."""
+        self._waiting.append(message)
+
+    def offer(self, message: bytes, now: float) -> None:
+        """Send an unreliable message (type and payload) soon, in place of an older one of its type."""
+        self._latest[message[0]] = (message, now)
+
+    def replace(self, old: bytes, new: bytes) -> None:
+        """Let every unacknowledged copy of one message be another of the same length from now on."""
+        self._waiting = deque(new if one == old else one for one in self._waiting)
+        for flight in self._flights:
+            flight.messages = [new if one == old else one for one in flight.messages]
+
+    def timeout(self) -> float:
+        """s after which an unacknowledged frame is sent again."""
+        return self.round_trip.timeout(self._in_flight() * self._second_per_byte)
+
+    def due(self) -> float:
+        """When `poll` has something to do, where nothing else happens; never is infinite."""
+        if self._latest or any(flight.lost for flight in self._flights) or self._may_send_new():
+            return self._line_free
+        wait = self._patience()
+        timers = (flight.sent + wait for flight in self._flights if not flight.held)
+        return max(min(self._acknowledge_at, *timers, _NEVER), self._line_free)
+
+    def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
+        """The messages that this frame of the session lets through, in order."""
+        self.counters.frames_received += 1
+        held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), 0)
+        self._take_acknowledgement(frame.acknowledged, held, now)
+        let_through = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
+        messages = [one for each in let_through for one in each.messages if one[0] != Acknowledge.type]
+        self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
+        return messages
+
+    def poll(self, now: float) -> bytes:
+        """The frame that is due, or nothing. Ask again until there is nothing."""
+        if now < self._line_free:
+            return b""
+        data = self._send_latest(now) or self._send_lost(now) or self._send_new(now)
+        if not data and now >= self._acknowledge_at:
+            data = self._send_unreliable(self._acknowledge())
+        if data:
+            self._acknowledge_at = _NEVER
+            self.note_sent(len(data), now)
+        return data
+
+    def note_sent(self, size: int, now: float) -> None:
+        """Take into account that a frame of this size was handed to the line."""
+        self._line_free = max(now, self._line_free) + size * self._second_per_byte
+        self.counters.frames_sent += 1
+        self.counters.bytes_sent += size
+
+    # Sending
+
+    def _patience(self) -> float:
+        """s to wait for news of a frame: the timeout, or a mean round trip where the line would idle."""
+        if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():
+            return min(_STALLED_WAIT * self.round_trip.mean, self.timeout())
+        return self.timeout()
+
+    def _in_flight(self) -> int:
+        return sum(flight.size for flight in self._flights if not flight.held)
+
+    def _may_send_new(self) -> bool:
+        if not self._waiting or len(self._flights) >= WINDOW:
+            return False
+        size = sum(map(len, self._gather(take=False))) + _FRAME_OVERHEAD
+        in_flight = self._in_flight()
+        return in_flight == 0 or in_flight + size <= self.credit
+
+    def _gather(self, take: bool) -> list[bytes]:
+        """As many of the waiting messages as fit a frame beside what is to be acknowledged."""
+        room = MESSAGES_BYTES_MAX - len(self._acknowledge_held())
+        chosen: list[bytes] = []
+        for message in self._waiting:
+            room -= len(message)
+            if room < 0:
+                break
+            chosen.append(message)
+        if take:
+            for _ in chosen:
+                self._waiting.popleft()
+        return chosen
+
+    def _send_latest(self, now: float) -> bytes:
+        messages = b""
+        for type_, (message, offered) in list(self._latest.items()):
+            if now - offered <= EXPIRY:
+                if len(messages) + len(message) >= MESSAGES_BYTES_MAX:
+                    break
+                messages += message
+            del self._latest[type_]
+        if not messages:
+            return b""
+        held = self._acknowledge_held()
+        if len(messages) + len(held) < MESSAGES_BYTES_MAX:
+            messages += held
+        return self._send_unreliable(messages)
+
+    def _send_unreliable(self, messages: bytes) -> bytes:
+        frame = assemble(messages, False, self._number, self._expected, self.key)
+        self._number = (self._number + 1) % UNRELIABLE_NUMBERS
+        return frame
+
+    def _send_lost(self, now: float) -> bytes:
+        wait = self._patience()
+        for place, flight in enumerate(self._flights):
+            if flight.held or not (flight.lost or now >= flight.sent + wait):
+                continue
+            flight.sent, flight.order, flight.lost = now, self._next_order(), False
+            self.counters.frames_repeated += 1
+            return self._frame(place)
+        return b""
+
+    def _send_new(self, now: float) -> bytes:
+        if not self._may_send_new():
+            return b""
+        order = self._next_order()
+        self._flights.append(_Flight(self._gather(take=True), now, order, order))
+        return self._frame(len(self._flights) - 1)
+
+    def _next_order(self) -> int:
+        self._order += 1
+        return self._order
+
+    def _frame(self, place: int) -> bytes:
+        messages = b"".join(self._flights[place].messages)
+        held = self._acknowledge_held()
+        if len(messages) + len(held) <= MESSAGES_BYTES_MAX:
+            messages += held
+        number = (self._base + place) % RELIABLE_NUMBERS
+        return assemble(messages, True, number, self._expected, self.key)
+
+    def _acknowledge_held(self) -> bytes:
+        return self._acknowledge() if self._held else b""
+
+    def _acknowledge(self) -> bytes:
+        ahead = ((number - self._expected - 1) % RELIABLE_NUMBERS for number in self._held)
+        return bytes([Acknowledge.type, sum(1 << place for place in ahead)])
+
+    # Receiving
+
+    def _take_acknowledgement(self, expected: int, held: int, now: float) -> None:
+        count = (expected - self._base) % RELIABLE_NUMBERS
+        if count > len(self._flights):
+            return  # an old one
+        for _ in range(count):
+            self._note_arrival(self._flights.popleft(), now)
+        self._base = expected
+        for place, flight in enumerate(self._flights):
+            if place > 0 and held >> (place - 1) & 1 and not flight.held:
+                self._note_arrival(flight, now)
+                flight.held = True
+        for flight in self._flights:
+            flight.lost |= not flight.held and flight.order < self._newest_order
+
+    def _note_arrival(self, flight: _Flight, now: float) -> None:
+        if flight.held:
+            return
+        # Of a frame sent more than once nobody knows which copy arrived: the first is the safe guess.
+        self._newest_order = max(self._newest_order, flight.first_order)
+        if flight.order == flight.first_order:
+            self.round_trip.measure(now - flight.sent)
+
+    def _take_reliable(self, frame: Frame, now: float) -> list[Frame]:
+        self._acknowledge_at = min(self._acknowledge_at, now + _ACKNOWLEDGE_DELAY)
+        ahead = (frame.number - self._expected) % RELIABLE_NUMBERS
+        if ahead >= WINDOW or frame.number in self._held:
+            self.counters.frames_duplicate += 1
+            return []
+        self._held[frame.number] = frame
+        ready: list[Frame] = []
+        while self._expected in self._held:
+            ready.append(self._held.pop(self._expected))
+            self._expected = (self._expected + 1) % RELIABLE_NUMBERS
+        return ready
+
+    def _take_unreliable(self, frame: Frame) -> list[Frame]:
+        if self._heard is not None:
+            missed = (frame.number - self._heard - 1) % UNRELIABLE_NUMBERS
+            if missed >= UNRELIABLE_NUMBERS // 2:
+                self.counters.frames_duplicate += 1
+                return []
+            self.counters.frames_missed += missed
+        self._heard = frame.number
+        return [frame]

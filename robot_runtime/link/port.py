@@ -1,0 +1,80 @@
+"""A serial port, opened for this process alone, with the file descriptor that select needs.
+
+The board's UART and the emulated board's pseudo-terminal are opened alike. Reads are done on the descriptor
+itself: pyserial's own read asks the kernel once a byte.
+"""
+
+import os
+import select
+from typing import Self
+
+import serial
+
+_READ_BYTES = 4096
+_WRITE_SECONDS = 0.25
+
+
+class PortError(Exception):
+    """The port cannot be opened, or has gone away; the text says which and what to do."""
+
+
+class Port:
+    """An open serial port. Raises PortError where it cannot be opened."""
+
+    def __init__(self, path: str, baud: int) -> None:
+        try:
+            self._serial = serial.Serial(path, baud, timeout=0, write_timeout=_WRITE_SECONDS, exclusive=True)
+        except (OSError, ValueError) as problem:
+            raise PortError(_explain(path, problem)) from problem
+        self.path = path
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for bytes; whether some came. Raises PortError where the port is gone."""
+        try:
+            return bool(select.select([self._serial.fileno()], [], [], max(seconds, 0.0))[0])
+        except (OSError, ValueError) as problem:
+            raise PortError(f"{self.path} was closed") from problem
+
+    def read(self) -> bytes:
+        """Everything that has come. Raises PortError where the port is gone."""
+        try:
+            data = os.read(self._serial.fileno(), _READ_BYTES)
+        except BlockingIOError:
+            return b""
+        except OSError as problem:
+            raise PortError(
+                f"{self.path} went away: is the board powered and its cable in place?"
+            ) from problem
+        if not data:
+            raise PortError(f"{self.path} went away: is the board powered and its cable in place?")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Hand all bytes to the line. Raises PortError where it does not take them in time."""
+        try:
+            self._serial.write(data)
+        except (OSError, serial.SerialException) as problem:
+            raise PortError(f"{self.path} takes no more bytes: {problem}") from problem
+
+    def close(self) -> None:
+        """Give the port back; closing twice does nothing."""
+        self._serial.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _explain(path: str, problem: Exception) -> str:
+    number = getattr(problem, "errno", None)
+    if isinstance(problem, ValueError):
+        return f"{path} does not take this baud rate: {problem}"
+    if number in (2, 6, 19):
+        return f"{path} does not exist: is the board (or the emulated board) running, and is link.port right?"
+    if number == 13:
+        return f"{path} may not be opened: add this user to the group dialout and sign in again"
+    if number == 11 or "lock" in str(problem):
+        return f"{path} is in use by another program: end it first"
+    return f"{path} cannot be opened: {problem}"

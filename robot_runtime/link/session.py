@@ -1,0 +1,252 @@
+"""The conversation with the board over frames, without I/O and without a clock of its own.
+
+A session lasts from opening the port to closing it. The host says HELLO until the board answers with the
+same hash of the packet definitions; from then on the session is established, and a host that has nothing to
+say sends a HEARTBEAT. Another hash stops everything but HELLO and STOP.
+
+Both HELLOs carry an epoch: a number of this boot, and one of this session. Together they are the key of the
+session's frames, so that nothing from before a restart of either side is ever taken for something new. A
+board that restarts says HELLO by itself, with another epoch, and is greeted anew: only its answer shows that
+it has heard. What was not acknowledged before was meant for another boot, and is discarded and counted. A
+board that says anything but HELLO in an open frame has lost the session, and is greeted anew as well.
+After `SILENCE` without a valid frame the board counts as lost and is greeted; where it never restarted, both
+sides go on where they were.
+
+Within the session `Channel` delivers. STOP passes by it: it goes out at once, open, so that whoever hears it
+obeys, and it makes every START void that is not acknowledged yet.
+
+Give it bytes and the time with `receive`, ask with `poll` for what is due, and hand `send` what is to go out;
+both return bytes for the line.
+"""
+
+from collections.abc import Iterable
+from enum import Enum
+from typing import NamedTuple
+
+from robot_runtime.link.board_time import BoardTime
+from robot_runtime.link.channel import Channel, Counters
+from robot_runtime.link.frame_ring import FrameRing
+from robot_runtime.link.framing import Decoder, Frame, build
+from robot_runtime.link.statistics import LinkStatistics
+from robot_runtime.packets import (
+    DEFINITIONS_HASH,
+    FRAME_BYTES_MAX,
+    PACKETS,
+    Heartbeat,
+    Hello,
+    Packet,
+    Start,
+    Stop,
+    encode,
+)
+
+SILENCE = 1.0
+"""s without a valid frame after which the board counts as lost."""
+CREDIT = 4096
+"""Bytes that the operating system keeps until the next look at the port."""
+NO_BOOT = 0
+"""The epoch of no board: a START with it is void."""
+_GREETING = 0.25
+_HEARTBEAT = 0.1
+_GOODPUT_OVER = 1.0
+
+
+class Stage(Enum):
+    """How far the conversation is."""
+
+    GREETING = "waiting for the board's greeting"
+    ESTABLISHED = "connected"
+    REFUSED = "the board's firmware was built from other packet definitions"
+
+
+class Message(NamedTuple):
+    """One packet from the board, not yet decoded; `time` is when it was taken, in host seconds."""
+
+    type: int
+    payload: bytes
+    time: float
+
+
+def session_key(host_epoch: int, board_epoch: int) -> int:
+    """The key of the frames between these two."""
+    return host_epoch << 16 | board_epoch
+
+
+class Session:
+    """One conversation on a line of this many baud; `host_epoch` tells it from every other."""
+
+    def __init__(self, host_epoch: int, baud: int) -> None:
+        self.stage = Stage.GREETING
+        self.board: Hello | None = None
+        self.counters = Counters()
+        self.ring = FrameRing()
+        self._epoch = host_epoch
+        self._baud = baud
+        self._now = 0.0
+        self._decoder = Decoder(seen=lambda frame: self.ring.add_received(frame, self._now))
+        self._channel = Channel(baud, FRAME_BYTES_MAX, counters=self.counters)
+        self._times = BoardTime()
+        self._bytes_received = 0
+        self._heard = 0.0
+        self._greeted: float | None = None
+        self._greeting_took = 0.0
+        self._sent = 0.0
+        self._goodput = 0.0
+        self._goodput_from = (0.0, 0)
+
+    @property
+    def urgent(self) -> bool:
+        """Whether something waits for the board's word, or the board for an acknowledgement."""
+        return self._channel.urgent
+
+    def receive(self, data: bytes, now: float) -> list[Message]:
+        """The messages that these bytes complete; greetings are handled here and passed on as well."""
+        self._now = now
+        self._bytes_received += len(data)
+        messages: list[Message] = []
+        for frame in self._decoder.feed(data):
+            self._heard = now
+            if frame.open:
+                passed = self._take_open(frame, now)
+            elif self.stage is Stage.REFUSED:
+                passed = []
+            else:
+                # The board has our epoch: it heard, whether or not its answer came.
+                self._establish(now)
+                passed = self._channel.receive(frame, now)
+            messages += [
+                Message(type_, payload, self._stamp(type_, payload, now)) for type_, payload in passed
+            ]
+        return messages
+
+    def poll(self, now: float) -> bytes:
+        """What is due to be sent now: a greeting, whatever waits, a heartbeat, or nothing."""
+        self._measure_goodput(now)
+        if self.stage is Stage.ESTABLISHED and now - self._heard > SILENCE:
+            self.stage = Stage.GREETING
+        if self.stage is not Stage.ESTABLISHED:
+            if self._greeted is not None and now - self._greeted < _GREETING:
+                return b""
+            self._greeted = now
+            return self._send_open(Hello(definitions=DEFINITIONS_HASH, epoch=self._epoch, credit=CREDIT), now)
+        data = self._poll_channel(now)
+        if now - self._sent >= _HEARTBEAT:
+            self._channel.offer(encode(Heartbeat(time=int(now * 1000) & 0xFFFFFFFF)), now)
+            data += self._poll_channel(now)
+        return data
+
+    def due(self) -> float:
+        """When `poll` wants to be called, where nothing else happens."""
+        if self.stage is not Stage.ESTABLISHED:
+            return self._greeted + _GREETING if self._greeted is not None else float("-inf")
+        return min(self._heard + SILENCE, self._sent + _HEARTBEAT, self._channel.due())
+
+    def send(self, packets: Iterable[Packet], now: float) -> bytes:
+        """Take these packets over; the bytes that are to go out now. Without a session only STOP is taken."""
+        data = b""
+        for packet in packets:
+            if isinstance(packet, Stop):
+                self._void_starts()
+                data += self._send_open(packet, now)
+            elif self.stage is Stage.ESTABLISHED:
+                self._take_over(packet, now)
+        return data + self.poll(now) if self.stage is Stage.ESTABLISHED else data
+
+    def statistics(self) -> LinkStatistics:
+        """The counters as a record."""
+        counters, trip = self.counters, self._channel.round_trip
+        return LinkStatistics(
+            bytes_received=self._bytes_received,
+            bytes_sent=counters.bytes_sent,
+            bytes_delivered=counters.bytes_delivered,
+            frames_received=counters.frames_received,
+            frames_sent=counters.frames_sent,
+            frames_invalid=self._decoder.invalid,
+            frames_missed=counters.frames_missed,
+            frames_repeated=counters.frames_repeated,
+            frames_duplicate=counters.frames_duplicate,
+            messages_discarded=counters.messages_discarded,
+            round_trip=trip.mean or self._greeting_took,
+            round_trip_deviation=trip.deviation,
+            timeout=self._channel.timeout(),
+            goodput=self._goodput,
+            credit=self._channel.credit,
+            clock_error=self._times.error,
+            clock_drift=self._times.drift,
+        )
+
+    def _take_over(self, packet: Packet, now: float) -> None:
+        message = encode(packet)
+        if not packet.reliable:
+            self._channel.offer(message, now)
+        elif message not in self._channel.pending():
+            # The same again while the first is on its way would say nothing new.
+            self._channel.queue(message)
+
+    def _void_starts(self) -> None:
+        void = encode(Start(epoch=NO_BOOT))
+        for message in self._channel.pending():
+            if message[0] == Start.type:
+                self._channel.replace(message, void)
+
+    def _send_open(self, packet: Packet, now: float) -> bytes:
+        frame = build([packet], 0, 0)
+        self._channel.note_sent(len(frame), now)
+        self._note_sent(frame, now)
+        return frame
+
+    def _poll_channel(self, now: float) -> bytes:
+        data = b""
+        while frame := self._channel.poll(now):
+            self._note_sent(frame, now)
+            data += frame
+        return data
+
+    def _note_sent(self, frame: bytes, now: float) -> None:
+        self._sent = now
+        self.ring.add_sent(frame, now)
+
+    def _take_open(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
+        self.counters.frames_received += 1
+        greetings = [one for one in frame.messages if one[0] == Hello.type]
+        for _, payload in greetings:
+            self._greet(Hello.from_bytes(payload), now)
+        if not greetings and self.stage is Stage.ESTABLISHED:
+            self.stage, self._greeted = Stage.GREETING, None
+        return greetings
+
+    def _greet(self, hello: Hello, now: float) -> None:
+        known = self.board is not None and self.board.epoch == hello.epoch and self.stage is not Stage.REFUSED
+        self.board = hello
+        if hello.definitions != DEFINITIONS_HASH:
+            self._begin_anew(hello)
+            self.stage = Stage.REFUSED
+        elif not known:
+            self._begin_anew(hello)
+        else:
+            self._establish(now)
+
+    def _begin_anew(self, hello: Hello) -> None:
+        self.stage = Stage.GREETING
+        self.counters.messages_discarded += len(self._channel.pending())
+        self._decoder.key = session_key(self._epoch, hello.epoch)
+        self._channel = Channel(self._baud, hello.credit, self._decoder.key, self.counters)
+        self._times = BoardTime()
+        self._greeted = None
+
+    def _establish(self, now: float) -> None:
+        if self.stage is Stage.GREETING:
+            self.stage = Stage.ESTABLISHED
+            if self._greeted is not None:
+                self._greeting_took = now - self._greeted
+
+    def _stamp(self, type_: int, payload: bytes, now: float) -> float:
+        if "time" not in PACKETS[type_].wires:
+            return now
+        return self._times.to_host(int.from_bytes(payload[:4], "little"), now)
+
+    def _measure_goodput(self, now: float) -> None:
+        since, before = self._goodput_from
+        if now - since >= _GOODPUT_OVER:
+            self._goodput = (self.counters.bytes_delivered - before) / (now - since)
+            self._goodput_from = now, self.counters.bytes_delivered

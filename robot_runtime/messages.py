@@ -1,0 +1,137 @@
+"""Zenoh, as far as this project uses it: publish a topic, listen to topics, ask a question, answer one.
+
+Keys are `mucat/<robot>/<name>`. Endpoints are explicit; nothing is looked for by multicast unless it is asked
+for. Callbacks run in Zenoh's own threads.
+"""
+
+import json
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Self
+
+import zenoh
+
+from robot_runtime.errors import NoAnswer as NoAnswer
+from robot_runtime.errors import Refused as Refused
+
+log = logging.getLogger(__name__)
+
+Answer = dict[str, Any]
+
+
+class Subscription:
+    """A running subscription; close it to end it."""
+
+    def __init__(self, subscriber: "zenoh.Subscriber[None]") -> None:
+        self._subscriber = subscriber
+
+    def close(self) -> None:
+        """End the subscription."""
+        self._subscriber.undeclare()  # type: ignore[no-untyped-call]
+
+
+class Messages:
+    """One process's end of the conversation.
+
+    `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
+    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. Raises OSError where an endpoint cannot be
+    listened on.
+    """
+
+    def __init__(
+        self, robot: str, listen: Sequence[str] = (), connect: Sequence[str] = (), scouting: bool = False
+    ) -> None:
+        self._prefix = f"mucat/{robot}/"
+        try:
+            self._session = zenoh.open(_configuration(listen, connect, scouting))
+        except zenoh.ZError as problem:
+            raise OSError(f"cannot listen on {', '.join(listen)}: {problem}") from problem
+        self._publishers: dict[str, zenoh.Publisher] = {}
+        self._queryables: list[zenoh.Queryable[None]] = []
+
+    def publish(self, name: str, payload: bytes) -> None:
+        """Send to everybody who listens to `name`."""
+        self._publisher(name).put(payload)
+
+    def watched(self, name: str) -> bool:
+        """Whether anybody listens to `name` now."""
+        # Zenoh's stub calls this a bool; it is a MatchingStatus.
+        status: Any = self._publisher(name).matching_status
+        return bool(status.matching)
+
+    def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
+        """Call back with the name and the payload of everything that `pattern` ("depth", "**") matches."""
+
+        def receive(sample: zenoh.Sample) -> None:
+            callback(str(sample.key_expr).removeprefix(self._prefix), sample.payload.to_bytes())
+
+        return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
+
+    def ask(self, name: str, payload: Mapping[str, Any], timeout: float = 2.0) -> Answer:
+        """The answer to a question. Raises Refused with the reason, or NoAnswer after `timeout` seconds."""
+        data = json.dumps(payload, allow_nan=False).encode()
+        for reply in self._session.get(self._prefix + name, payload=data, timeout=timeout):
+            if reply.ok is None:
+                continue
+            answer: Answer = json.loads(reply.ok.payload.to_bytes())
+            if not answer.get("accepted"):
+                raise Refused(str(answer.get("reason", "refused without a reason")))
+            return answer
+        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+
+    def answer(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
+        """Answer `name` with what the handler returns; what it raises as Refused or ValueError is told."""
+
+        def reply(query: zenoh.Query) -> None:
+            with query:
+                query.reply(query.key_expr, json.dumps(_outcome(handler, query)).encode())
+
+        self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
+
+    def close(self) -> None:
+        """Leave. An open Zenoh session keeps the interpreter alive, so this must be called."""
+        self._session.close()  # type: ignore[no-untyped-call]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _publisher(self, name: str) -> zenoh.Publisher:
+        publisher = self._publishers.get(name)
+        if publisher is None:
+            publisher = self._publishers[name] = self._session.declare_publisher(self._prefix + name)
+        return publisher
+
+
+def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh.Query) -> Answer:
+    try:
+        question = json.loads(query.payload.to_bytes()) if query.payload is not None else {}
+        if not isinstance(question, dict):
+            raise ValueError("a question must be a JSON object")
+        return {"accepted": True, **(handler(question) or {})}
+    except (Refused, ValueError, TypeError) as refusal:
+        return {"accepted": False, "reason": str(refusal)}
+    except Exception:
+        log.exception("answering %s failed", query.key_expr)
+        return {"accepted": False, "reason": "an error inside the answering process; its log says more"}
+
+
+def _configuration(listen: Sequence[str], connect: Sequence[str], scouting: bool) -> zenoh.Config:
+    settings: dict[str, Any] = {
+        "mode": "peer",
+        "scouting/multicast/enabled": scouting,
+        "scouting/gossip/enabled": scouting,
+        "listen/endpoints": list(listen),
+        "connect/endpoints": list(connect),
+        # Batches of some hundred bytes gain nothing from it, and its threads wake thirty times a second.
+        "transport/shared_memory/enabled": False,
+        "connect/timeout_ms": -1,
+        "connect/exit_on_failure": False,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
+    }
+    config = zenoh.Config()
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    return config

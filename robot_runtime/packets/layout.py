@@ -1,0 +1,164 @@
+"""How the fields of a record lie in bytes: type, scale and unit of each, little-endian and packed.
+
+A record is a frozen dataclass whose fields carry a `Wire` (a number, or a fixed array of numbers) or a
+`Text` (a byte that counts, then that many bytes of UTF-8; only as the last field). The same records travel
+on the serial line, between processes, to the page and into the database.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from struct import Struct, error
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    Self,
+    TypeVar,
+    dataclass_transform,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+C_TYPES = {
+    "b": "int8_t",
+    "B": "uint8_t",
+    "h": "int16_t",
+    "H": "uint16_t",
+    "i": "int32_t",
+    "I": "uint32_t",
+    "f": "float",
+    "d": "double",
+}
+_LIMITS = {code: Struct("<" + code).size * 8 for code in "BbHhIi"}
+
+
+class LayoutError(ValueError):
+    """A record that does not fit its bytes, or bytes that are not such a record."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """A number: struct code, value of one count, unit, and how many stand in a row."""
+
+    code: str
+    scale: float = 1
+    unit: str = ""
+    count: int = 1
+    meaning: str = ""
+
+    @property
+    def size(self) -> int:
+        """Bytes of the whole field."""
+        return Struct("<" + self.code).size * self.count
+
+    @property
+    def integral(self) -> bool:
+        """Whether values are whole counts, without a scale."""
+        return self.scale == 1 and self.code not in "fd"
+
+    def clamp(self, value: float) -> float | int:
+        """The nearest count that the code can hold; the value itself for floating point."""
+        if self.code in "fd":
+            return value
+        bits = _LIMITS[self.code]
+        low, high = (
+            (0, (1 << bits) - 1) if self.code.isupper() else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+        )
+        return min(max(round(value / self.scale), low), high)
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """UTF-8 text of at most `max_bytes` bytes, cut at a character where it is longer."""
+
+    max_bytes: int
+    meaning: str = ""
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+class Record:
+    """Base of everything that has a byte layout; subclasses are laid out when they are defined."""
+
+    __slots__ = ()
+    wires: ClassVar[dict[str, Wire]]
+    tail: ClassVar[tuple[str, Text] | None]
+    layout: ClassVar[Struct]
+
+    def to_bytes(self) -> bytes:
+        """The record's bytes; numbers out of range are clamped. Raises LayoutError on NaN or infinity."""
+        counts: list[float | int] = []
+        try:
+            for name, wire in self.wires.items():
+                value = getattr(self, name)
+                counts.extend(map(wire.clamp, value) if wire.count > 1 else (wire.clamp(value),))
+            body = self.layout.pack(*counts)
+        except (ValueError, OverflowError, error) as problem:
+            raise LayoutError(f"{type(self).__name__} cannot be written: {problem}") from problem
+        return body + _text_bytes(getattr(self, self.tail[0]), self.tail[1]) if self.tail else body
+
+    @classmethod
+    def from_bytes(cls, data: bytes | memoryview) -> Self:
+        """The record that `data` holds, exactly. Raises LayoutError where the length or the text is wrong."""
+        size = cls.layout.size
+        if len(data) != size if cls.tail is None else len(data) <= size or len(data) != size + 1 + data[size]:
+            raise LayoutError(f"{cls.__name__} of {len(data)} bytes; expected {cls.describe_size()}")
+        counts = iter(cls.layout.unpack_from(data))
+        values: dict[str, Any] = {}
+        for name, wire in cls.wires.items():
+            scaled = [_scaled(next(counts), wire) for _ in range(wire.count)]
+            values[name] = tuple(scaled) if wire.count > 1 else scaled[0]
+        if cls.tail:
+            values[cls.tail[0]] = bytes(data[size + 1 :]).decode("utf-8", "replace")
+        return cls(**values)
+
+    @classmethod
+    def describe_size(cls) -> str:
+        """The lengths that `from_bytes` accepts, in words."""
+        size = cls.layout.size
+        return f"{size}" if cls.tail is None else f"{size + 1} to {size + 1 + cls.tail[1].max_bytes}"
+
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def record() -> Callable[[type[R]], type[R]]:
+    """Make a class a frozen dataclass whose layout is derived from its annotations."""
+
+    def register(cls: type[R]) -> type[R]:
+        made = dataclass(frozen=True, slots=True, kw_only=True)(cls)
+        _lay_out(made)
+        return made
+
+    return register
+
+
+def _lay_out(cls: type[Record]) -> None:
+    wires: dict[str, Wire] = {}
+    text: tuple[str, Text] | None = None
+    for name, hint in get_type_hints(cls, include_extras=True).items():
+        if get_origin(hint) is not Annotated:
+            continue
+        if text is not None:
+            raise TypeError(f"{cls.__name__}.{name} follows a text, which must be the last field")
+        for extra in get_args(hint)[1:]:
+            if isinstance(extra, Wire):
+                wires[name] = extra
+            elif isinstance(extra, Text):
+                text = (name, extra)
+    cls.wires = wires
+    cls.tail = text
+    cls.layout = Struct(
+        "<" + "".join(f"{wire.count if wire.count > 1 else ''}{wire.code}" for wire in wires.values())
+    )
+
+
+def _scaled(count: float | int, wire: Wire) -> float | int:
+    return count if wire.integral or wire.scale == 1 else count * wire.scale
+
+
+def _text_bytes(value: str, text: Text) -> bytes:
+    data = value.encode()[: text.max_bytes]
+    data = data.decode("utf-8", "ignore").encode()
+    return bytes([len(data)]) + data

@@ -1,0 +1,135 @@
+"""What flows beside the board's own packets: records of the runtime and documents, in SI units.
+
+Records have a byte layout, for numbers that come fast. Documents are JSON objects, for what is rare or has
+no fixed size. Both are frozen dataclasses; the page's types are generated from them.
+"""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from robot_runtime.packets.layout import Record, Wire, record
+
+
+@record()
+class Control(Record):
+    """One tick of the control node."""
+
+    set_point: Annotated[float, Wire("f", unit="m", meaning="wanted depth")]
+    depth: Annotated[float, Wire("f", unit="m", meaning="depth that the controller saw")]
+    error: Annotated[float, Wire("f", unit="m", meaning="set point minus depth")]
+    output: Annotated[float, Wire("f", meaning="vertical command, -1 to 1, downwards")]
+    latency: Annotated[float, Wire("f", unit="s", meaning="age of the depth when it was used")]
+
+
+@record()
+class Truth(Record):
+    """What the simulated body really does; north, east, down and forward, right, down."""
+
+    position: Annotated[tuple[float, float, float], Wire("f", unit="m", count=3, meaning="north, east, down")]
+    attitude: Annotated[
+        tuple[float, float, float, float],
+        Wire("f", count=4, meaning="unit quaternion w, x, y, z, body to world"),
+    ]
+    velocity: Annotated[tuple[float, float, float], Wire("f", unit="m/s", count=3, meaning="in body axes")]
+    rate: Annotated[tuple[float, float, float], Wire("f", unit="rad/s", count=3, meaning="in body axes")]
+    fins: Annotated[tuple[float, float, float, float], Wire("f", unit="rad", count=4, meaning="fin angles")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Document:
+    """Base of everything that travels as a JSON object; `time` is the steady clock's, in s."""
+
+    time: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DebugLine(Document):
+    """A line of text that the firmware wrote; level as in DebugLevel."""
+
+    level: int
+    text: str
+
+
+Severity = Literal["info", "caution", "alarm"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event(Document):
+    """Something that happened, in words for a person; `kind` is one word for programs."""
+
+    kind: str
+    severity: Severity
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """A rectangle in the picture; each number a share of the picture's width or height."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Detection(Document):
+    """What the vision node found in one picture: the largest patch of each wanted colour that it saw."""
+
+    taken: float
+    colour: str | None
+    box: Box | None
+    area: float
+    processing: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gain:
+    """One number of a controller that may be tuned."""
+
+    name: str
+    value: float
+    minimum: float
+    maximum: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControllerChoice:
+    """A controller that can be chosen, and its gains as they stand."""
+
+    name: str
+    title: str
+    gains: list[Gain]
+
+
+Mode = Literal["disarmed", "automatic"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State(Document):
+    """The robot as a whole; sent once a second and at every change."""
+
+    mode: Mode
+    armed: bool
+    armed_since: float | None
+    refusals: list[str] = field(
+        metadata={"meaning": "why arming would be refused now; empty where it would not"}
+    )
+    connected: bool
+    connection: str = field(metadata={"meaning": "the serial connection in words"})
+    port: str
+    baud: int
+    epoch: int | None
+    controller: str
+    controllers: list[ControllerChoice]
+    set_point: float
+    set_point_default: float
+    set_point_detected: float
+    control_rate: float
+    vision_rate: float
+    vision_colour: str
+    colours: list[str]
+    card: str | None
+    camera: str

@@ -1,0 +1,132 @@
+"""The topics between the processes, and the block in which a batch of samples travels unchanged.
+
+    block := topic u8 | kind u8 | count u16 | first u32 | bytes u32 | payload        (little-endian)
+
+The runtime writes a block once; Zenoh, the server, the recorder and the page's socket pass on the same
+bytes. `first` numbers the topic's first sample in the block, counting since its writer started, so that a
+gap shows. The payload of a `rows` topic is `count` rows of equal size: the sample's time (f64, s, steady
+clock), then the record's bytes as in `robot_runtime.packets.layout`. Of a `documents` topic it is a JSON
+array of `count` objects. Of a `picture` topic it is the time and one JPEG file.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from enum import IntEnum
+from struct import Struct
+
+from robot_runtime import packets, samples
+from robot_runtime.link.statistics import LinkStatistics
+from robot_runtime.packets.layout import LayoutError, Record
+
+HEADER = Struct("<BBHII")
+TIME = Struct("<d")
+
+
+class Kind(IntEnum):
+    """What a block's payload is made of."""
+
+    ROWS = 0
+    DOCUMENTS = 1
+    PICTURE = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One stream of samples; `record` is the class of its rows or documents."""
+
+    id: int
+    name: str
+    kind: Kind
+    record: type[Record] | type[samples.Document] | None
+    meaning: str
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of one row with its time. Raises TypeError where the topic has no rows."""
+        if self.record is None or not issubclass(self.record, Record):
+            raise TypeError(f"topic {self.name} has no rows")
+        return TIME.size + self.record.layout.size
+
+
+TOPICS: tuple[Topic, ...] = (
+    Topic(1, "imu", Kind.ROWS, packets.Imu, "attitude, turn rate and specific force"),
+    Topic(2, "depth", Kind.ROWS, packets.Depth, "depth and pressure"),
+    Topic(3, "beacon", Kind.ROWS, packets.Beacon, "light-beacon detectors"),
+    Topic(4, "motor", Kind.ROWS, packets.Motor, "fins: wanted, measured, driven"),
+    Topic(5, "status", Kind.ROWS, packets.Status, "the board's state and health"),
+    Topic(6, "navigation", Kind.ROWS, packets.Navigation, "navigation commands sent to the board"),
+    Topic(7, "control", Kind.ROWS, samples.Control, "ticks of the control node"),
+    Topic(8, "link", Kind.ROWS, LinkStatistics, "the serial line"),
+    Topic(9, "truth", Kind.ROWS, samples.Truth, "the simulated body"),
+    Topic(16, "state", Kind.DOCUMENTS, samples.State, "the robot as a whole"),
+    Topic(17, "detection", Kind.DOCUMENTS, samples.Detection, "what the vision node found"),
+    Topic(18, "debug", Kind.DOCUMENTS, samples.DebugLine, "lines of text from the firmware"),
+    Topic(19, "event", Kind.DOCUMENTS, samples.Event, "what happened, told by the runtime"),
+    Topic(20, "notice", Kind.DOCUMENTS, samples.Event, "what happened, told by the server"),
+    Topic(32, "picture", Kind.PICTURE, None, "the camera's picture as the vision node saw it"),
+)
+BY_NAME = {topic.name: topic for topic in TOPICS}
+BY_ID = {topic.id: topic for topic in TOPICS}
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A batch of one topic's samples."""
+
+    topic: Topic
+    count: int
+    first: int
+    payload: bytes
+
+    def to_bytes(self) -> bytes:
+        """The block as it travels."""
+        size = len(self.payload)
+        return (
+            HEADER.pack(self.topic.id, self.topic.kind, self.count, self.first & 0xFFFFFFFF, size)
+            + self.payload
+        )
+
+
+def row(time: float, record: bytes) -> bytes:
+    """One row of a block: the sample's time, then the record's own bytes."""
+    return TIME.pack(time) + record
+
+
+def documents(batch: Sequence[samples.Document]) -> bytes:
+    """The payload of a block of documents. Raises ValueError on NaN or infinity, which JSON lacks."""
+    return json.dumps(
+        [asdict(document) for document in batch], allow_nan=False, separators=(",", ":")
+    ).encode()
+
+
+def read_blocks(data: bytes) -> list[Block]:
+    """The blocks that `data` holds, one after the other. Raises LayoutError where they do not fill it."""
+    blocks: list[Block] = []
+    at = 0
+    while at < len(data):
+        if len(data) - at < HEADER.size:
+            raise LayoutError(f"a block's header is cut off after {len(data) - at} bytes")
+        topic_id, kind, count, first, size = HEADER.unpack_from(data, at)
+        at += HEADER.size
+        topic = BY_ID.get(topic_id)
+        if topic is None or topic.kind != kind:
+            raise LayoutError(f"no topic {topic_id} of kind {kind}")
+        if len(data) - at < size:
+            raise LayoutError(f"a block of {topic.name} is cut off: {len(data) - at} of {size} bytes")
+        if topic.kind is Kind.ROWS and size != count * topic.row_bytes:
+            raise LayoutError(
+                f"a block of {topic.name} holds {size} bytes, not {count} rows of {topic.row_bytes}"
+            )
+        blocks.append(Block(topic, count, first, data[at : at + size]))
+        at += size
+    return blocks
+
+
+def read_rows(block: Block) -> list[tuple[float, Record]]:
+    """The times and records of a block of rows. Raises TypeError on a block of another kind."""
+    size, record = block.topic.row_bytes, block.topic.record
+    assert record is not None
+    assert issubclass(record, Record)
+    rows = (block.payload[at : at + size] for at in range(0, len(block.payload), size))
+    return [(TIME.unpack_from(one)[0], record.from_bytes(one[TIME.size :])) for one in rows]

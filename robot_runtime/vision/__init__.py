@@ -1,0 +1,1 @@
+"""What the robot sees: cameras, and the search for a colour in their pictures."""

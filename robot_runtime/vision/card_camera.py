@@ -1,0 +1,138 @@
+"""A camera that draws its picture: calm water, and on request a coloured card that somebody holds up in it.
+
+Colours reach the camera as through water: each channel is I·e^(-βz) + B·(1 - e^(-βz)), where z is the
+distance, β the water's attenuation and B its own colour. Red is lost first. The same time gives the same
+picture.
+"""
+
+from collections.abc import Callable, Mapping
+from math import cos, exp, pi, sin
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_runtime.clock import Clock
+from robot_runtime.vision.camera import Camera, Frame
+from robot_runtime.vision.colours import ColourRange, Picture
+
+Floats = NDArray[np.float32]
+
+WATER = (150.0, 128.0, 30.0)
+"""Blue, green and red of the water itself, 0 to 255, halfway down the picture."""
+ATTENUATION = (0.06, 0.09, 0.6)
+"""1/m, of blue, green and red."""
+CARD_DISTANCE = 0.4
+"""m."""
+CARD_SIZE = (0.26, 0.36)
+"""Width and height of the card as shares of the picture's height."""
+PAINTS: Mapping[str, tuple[int, int, int]] = {
+    "red": (35, 30, 215),
+    "yellow": (20, 190, 245),
+    "green": (70, 170, 50),
+    "blue": (200, 75, 20),
+}
+"""Blue, green and red of printed cards in daylight."""
+NOISE = 3.0
+"""Standard deviation of each byte of the picture."""
+NOISE_SHIFT = 64
+"""Pixels by which the sheet of noise is larger than the picture."""
+RIPPLES = ((1.7, 0.6, 0.31), (-1.1, 1.9, 0.23), (0.7, -2.6, 0.41), (2.9, 1.3, 0.17))
+"""Caustic light as four waves: how often across, how often down, and Hz."""
+COARSE = 8
+"""Pixels of the picture for each at which light is computed; it is smooth anyway."""
+
+
+class CardCamera(Camera):
+    """Draws `width` × `height` pixels; `card` tells which of the colours is shown now, if any."""
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        clock: Clock,
+        colours: Mapping[str, ColourRange],
+        card: Callable[[], str | None],
+    ) -> None:
+        self._size = (width, height)
+        self._clock = clock
+        self._card = card
+        self._paints = {name: _paint(name, colour) for name, colour in colours.items()}
+        self._water = _water(width, height)
+        # Kept, since memory that is new for each picture costs more than drawing in it.
+        self._canvas: Floats = np.empty_like(self._water)
+        self._fine: Floats = np.empty((height, width), np.float32)
+        down, across = np.mgrid[0 : 1 : complex(height // COARSE), 0 : 1 : complex(width // COARSE)]
+        self._phases = [(2 * pi * (x * across + y * down)).astype(np.float32) for x, y, _ in RIPPLES]
+        sheet = (height + NOISE_SHIFT, width + NOISE_SHIFT, 3)
+        self._noise = np.random.default_rng(1).standard_normal(sheet, np.float32) * np.float32(NOISE)
+
+    def read(self) -> Frame:
+        """The picture of this moment."""
+        now = self._clock.now()
+        return Frame(self.draw(now, self._card()), now)
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+    def __str__(self) -> str:
+        card = self._card()
+        return f"drawn water with a {card} card" if card else "drawn water without a card"
+
+    def draw(self, time: float, card: str | None) -> Picture:
+        """The picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
+        canvas = self._canvas
+        np.copyto(canvas, self._water)
+        if card is not None:
+            cv2.fillConvexPoly(canvas, self._corners(time), self._paints[card], cv2.LINE_AA, shift=4)
+        canvas *= self._light(time)
+        canvas += self._grain(time)
+        np.clip(canvas, 0, 255, out=canvas)
+        return canvas.astype(np.uint8)
+
+    def _light(self, time: float) -> Floats:
+        """How bright each place is, about 1; (height, width, 1)."""
+        waves = [
+            np.sin(phase + 2 * pi * hertz * time)
+            for phase, (_, _, hertz) in zip(self._phases, RIPPLES, strict=True)
+        ]
+        # Squared, waves give the bright narrow lines and wide dim patches of caustic light.
+        coarse = (0.94 + 0.03 * np.square(np.add.reduce(waves))).astype(np.float32)
+        cv2.resize(coarse, self._size, dst=self._fine, interpolation=cv2.INTER_LINEAR)
+        return self._fine[:, :, np.newaxis]
+
+    def _grain(self, time: float) -> Floats:
+        """Noise of the sensor: a piece of a larger sheet, another one at each time."""
+        width, height = self._size
+        x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
+        return self._noise[y : y + height, x : x + width]
+
+    def _corners(self, time: float) -> NDArray[np.int32]:
+        """The card's corners in sixteenths of a pixel; the hand that holds it is not quite still."""
+        width, height = self._size
+        centre_x = width * (0.5 + 0.03 * sin(2 * pi * 0.11 * time))
+        centre_y = height * (0.5 + 0.03 * sin(2 * pi * 0.17 * time + 1))
+        tilt = 0.12 * sin(2 * pi * 0.13 * time + 2)
+        half_x, half_y = CARD_SIZE[0] * height / 2, CARD_SIZE[1] * height / 2
+        corners = [
+            (centre_x + x * cos(tilt) - y * sin(tilt), centre_y + x * sin(tilt) + y * cos(tilt))
+            for x, y in ((-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y))
+        ]
+        return np.round(np.array(corners) * 16).astype(np.int32)
+
+
+def _water(width: int, height: int) -> Floats:
+    """Water that grows darker downwards."""
+    brightness = np.linspace(1.25, 0.7, height, dtype=np.float32)[:, np.newaxis, np.newaxis]
+    return np.ascontiguousarray(np.broadcast_to(brightness * np.array(WATER, np.float32), (height, width, 3)))
+
+
+def _paint(name: str, colour: ColourRange) -> tuple[float, float, float]:
+    """A card's blue, green and red as seen through the water; of the range's middle where it has no paint."""
+    middle = np.array([[colour.middle]], np.uint8)
+    own = PAINTS[name] if name in PAINTS else cv2.cvtColor(middle, cv2.COLOR_HSV2BGR)[0, 0].tolist()
+    blue, green, red = (
+        paint * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
+        for paint, water, loss in zip(own, WATER, ATTENUATION, strict=True)
+    )
+    return blue, green, red

@@ -1,0 +1,195 @@
+"""The vision node: a thread that looks, searches for the wanted colour, and tells what it found."""
+
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+
+from robot_runtime.clock import Clock
+from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.errors import Refused
+from robot_runtime.samples import Detection, Event, Severity
+from robot_runtime.vision.camera import Camera, CameraError, Frame
+from robot_runtime.vision.card_camera import CardCamera
+from robot_runtime.vision.colours import parse_colours
+from robot_runtime.vision.detector import Detector
+from robot_runtime.vision.file_camera import FileCamera
+from robot_runtime.vision.pace import Pace
+from robot_runtime.vision.pi_camera import PiCamera
+
+log = logging.getLogger(__name__)
+
+RETRY = 2.0
+"""s between two attempts to open a camera that failed."""
+JPEG_QUALITY = 80
+
+
+class Vision:
+    """Looks at a settable rate, in a thread of its own that no camera can end.
+
+    Every picture gives one Detection: of the wanted colour if it is there, else of the largest patch of
+    another colour, else of none. Only while `picture_wanted` says that somebody watches is the picture itself
+    handed on, with its time (s), as a JPEG file. All callbacks run on the node's thread. Raises ConfigError
+    where the configuration's colours cannot be used.
+    """
+
+    def __init__(
+        self,
+        config: VisionConfig,
+        clock: Clock,
+        on_detection: Callable[[Detection], None],
+        on_picture: Callable[[float, bytes], None],
+        picture_wanted: Callable[[], bool],
+        tell: Callable[[Event], None],
+        open_camera: Callable[[], Camera] | None = None,
+    ) -> None:
+        self.colours = parse_colours(config.colours)
+        if config.colour not in self.colours:
+            raise ConfigError(
+                f"vision: colour is {config.colour!r}; it must be one of {', '.join(self.colours)}"
+            )
+        self.colour = config.colour
+        """The wanted colour, one of `colours`."""
+        self.card: str | None = None
+        """The colour of the card that the card camera shows."""
+        self._config = config
+        self._clock = clock
+        self._on_detection = on_detection
+        self._on_picture = on_picture
+        self._picture_wanted = picture_wanted
+        self._tell = tell
+        self._open_camera = open_camera or self._configured_camera
+        self._detector = Detector(self.colours, config.area_min)
+        self._pace = Pace(clock, config.rate)
+        self._camera: Camera | None = None
+        self._failure: str | None = None
+        self._retry_at = clock.now()
+        self._ending = False
+        self._wake = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="vision", daemon=True)
+
+    @property
+    def rate(self) -> float:
+        """Pictures a second. Raises ValueError when it is set below 0.2 or above 30."""
+        return self._pace.rate
+
+    @rate.setter
+    def rate(self, rate: float) -> None:
+        self._pace.rate = rate
+        self._wake.set()
+
+    @property
+    def text(self) -> str:
+        """The camera in words, or what is wrong with it."""
+        if self._failure is not None:
+            return f"no picture: {self._failure}"
+        return str(self._camera) if self._camera else "starting"
+
+    def show_card(self, colour: str | None) -> None:
+        """Show a card of this colour, or none. Raises Refused where that cannot be."""
+        if self._config.camera != "card":
+            raise Refused(
+                f"the camera is {self._config.camera!r}; cards are shown by the camera 'card' alone: "
+                "choose it in robot.toml, [vision] camera"
+            )
+        if colour is not None and colour not in self.colours:
+            raise Refused(f"there is no card of colour {colour!r}; there are {', '.join(self.colours)}")
+        self.card = colour
+
+    def start(self) -> None:
+        """Begin to look."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop looking and give the camera back."""
+        self._ending = True
+        self._wake.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=RETRY)
+
+    def look(self) -> None:
+        """Take one picture, search it, and tell; report a camera that gives none, and try it again later."""
+        try:
+            frame = self._take()
+        except CameraError as problem:
+            self._fail(str(problem))
+        except Exception as problem:
+            log.exception("the camera failed")
+            self._fail(f"the camera failed ({problem}); the log says more")
+        else:
+            if frame is not None:
+                self._examine(frame)
+
+    def _run(self) -> None:
+        # On pictures of this size more threads cost more than they bring, and the robot has one core.
+        cv2.setNumThreads(1)
+        while not self._ending:
+            remaining = self._pace.remaining()
+            if remaining > 0:
+                self._wake.wait(remaining)
+                self._wake.clear()
+                continue
+            self._pace.begin()
+            try:
+                self.look()
+            except Exception:
+                log.exception("a picture could not be searched")
+        self._drop_camera()
+
+    def _take(self) -> Frame | None:
+        """The newest picture; None while a camera that failed is left alone."""
+        if self._camera is None:
+            if self._clock.now() < self._retry_at:
+                return None
+            self._camera = self._open_camera()
+        frame = self._camera.read()
+        if self._failure is not None:
+            self._failure = None
+            self._report("info", f"Camera: {self.text}.")
+        return frame
+
+    def _examine(self, frame: Frame) -> None:
+        begun = self._clock.now()
+        patch = self._detector.find(frame.picture, self.colour)
+        ended = self._clock.now()
+        self._on_detection(
+            Detection(
+                time=ended,
+                taken=frame.taken,
+                colour=patch.colour if patch else None,
+                box=patch.box if patch else None,
+                area=patch.area if patch else 0.0,
+                processing=ended - begun,
+            )
+        )
+        if self._picture_wanted():
+            _, jpeg = cv2.imencode(".jpg", frame.picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+            self._on_picture(frame.taken, jpeg.tobytes())
+
+    def _fail(self, text: str) -> None:
+        self._drop_camera()
+        self._retry_at = self._clock.now() + RETRY
+        if text != self._failure:
+            self._failure = text
+            self._report("caution", f"Camera: {text}. It is tried again every {RETRY:g} s.")
+
+    def _report(self, severity: Severity, text: str) -> None:
+        self._tell(Event(time=self._clock.now(), kind="camera", severity=severity, text=text))
+
+    def _drop_camera(self) -> None:
+        camera, self._camera = self._camera, None
+        if camera is not None:
+            try:
+                camera.close()
+            except Exception:
+                log.exception("a camera could not be closed")
+
+    def _configured_camera(self) -> Camera:
+        config = self._config
+        if config.camera == "pi":
+            return PiCamera(config.width, config.height, self._clock)
+        if config.camera == "file":
+            return FileCamera(Path(config.file), config.width, config.height, self._clock)
+        return CardCamera(config.width, config.height, self._clock, self.colours, lambda: self.card)

@@ -1,0 +1,77 @@
+"""The application: routes, guard and page around one assembly."""
+
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+
+from robot_runtime.errors import Refused
+from server import VERSION
+from server.assembly import Assembly
+from server.bridge import RuntimeSilent
+from server.page import Page, make_router
+from server.parts import Command
+from server.recorder import RecordingRefused
+from server.routes import health, live, robot, sessions
+from server.security import Guard
+from server.settings import Settings
+from server.store import StoreError
+
+
+def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
+    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`)."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        assembly = Assembly(settings, commands)
+        app.state.assembly = assembly
+        async with assembly.run():
+            yield
+
+    app = FastAPI(
+        title="µ-CAT",
+        version=VERSION,
+        description="The server of µ-CAT, a hand-sized underwater robot turtle. Errors say what happened, "
+        "why, and what to do, in `detail`.",
+        openapi_url="/api/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=lifespan,
+    )
+    app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(Refused, _refused)
+    app.add_exception_handler(RecordingRefused, _refused)
+    app.add_exception_handler(RuntimeSilent, _silent)
+    app.add_exception_handler(StoreError, _not_stored)
+    for module in (health, robot, sessions, live):
+        app.include_router(module.router)
+    app.include_router(make_router(Page(settings.page)))
+    return app
+
+
+async def _invalid(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, RequestValidationError)
+    words = "; ".join(
+        f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
+    )
+    return _tell(422, f"The request is not valid. {words}")
+
+
+async def _refused(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(409, str(problem))
+
+
+async def _silent(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, RuntimeSilent)
+    return _tell(504 if problem.waited else 503, str(problem))
+
+
+async def _not_stored(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(503, f"The database does not work: {problem}.")
+
+
+def _tell(status: int, detail: str) -> JSONResponse:
+    return JSONResponse({"detail": detail}, status)

@@ -1,0 +1,90 @@
+"""The one place where the server's parts are put together."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, suppress
+
+from starlette.requests import HTTPConnection
+
+from robot_runtime.clock import Clock, SteadyClock
+from server.arrivals import Arrival
+from server.bridge import Bridge
+from server.health import Watch
+from server.hub import Hub
+from server.notices import Notices
+from server.page import Page
+from server.parts import Command, Parts
+from server.recorder import Recorder, RecordingRefused
+from server.settings import Settings
+from server.store import Store, StoreError
+
+HEALTH_SECONDS = 1.0
+
+
+class Assembly:
+    """Everything that lives as long as the server does."""
+
+    def __init__(self, settings: Settings, commands: Sequence[Command]) -> None:
+        self.settings = settings
+        self.clock: Clock = SteadyClock()
+        self.page = Page(settings.page)
+        self.store = Store(settings.data.database)
+        self.notices = Notices(self.clock, lambda arrival: self._deliver([arrival]))
+        self.bridge = Bridge(settings, self._deliver)
+        self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
+        self.parts = Parts(commands, settings.data.logs, self.clock, self.notices.tell)
+        self.watch = Watch(settings, self.clock, self.store, self.parts)
+
+    @staticmethod
+    def of(connection: HTTPConnection) -> "Assembly":
+        """The assembly that serves this request."""
+        assembly = connection.app.state.assembly
+        assert isinstance(assembly, Assembly)
+        return assembly
+
+    @asynccontextmanager
+    async def run(self) -> AsyncIterator[None]:
+        """Start everything; end everything. Raises SetupError, StoreError."""
+        tasks: list[asyncio.Task[None]] = []
+        try:
+            await self.recorder.recover()
+            await self.bridge.open()
+            self.parts.start()
+            self._tell_session()
+            tasks = [
+                asyncio.create_task(work)
+                for work in (self.recorder.run(), self.hub.watch(), self._tell_health())
+            ]
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            await self.parts.stop()
+            await self._end_session()
+            await self.bridge.close()
+            await asyncio.to_thread(self.store.close)
+
+    def _deliver(self, arrivals: list[Arrival]) -> None:
+        self.hub.add(arrivals)
+        for arrival in arrivals:
+            self.recorder.add(arrival)
+            self.watch.see(arrival)
+
+    def _tell_session(self) -> None:
+        session = self.recorder.session
+        self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    async def _tell_health(self) -> None:
+        while True:
+            health = self.watch.health()
+            self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
+            await asyncio.sleep(HEALTH_SECONDS)
+
+    async def _end_session(self) -> None:
+        if self.recorder.session is not None:
+            # Where even its end cannot be stored, the next start marks it as interrupted.
+            with suppress(StoreError, RecordingRefused):
+                await self.recorder.stop(self.recorder.session.id)

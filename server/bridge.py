@@ -1,0 +1,148 @@
+"""The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
+
+Zenoh calls back in its own threads. What arrives is put into a queue, which the event loop empties in rounds:
+the first arrival after a quiet time wakes it, and from then on it comes every `ROUND_SECONDS`.
+"""
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from robot_runtime.messages import Messages, NoAnswer, Subscription
+from robot_runtime.outbox import STREAM
+from robot_runtime.packets.layout import LayoutError
+from server.arrivals import Arrival, read_arrivals
+from server.settings import Settings, SetupError
+
+log = logging.getLogger(__name__)
+
+ROUND_SECONDS = 0.04
+"""The lever between latency and cost: waking the event loop costs more than what there is to do in it.
+
+The runtime sends at the same pace, and a page draws at about that pace.
+"""
+QUIET_ROUNDS = 5
+"""Empty rounds after which the rounds pause until something arrives."""
+QUEUE_MAX = 20_000
+"""Blocks that wait while the event loop is held up; far more than can be normal."""
+ANSWER_SECONDS = 2.0
+COMMANDS_AT_ONCE = 4
+BLOCK_BYTES_MAX = 4_000_000
+
+
+class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
+    """The runtime did not answer; `waited` says whether it was there to be asked at all."""
+
+    def __init__(self, text: str, waited: bool) -> None:
+        super().__init__(text)
+        self.waited = waited
+
+
+class Bridge:
+    """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order."""
+
+    def __init__(self, settings: Settings, deliver: Callable[[list[Arrival]], None]) -> None:
+        self.damaged = 0
+        self._settings = settings
+        self._deliver = deliver
+        self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
+        self._rounds = False
+        self._quiet = 0
+        self._pictures: Subscription | None = None
+        # STOP has threads of its own: it must not wait behind commands that nobody answers.
+        self._stops = ThreadPoolExecutor(2, "stop")
+        self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
+        self._asking = 0
+
+    async def open(self) -> None:
+        """Join the conversation; the others may come and go at any time. Raises SetupError."""
+        self._loop = asyncio.get_running_loop()
+        folder = self._settings.data
+        try:
+            self._messages = await asyncio.to_thread(
+                Messages,
+                self._settings.robot,
+                listen=[f"unixsock-stream/{folder.server_socket}"],
+                connect=[f"unixsock-stream/{folder.runtime_socket}"],
+            )
+        except OSError as problem:
+            raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
+        self._messages.subscribe(STREAM, self._receive)
+
+    def watch_pictures(self, wanted: bool) -> None:
+        """Subscribe to pictures or no longer; the runtime makes them only while somebody does."""
+        if wanted and self._pictures is None:
+            self._pictures = self._messages.subscribe("picture", self._receive)
+        elif not wanted and self._pictures is not None:
+            self._pictures.close()
+            self._pictures = None
+
+    async def command(self, name: str, payload: Mapping[str, Any]) -> None:
+        """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
+        stop = name == "stop"
+        if not stop and self._asking >= COMMANDS_AT_ONCE:
+            raise RuntimeSilent(
+                "The robot's runtime is still busy with earlier commands. Try again.", waited=False
+            )
+        self._asking += not stop
+        started = self._loop.time()
+        try:
+            await self._loop.run_in_executor(
+                self._stops if stop else self._commands,
+                lambda: self._messages.ask(f"command/{name}", payload, ANSWER_SECONDS),
+            )
+        except NoAnswer as problem:
+            waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
+            raise RuntimeSilent(_silence(waited), waited) from problem
+        finally:
+            self._asking -= not stop
+
+    async def close(self) -> None:
+        """Leave the conversation."""
+        self._stops.shutdown(wait=False, cancel_futures=True)
+        self._commands.shutdown(wait=False, cancel_futures=True)
+        await asyncio.to_thread(self._messages.close)
+
+    def _receive(self, name: str, data: bytes) -> None:
+        """Called in Zenoh's thread."""
+        self._queue.append((name, data))
+        if not self._rounds:
+            self._rounds = True
+            try:
+                self._loop.call_soon_threadsafe(self._drain)
+            except RuntimeError:
+                log.debug("a block of %s came after the end", name)
+
+    def _drain(self) -> None:
+        self._quiet = 0 if self._queue else self._quiet + 1
+        self._empty_queue()
+        if self._quiet >= QUIET_ROUNDS:
+            self._rounds = False
+            # What came before that line has woken nobody.
+            if not self._queue:
+                return
+            self._rounds = True
+        self._loop.call_later(ROUND_SECONDS, self._drain)
+
+    def _empty_queue(self) -> None:
+        arrivals: list[Arrival] = []
+        while self._queue:
+            name, data = self._queue.popleft()
+            try:
+                if len(data) > BLOCK_BYTES_MAX:
+                    raise LayoutError(f"{len(data)} bytes are too many")
+                arrivals += read_arrivals(data)
+            except LayoutError as problem:
+                self.damaged += 1
+                log.warning("a message of %s was thrown away: %s", name, problem)
+        if arrivals:
+            self._deliver(arrivals)
+
+
+def _silence(waited: bool) -> str:
+    if waited:
+        return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. The System page tells more."
+    return "The robot's runtime is not running. The server starts it again; try again in a few seconds."

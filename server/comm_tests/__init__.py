@@ -1,0 +1,1 @@
+"""Runs of the communication test: kept, listed, compared and exported."""

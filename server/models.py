@@ -1,0 +1,115 @@
+"""The database's tables. Migrations see this module alone."""
+
+from sqlmodel import Field, SQLModel, UniqueConstraint
+
+
+class SessionRow(SQLModel, table=True):
+    """One recording. Times are UTC (s since 1970) and steady (s, the computer's steady clock)."""
+
+    __tablename__ = "session"
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    note: str
+    state: str = Field(index=True)
+    robot: str
+    version: str
+    definitions: str
+    started: float
+    started_steady: float
+    ended: float | None = None
+    duration: float = 0.0
+    samples: int = 0
+    bytes: int = 0
+    configuration: str
+    robot_state: str
+    topics: str
+
+
+class Chunk(SQLModel, table=True):
+    """Samples of one topic with consecutive numbers from `first` on; how they lie in `data`, `encoding` says.
+
+    Times are of the first and the last sample (s, steady clock).
+    """
+
+    __table_args__ = (UniqueConstraint("session_id", "topic", "number", name="chunk_place"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    session_id: int = Field(foreign_key="session.id")
+    topic: str
+    number: int
+    first_time: float
+    last_time: float
+    first: int
+    count: int
+    encoding: str
+    data: bytes
+
+
+class Gap(SQLModel, table=True):
+    """Samples that are not in the session: `missed` of them, noticed at `time` (s, steady clock).
+
+    Kinds: "missed" never arrived, "restarted" the writer began to count anew, "not stored" could not be
+    written, "damaged" could not be read.
+    """
+
+    id: int | None = Field(default=None, primary_key=True)
+    session_id: int = Field(foreign_key="session.id", index=True)
+    topic: str
+    kind: str
+    time: float
+    missed: int
+
+
+class CommTestRun(SQLModel, table=True):
+    """One run of a communication test. Times are UTC (s since 1970); `document` is the test, `tools` the
+    versions of what made and ran the sketch, both as JSON; `firmware` is the hash of sketch, core and flags.
+
+    States: "running", "complete", "cancelled", "failed", "interrupted".
+    """
+
+    __tablename__ = "comm_test_run"
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    document: str
+    framing: str
+    direction: str
+    cells: int
+    firmware: str
+    tools: str
+    host: str
+    started: float
+    ended: float | None = None
+    state: str
+    problem: str = ""
+
+
+class CommTestCell(SQLModel, table=True):
+    """One cell of a run. Delays and `seconds` (emulated time) in s; rate from 0 to 1; `answered` is false
+    where the chip's own counts never came. Both directions' counts are added up.
+    """
+
+    __tablename__ = "comm_test_cell"
+    __table_args__ = (UniqueConstraint("run_id", "number", name="comm_test_cell_place"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    run_id: int = Field(foreign_key="comm_test_run.id")
+    number: int
+    baud: int
+    arduino_delay: float
+    pi_delay: float
+    rate: float
+    answered: bool
+    right: int
+    out_of_sequence: int
+    checksum_errors: int
+    framing_errors: int
+    ring_full: int
+    bytes_read: int
+    bytes_lost: int
+    line_errors: int
+    uart_overruns: int
+    seconds: float
+    causes: str
+    explanation: str

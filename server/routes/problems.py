@@ -1,0 +1,16 @@
+"""How errors look in the interface."""
+
+from typing import Any
+
+from pydantic import BaseModel
+
+
+class Problem(BaseModel):
+    """What happened, why, and what to do."""
+
+    detail: str
+
+
+def answers(**codes: str) -> dict[int | str, dict[str, Any]]:
+    """Descriptions for the interface's document, by status: `answers(_409="...")`."""
+    return {int(code[1:]): {"model": Problem, "description": text} for code, text in codes.items()}

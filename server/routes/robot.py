@@ -1,0 +1,110 @@
+"""The robot: its state, and commands to it. The runtime checks every command again, and may refuse it."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Request
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from robot_runtime.samples import State
+from server.assembly import Assembly
+from server.routes.problems import answers
+
+SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
+COMMAND = {**answers(_409="The runtime refuses", _422="The request is not valid"), **SILENT}
+
+router = APIRouter(prefix="/api/robot", tags=["robot"])
+
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+Metres = Annotated[FiniteFloat, Field(ge=0, le=10)]
+
+
+class Controller(BaseModel):
+    """A controller, and the gains that are to change."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Name
+    gains: Annotated[dict[Name, FiniteFloat], Field(max_length=32)] = {}
+
+
+class SetPoints(BaseModel):
+    """Wanted depths, m; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    default: Metres | None = None
+    detected: Annotated[Metres | None, Field(description="while the wanted colour is seen")] = None
+
+
+class Card(BaseModel):
+    """The card before the simulated camera; null takes it away."""
+
+    model_config = ConfigDict(extra="forbid")
+    colour: Name | None
+
+
+class Vision(BaseModel):
+    """What the vision node does; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    rate: Annotated[FiniteFloat | None, Field(gt=0, le=30, description="Hz")] = None
+    colour: Name | None = None
+
+
+@router.get(
+    "",
+    summary="The robot's newest state",
+    operation_id="getRobot",
+    responses=answers(_503="The runtime has said nothing yet"),
+    response_model=State,
+)
+async def get_robot(request: Request) -> object:
+    """As the runtime sent it last; its `time` says when that was (s, steady clock)."""
+    state = Assembly.of(request).watch.state()
+    if state is None:
+        raise HTTPException(503, "The robot's runtime has said nothing yet. Its state is in /api/health.")
+    return state
+
+
+@router.post("/stop", status_code=204, summary="Disarm at once", operation_id="stopRobot", responses=SILENT)
+async def stop(request: Request) -> None:
+    """Never refused, and before everything else."""
+    await Assembly.of(request).bridge.command("stop", {})
+
+
+@router.post("/arm", status_code=204, summary="Arm", operation_id="armRobot", responses=COMMAND)
+async def arm(request: Request) -> None:
+    """Refused with every reason that stands against it."""
+    await Assembly.of(request).bridge.command("arm", {})
+
+
+@router.put(
+    "/controller",
+    status_code=204,
+    summary="Choose a controller",
+    operation_id="putController",
+    responses=COMMAND,
+)
+async def put_controller(request: Request, controller: Controller) -> None:
+    """Choose a controller, and set gains of it."""
+    await Assembly.of(request).bridge.command("controller", controller.model_dump())
+
+
+@router.put(
+    "/set-points", status_code=204, summary="Set depths", operation_id="putSetPoints", responses=COMMAND
+)
+async def put_set_points(request: Request, set_points: SetPoints) -> None:
+    """Set the wanted depths."""
+    await Assembly.of(request).bridge.command("set_points", set_points.model_dump(exclude_none=True))
+
+
+@router.put(
+    "/card", status_code=204, summary="Show or hide the card", operation_id="putCard", responses=COMMAND
+)
+async def put_card(request: Request, card: Card) -> None:
+    """Show a coloured card to the simulated camera, or take it away."""
+    await Assembly.of(request).bridge.command("card", card.model_dump())
+
+
+@router.put("/vision", status_code=204, summary="Set up vision", operation_id="putVision", responses=COMMAND)
+async def put_vision(request: Request, vision: Vision) -> None:
+    """Set how often the vision node looks, and for which colour."""
+    await Assembly.of(request).bridge.command("vision", vision.model_dump(exclude_none=True))

@@ -1,0 +1,153 @@
+"""What the server takes from `robot.toml`, the environment and its command line."""
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from robot_runtime.config import ConfigError, load
+
+SOCKET_PATH_BYTES_MAX = 107
+"""Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
+
+ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
+
+Mode = Literal["emulated", "robot"]
+
+
+class SetupError(Exception):
+    """The server cannot start; the text is one line that says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataFolder:
+    """Everything the server keeps, and the sockets through which the processes meet."""
+
+    path: Path
+
+    @property
+    def database(self) -> Path:
+        """Sessions and what was recorded in them."""
+        return self.path / "mucat.db"
+
+    @property
+    def backups(self) -> Path:
+        """Copies of databases of older versions."""
+        return self.path / "backups"
+
+    @property
+    def logs(self) -> Path:
+        """What the supervised processes print."""
+        return self.path / "logs"
+
+    @property
+    def run(self) -> Path:
+        """Sockets; emptied at every start."""
+        return self.path / "run"
+
+    @property
+    def lock(self) -> Path:
+        """Held by the one server that works on this folder."""
+        return self.path / "server.lock"
+
+    @property
+    def runtime_socket(self) -> Path:
+        """Where the runtime listens for Zenoh."""
+        return self.run / "runtime.sock"
+
+    @property
+    def server_socket(self) -> Path:
+        """Where the server listens for Zenoh."""
+        return self.run / "server.sock"
+
+    @property
+    def board_socket(self) -> Path:
+        """Where the emulated board listens for the water."""
+        return self.run / "board.sock"
+
+    @property
+    def board_tty(self) -> Path:
+        """The emulated board's end of the serial line."""
+        return self.run / "board.tty"
+
+    @property
+    def board_eeprom(self) -> Path:
+        """What the emulated board remembers without power."""
+        return self.path / "board.eeprom"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How this server is to run; `build` is the folder that holds the emulated board and the firmware."""
+
+    data: DataFolder
+    config: Path
+    robot: str = "turtle"
+    mode: Mode = "emulated"
+    host: str = "127.0.0.1"
+    port: int = 8000
+    allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
+    build: Path = Path(__file__).parent.parent / "build"
+    page: Path = Path(__file__).parent / "page"
+
+
+def read_settings(
+    config: Path, data: Path | None, host: str | None, port: int | None, environment: Mapping[str, str]
+) -> Settings:
+    """Command line before environment before `robot.toml`. Raises SetupError on what is not valid."""
+    try:
+        loaded = load(config)
+    except ConfigError as problem:
+        raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
+    folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
+    _check_socket_paths(folder)
+    if not ROBOT_NAME.fullmatch(loaded.robot.name):
+        raise SetupError(f"{config}: robot.name is {loaded.robot.name!r}; use up to 32 of a-z, 0-9, - and _.")
+    chosen_port = loaded.server.port if port is None else port
+    if not 0 < chosen_port < 65536:
+        raise SetupError(f"The port is {chosen_port}; it must be a whole number from 1 to 65535.")
+    chosen_host = host or loaded.server.host
+    return Settings(
+        data=folder,
+        config=config.absolute(),
+        robot=loaded.robot.name,
+        mode=loaded.robot.mode,
+        host=chosen_host,
+        port=chosen_port,
+        allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),
+    )
+
+
+def make_folders(folder: DataFolder) -> None:
+    """Create the data folder, and empty its `run`. Raises SetupError where that is not possible."""
+    try:
+        for path in (folder.path, folder.logs, folder.run):
+            path.mkdir(parents=True, exist_ok=True)
+        folder.run.chmod(0o700)
+        for left in folder.run.iterdir():
+            left.unlink()
+    except OSError as problem:
+        raise SetupError(
+            f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."
+        ) from problem
+
+
+def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
+    everywhere = host in ("0.0.0.0", "::")
+    own = [] if everywhere else [f"[{host}]" if ":" in host else host]
+    return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+
+
+def _check_socket_paths(folder: DataFolder) -> None:
+    longest = max(
+        (folder.runtime_socket, folder.server_socket, folder.board_socket),
+        key=lambda path: len(os.fsencode(path)),
+    )
+    size = len(os.fsencode(longest))
+    if size > SOCKET_PATH_BYTES_MAX:
+        raise SetupError(
+            f"The data folder's path is too long: {longest} has {size} bytes, and a Unix socket's path may "
+            f"have {SOCKET_PATH_BYTES_MAX}. Choose a shorter one with --data."
+        )

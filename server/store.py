@@ -1,0 +1,105 @@
+"""The database: one writing connection in a thread of its own, and connections that only read.
+
+SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so nothing else may write.
+What `write` has returned from survives a power cut (WAL with synchronous=FULL).
+"""
+
+import asyncio
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from sqlite3 import Connection as DriverConnection
+from typing import TypeVar
+
+from sqlalchemy import Connection, Engine, create_engine, event, pool
+from sqlalchemy.exc import DBAPIError
+from sqlmodel import Session
+
+T = TypeVar("T")
+PAGE_CACHE_KIB = 1024
+
+
+class StoreError(Exception):
+    """The database could not do what was asked; the text says why, for a person."""
+
+
+class Store:
+    """An open database that `schema.prepare` has made ready; `failing` says why the last write failed."""
+
+    def __init__(self, database: Path) -> None:
+        self.failing: str | None = None
+        self._writer = _engine(f"sqlite:///{database}", pool.StaticPool)
+        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool)
+        self._thread = ThreadPoolExecutor(1, "writer")
+        self._thread.submit(self._open).result()
+
+    async def write(self, change: Callable[[Connection], T]) -> T:
+        """Run `change` in one transaction in the writer's thread; committed when this returns.
+
+        Raises StoreError where it could not be committed; then nothing of it is stored.
+        """
+        return await asyncio.wrap_future(self._thread.submit(self._commit, change))
+
+    async def probe(self) -> None:
+        """Write next to nothing, to learn whether writing works. Raises StoreError where it does not."""
+        await self.write(_touch)
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A session that only reads. Keep it short: a long one keeps the write-ahead log growing."""
+        try:
+            with Session(self._reader) as session:
+                yield session
+        except DBAPIError as problem:
+            raise StoreError(_explain(problem)) from problem
+
+    def close(self) -> None:
+        """Wait for what is being written, and close. Blocks; call it once."""
+        self._thread.submit(self._connection.close).result()
+        self._thread.shutdown()
+        self._reader.dispose()
+        self._writer.dispose()
+
+    def _open(self) -> None:
+        self._connection = self._writer.connect()
+
+    def _commit(self, change: Callable[[Connection], T]) -> T:
+        try:
+            with self._connection.begin():
+                result = change(self._connection)
+        except DBAPIError as problem:
+            self.failing = _explain(problem)
+            raise StoreError(self.failing) from problem
+        self.failing = None
+        return result
+
+
+def _touch(connection: Connection) -> None:
+    (version,) = connection.exec_driver_sql("PRAGMA user_version").one()
+    connection.exec_driver_sql(f"PRAGMA user_version = {(version + 1) % 1000}")
+
+
+def _engine(url: str, pool_class: type[pool.Pool]) -> Engine:
+    engine = create_engine(url, poolclass=pool_class, connect_args={"check_same_thread": False})
+    event.listen(engine, "connect", _configure)
+    return engine
+
+
+def _configure(connection: DriverConnection, _record: object) -> None:
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
+    connection.execute("PRAGMA foreign_keys = ON")
+    connection.execute("PRAGMA busy_timeout = 2000")
+    connection.execute(f"PRAGMA cache_size = -{PAGE_CACHE_KIB}")
+
+
+def _explain(problem: DBAPIError) -> str:
+    words = str(problem.orig)
+    if "disk is full" in words:
+        return "the disk is full: free some space on the computer that holds the data folder"
+    if "disk I/O error" in words:
+        return "the disk does not take or give data (input/output error): check the SD card or disk"
+    if "readonly" in words:
+        return "the data folder cannot be written: check its permissions, and whether the disk is read-only"
+    return f"the database refuses: {words}"

@@ -1,0 +1,49 @@
+#!/bin/sh
+# Says what this machine lacks to build and run the robot, and installs Debian's part of it where it may.
+# usage: ./setup.sh run|test
+set -eu
+
+fail() { printf '%s\n' "$1" >&2; exit 1; }
+
+python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null ||
+    fail "Python 3.11 or newer is needed. On Debian: apt install python3 python3-venv"
+command -v node >/dev/null && command -v npm >/dev/null ||
+    fail "Node 20 or newer, with npm, is needed to build the page. See https://nodejs.org"
+[ "$(node -p 'process.versions.node.split(".")[0]')" -ge 20 ] ||
+    fail "Node 20 or newer is needed to build the page; this machine has $(node --version). See https://nodejs.org"
+
+missing=""
+need() { # package, then a file or command that shows it to be there
+    case $2 in
+        /*) [ -e "$2" ] || missing="$missing $1" ;;
+        *) command -v "$2" >/dev/null || missing="$missing $1" ;;
+    esac
+}
+python3 -c 'import ensurepip' 2>/dev/null || missing="$missing python3-venv"
+need gcc gcc
+need gcc-avr avr-gcc
+need avr-libc /usr/lib/avr/include/avr/io.h
+need binutils-avr avr-objcopy
+need arduino-core-avr /usr/share/arduino/hardware/arduino/avr/cores/arduino/Arduino.h
+need avrdude avrdude
+need libsimavr-dev /usr/include/simavr/sim_avr.h
+need libelf-dev /usr/include/libelf.h
+if [ "${1:-run}" = test ]; then
+    need g++ g++
+    need chromium chromium
+    need clang-format clang-format
+fi
+[ -n "$missing" ] || exit 0
+
+if ! command -v apt-get >/dev/null; then
+    fail "Missing on this machine, by the names of Debian's packages:$missing. Install them and try again."
+fi
+if [ "$(id -u)" = 0 ]; then as_root=""
+elif sudo -n true 2>/dev/null; then as_root="sudo"
+else fail "Missing Debian packages. Install them with: sudo apt install$missing"
+fi
+printf 'Installing Debian packages:%s\n' "$missing"
+$as_root apt-get update -q
+# shellcheck disable=SC2086 - a list of names
+DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends $missing ||
+    fail "apt could not install them. Try: sudo apt install$missing"

@@ -1,0 +1,107 @@
+"""A board that runs the firmware, and a host that speaks with it in emulated time."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from robot_runtime.packets import (
+    DEFINITIONS_HASH,
+    Heartbeat,
+    Hello,
+    Navigation,
+    Packet,
+    Start,
+    Status,
+    StatusFlag,
+    Stop,
+    decode,
+)
+from tests.board.rig import ROOT, Rig
+from tests.line_end import LineEnd
+
+FIRMWARE = ROOT / "build/firmware"
+BAUD = 250_000
+TICK = 0.01
+"""s; the firmware's own tick."""
+HEARTBEAT_TICKS = 10
+P = TypeVar("P", bound=Packet)
+
+
+class Robot:
+    """A paused board with the firmware, and a host that speaks with it tick by tick."""
+
+    def __init__(self, rig: Rig) -> None:
+        self.rig = rig
+        self.board = rig.board
+        self.heard: list[Packet] = []
+        self._end = LineEnd(is_host=True)
+        self._ticks = 0
+        self._passed = 0.0
+
+    def send(self, *packets: Packet) -> None:
+        """Put these into the host's port; they go out as emulated time passes."""
+        self.rig.port.write(self._end.say(packets, self._passed))
+
+    def listen(self, seconds: float) -> list[Packet]:
+        """What the board says in this much emulated time while the host is silent."""
+        self.board.run(seconds)
+        self._passed += seconds
+        messages = self._end.hear(self.rig.port.read(), self._passed)
+        assert self._end.invalid == 0
+        packets = [decode(type_, payload) for type_, payload in messages]
+        self.heard += packets
+        return packets
+
+    def converse(self, seconds: float, command: Navigation | None = None) -> list[Packet]:
+        """The same while the host says a HEARTBEAT ten times a second, and this command if there is one."""
+        packets: list[Packet] = []
+        for _ in range(round(seconds / TICK)):
+            if self._ticks % HEARTBEAT_TICKS == 0:
+                self.send(Heartbeat(time=0), *([command] if command else []))
+            self._ticks += 1
+            packets += self.listen(TICK)
+        return packets
+
+    def greet(self) -> Hello:
+        """Say HELLO until it is answered."""
+        self.send(Hello(definitions=DEFINITIONS_HASH, epoch=77, credit=4096))
+        return last(self.listen(0.05), Hello)
+
+    def arm(self) -> None:
+        """Greet, be steady for long enough, and START."""
+        hello = self.greet()
+        self.converse(0.7)
+        self.send(Start(epoch=hello.epoch))
+        assert self.status().flags & StatusFlag.ARMED
+
+    def stop(self) -> None:
+        self.send(Stop())
+
+    def status(self) -> Status:
+        """The next one that the board sends, which may say something of the last 100 ms."""
+        return last(self.converse(0.2), Status)
+
+    def until(self, holds: Callable[[Status], bool], limit: float) -> float:
+        """Listen, silently, until a Status says so; the emulated time it took. Fails beyond the limit."""
+        passed = 0.0
+        while passed <= limit:
+            packets = self.listen(TICK)
+            passed += TICK
+            if any(isinstance(packet, Status) and holds(packet) for packet in packets):
+                return passed
+        raise AssertionError(f"not within {limit} s")
+
+
+def all_of(packets: list[Packet], cls: type[P]) -> list[P]:
+    return [packet for packet in packets if isinstance(packet, cls)]
+
+
+def last(packets: list[Packet], cls: type[P]) -> P:
+    found = all_of(packets, cls)
+    assert found, f"no {cls.__name__} in {packets}"
+    return found[-1]
+
+
+def start(name: str, folder: Path, *options: str) -> Rig:
+    """A board with this program of the firmware's."""
+    return Rig(FIRMWARE / f"{name}.elf", folder, *options, baud=BAUD)

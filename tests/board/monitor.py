@@ -1,0 +1,73 @@
+"""The test's side of the sketch `monitor`."""
+
+import struct
+
+from tests.board.rig import Rig
+
+TICK = 0.5e-6
+"""s."""
+ACKNOWLEDGED_ADDRESS, REFUSED_ADDRESS = 0x18, 0x20
+REFUSED_READ_ADDRESS = 0x48
+ACKNOWLEDGED_DATA = 0x28
+LAST_DATA = 0x58
+
+
+class Monitor:
+    """Asks the sketch to do things; each takes a little emulated time."""
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+
+    def boot(self) -> int:
+        """Let it start; the reset cause as in MCUSR."""
+        self._rig.board.run(0.002)
+        said = self._rig.port.read()
+        assert len(said) == 2, said
+        assert said[:1] == b"R"
+        return said[1]
+
+    def transfer(self, address: int, out: bytes = b"", count: int = 0) -> tuple[int, float, bytes]:
+        """Write and then read on I2C: the last status, the duration (s), and what was read."""
+        said = self._ask(b"T" + bytes([address, len(out)]) + out + bytes([count]), 3 + count)
+        status, ticks = struct.unpack_from("<BH", said)
+        return status, ticks * TICK, said[3:]
+
+    def set_bit_rate(self, twbr: int) -> None:
+        """Choose the I2C clock."""
+        self._ask(b"t" + bytes([twbr]), 0)
+
+    def encoder(self, number: int) -> tuple[float, int]:
+        """The duration of three bytes on SPI (s), and the word without its leading one."""
+        said = self._ask(b"S" + bytes([number]), 5)
+        (ticks,) = struct.unpack_from("<H", said)
+        bits = int.from_bytes(said[2:], "big")
+        assert bits >> 23 == 1
+        return ticks * TICK, bits >> 7 & 0xFFFF
+
+    def adc(self, channel: int) -> int:
+        """Counts of 1023."""
+        return int.from_bytes(self._ask(b"A" + bytes([channel]), 2), "little")
+
+    def write_eeprom(self, address: int, value: int) -> float:
+        """The duration (s)."""
+        return int.from_bytes(self._ask(b"E" + bytes([address, value]), 2), "little") * TICK
+
+    def read_eeprom(self, address: int) -> int:
+        return self._ask(b"e" + bytes([address]), 1)[0]
+
+    def flood(self) -> float:
+        """The duration (s) of sending 16 bytes."""
+        said = self._ask(b"F", 18)
+        return int.from_bytes(said[16:], "little") * TICK
+
+    def outputs(self, port_c: int) -> None:
+        self._ask(b"O" + bytes([port_c]), 0)
+
+    def inputs(self) -> int:
+        """PIND."""
+        return self._ask(b"I", 1)[0]
+
+    def _ask(self, command: bytes, count: int) -> bytes:
+        said = self._rig.exchange(command, 0.02)
+        assert len(said) == count, (command, said)
+        return said

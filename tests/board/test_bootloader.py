@@ -1,0 +1,200 @@
+"""The boot loader on the emulated board, and uploads through the serial port with the real avrdude."""
+
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+import serial
+
+from robot_runtime.link.framing import Decoder
+from robot_runtime.packets import Hello
+from robot_runtime.simulation.board import Board, BoardError, BoardProcess
+from tests.board.host import BAUD
+from tests.board.monitor import Monitor
+from tests.board.rig import PROGRAM, ROOT, SKETCHES, Rig, build, wait_for
+
+OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
+ROBOT = ROOT / "build/firmware/robot.hex"
+BOOT_BAUD = 115200
+TIMEOUT = 131072 / 128e3
+"""s; optiboot's watchdog of "1 s", in cycles of the chip's 128 kHz."""
+SYNCHRONISE, IN_STEP = b"0 ", b"\x14\x10"
+"""STK500: a question that every boot loader answers, and the answer."""
+RESET_PIN = 1 << 1
+LIMIT = 60.0
+"""s of real time for an upload."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def bootloader(built: None) -> None:  # noqa: ARG001 - the board comes first
+    build(ROOT / "firmware/bootloader")
+
+
+def upload(tty: Path, program: Path, *options: str, baud: int = BOOT_BAUD) -> subprocess.Popen[str]:
+    command = ["avrdude", "-c", "arduino", "-p", "m328p", "-b", str(baud), "-D", "-P", str(tty), *options]
+    command += ["-U", f"flash:w:{program}:i"]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def finish(avrdude: subprocess.Popen[str]) -> tuple[int, str]:
+    said, _ = avrdude.communicate(timeout=LIMIT)
+    return avrdude.returncode, said
+
+
+def insist_on_upload(tty: Path, program: Path) -> None:
+    status, said = finish(upload(tty, program))
+    assert status == 0, said
+    assert "bytes of flash verified" in said
+
+
+@contextmanager
+def empty_board(folder: Path) -> Iterator[tuple[BoardProcess, Board]]:
+    """In real time, for avrdude waits by its own clock."""
+    options = ("--bootloader", str(OPTIBOOT), "--reset-on-open")
+    with (
+        BoardProcess(PROGRAM, None, folder / "tty", folder / "board", *options) as process,
+        process.connect() as board,
+    ):
+        yield process, board
+
+
+def echoes(process: BoardProcess, board: Board) -> bool:
+    """Whether the sketch `echo` runs once the boot loader has waited in vain."""
+    with serial.Serial(str(process.tty), BOOT_BAUD, timeout=5) as port:
+        opened = board.stats()["time"]
+        wait_for(lambda: board.stats()["time"] > opened + TIMEOUT + 0.1, "the boot loader's timeout")
+        port.write(b"hello")
+        return bool(port.read(5) == b"hello")
+
+
+def both(folder: Path) -> Rig:
+    return Rig(SKETCHES / "monitor.elf", folder, "--bootloader", str(OPTIBOOT))
+
+
+def test_after_power_on_it_starts_the_program_at_once(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        # It clears the reset cause.
+        assert Monitor(rig).boot() == 0
+        assert rig.board.stats()["watchdog_resets"] == 0
+
+
+def test_after_a_reset_it_waits_and_then_starts_the_program(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        Monitor(rig).boot()
+        rig.board.reset()
+        rig.board.run(TIMEOUT - 0.01)
+        assert rig.port.read() == b""
+        rig.board.run(0.015)
+        assert rig.port.read() == b"R\0"
+        assert rig.board.stats()["watchdog_resets"] == 1
+
+
+def test_after_a_reset_it_listens(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        Monitor(rig).boot()
+        rig.board.reset()
+        rig.board.run(0.5)
+        assert rig.exchange(SYNCHRONISE, 0.01) == IN_STEP
+        # Having heard something it waits that long anew.
+        rig.board.run(TIMEOUT - 0.02)
+        assert rig.port.read() == b""
+        rig.board.run(0.02)
+        assert rig.port.read() == b"R\0"
+
+
+def test_without_a_boot_loader_nothing_waits(tmp_path: Path) -> None:
+    with Rig(SKETCHES / "monitor.elf", tmp_path) as rig:
+        Monitor(rig).boot()
+        rig.board.reset()
+        assert Monitor(rig).boot() == RESET_PIN
+
+
+def test_a_signal_pulls_the_reset_pin(tmp_path: Path) -> None:
+    with Rig(SKETCHES / "monitor.elf", tmp_path) as rig:
+        Monitor(rig).boot()
+        os.kill(rig.process.process.pid, signal.SIGUSR1)
+        wait_for(lambda: rig.board.stats()["resets"] == 2, "the reset")
+        assert Monitor(rig).boot() == RESET_PIN
+
+
+def test_another_program_leaves_the_boot_loader_in_place(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        Monitor(rig).boot()
+        rig.board.load(SKETCHES / "echo.elf")
+        rig.board.run(0.01)
+        assert rig.exchange(SYNCHRONISE, 0.01) == IN_STEP
+        rig.board.run(TIMEOUT + 0.01)
+        assert rig.exchange(b"hello", 0.01) == b"hello"
+
+
+def test_a_program_that_reaches_into_the_boot_loader_is_refused(tmp_path: Path) -> None:
+    source, elf = tmp_path / "large.c", tmp_path / "large.elf"
+    source.write_text(
+        "const char filling[32300] __attribute__((progmem, used)) = {1};\nint main(void) { return 0; }\n"
+    )
+    subprocess.run(["avr-gcc", "-mmcu=atmega328p", "-Os", "-o", elf, source], check=True)
+    with both(tmp_path) as rig:
+        with pytest.raises(BoardError, match=r"reaches up to 0x7e..; programs have the .* below 0x7e00"):
+            rig.board.load(elf)
+        assert Monitor(rig).boot() == 0
+    with Rig(elf, tmp_path) as rig:
+        rig.board.run(0.01)
+        assert rig.board.stats()["crashes"] == 0
+
+
+def test_avrdude_uploads_a_program_and_then_the_robots(tmp_path: Path) -> None:
+    build(ROOT / "firmware", "robot")
+    with empty_board(tmp_path) as (process, board):
+        insist_on_upload(process.tty, SKETCHES / "echo.hex")
+        assert echoes(process, board)
+        insist_on_upload(process.tty, ROBOT)
+        with serial.Serial(str(process.tty), BAUD, timeout=10) as port:
+            board.reset()
+            listening = board.stats()["time"]
+            wait_for(lambda: board.stats()["time"] > listening + 0.05, "the end of what was said before")
+            port.reset_input_buffer()
+            (frame,) = Decoder().feed(port.read_until(b"\0"))
+        assert [type_ for type_, _ in frame.messages] == [Hello.type]
+
+
+def test_an_interrupted_upload_can_be_done_again(tmp_path: Path) -> None:
+    with empty_board(tmp_path) as (process, board):
+        avrdude = upload(process.tty, SKETCHES / "monitor.hex")
+        wait_for(lambda: board.stats()["bytes_to_board"] > 600, "the first pages")
+        avrdude.kill()
+        finish(avrdude)
+        assert avrdude.returncode == -signal.SIGKILL
+        insist_on_upload(process.tty, SKETCHES / "echo.hex")
+        assert echoes(process, board)
+
+
+def test_an_upload_at_a_wrong_speed_fails_and_changes_nothing(tmp_path: Path) -> None:
+    with empty_board(tmp_path) as (process, board):
+        insist_on_upload(process.tty, SKETCHES / "echo.hex")
+        status, said = finish(upload(process.tty, SKETCHES / "monitor.hex", "-x", "attempts=2", baud=57600))
+        assert status == 1
+        assert "not in sync" in said
+        assert board.stats()["framing_errors_board"] > 0
+        assert echoes(process, board)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("no record\n", "line 1 is no Intel HEX record for this chip"),
+        (":0100000000FF\n:00000001FF\n", "it begins at 0x0000, and those begin at 0x7e00"),
+        (":017E00000080\n:00000001FF\n", "line 1 is no Intel HEX record"),  # its checksum should be 81
+        (":02FFFF000000\n:00000001FF\n", "line 1 is no Intel HEX record"),  # beyond the flash memory
+        (":00000001FF\n", "holds no program"),
+    ],
+)
+def test_a_file_that_is_no_boot_loader_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "boot.hex"
+    file.write_text(text)
+    with pytest.raises(BoardError, match=message) as refusal:
+        BoardProcess(PROGRAM, None, tmp_path / "tty", tmp_path / "board", "--bootloader", str(file))
+    assert "\n" not in str(refusal.value)

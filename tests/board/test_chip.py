@@ -1,0 +1,112 @@
+"""Resets, the watchdog, sleep, the EEPROM and programs that go astray."""
+
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.simulation.board import BoardError
+from tests.board.conftest import Make
+from tests.board.monitor import Monitor
+from tests.board.rig import SKETCHES, Rig
+
+POWER_ON, RESET_PIN, WATCHDOG = 1 << 0, 1 << 1, 1 << 3
+
+
+def test_the_program_learns_the_reset_cause(make_rig: Make) -> None:
+    rig = make_rig("monitor")
+    monitor = Monitor(rig)
+    assert monitor.boot() == POWER_ON
+    rig.board.reset()
+    assert monitor.boot() == RESET_PIN
+    assert rig.board.stats()["resets"] == 2
+
+
+# It hangs in a loop, sleeps with interrupts off, or jumps into erased memory.
+@pytest.mark.parametrize("command", [b"H", b"Z", b"J"])
+def test_the_watchdog_wakes_a_chip_that_is_lost(make_rig: Make, command: bytes) -> None:
+    rig = make_rig("monitor")
+    monitor = Monitor(rig)
+    monitor.boot()
+    rig.port.write(command)
+    took = rig.run_until(lambda: rig.board.stats()["watchdog_resets"] == 1, step=0.001, limit=0.4)
+    # The watchdog's 250 ms are 32768 cycles of its 128 kHz.
+    assert took == pytest.approx(0.256, abs=0.003)
+    assert monitor.boot() == WATCHDOG
+    # Everything outside the chip has kept time: line, motors and buses work as before.
+    assert monitor.transfer(0x76)[0] == 0x18
+    assert monitor.flood() > 0
+    assert rig.board.stats()["resets"] == 2
+
+
+def test_a_lost_chip_without_watchdog_stays_lost(make_rig: Make) -> None:
+    rig = make_rig("monitor")
+    Monitor(rig).boot()
+    rig.port.write(b"J")
+    rig.board.run(0.1)
+    rig.board.reset()
+    Monitor(rig).boot()
+    assert rig.board.stats()["crashes"] == 1
+
+
+def test_bytes_on_the_line_are_cut_off_by_a_reset(make_rig: Make) -> None:
+    rig = make_rig("monitor")
+    Monitor(rig).boot()
+    rig.port.write(b"F")
+    rig.board.run(0.5e-3)
+    rig.board.reset()
+    rig.board.run(5e-3)
+    said = rig.port.read()
+    assert said.count(b"x") < 10
+    assert said.endswith(b"R" + bytes([RESET_PIN]))
+
+
+def test_writing_the_eeprom_takes_its_time(make_rig: Make) -> None:
+    rig = make_rig("monitor")
+    monitor = Monitor(rig)
+    monitor.boot()
+    assert monitor.read_eeprom(0) == 0xFF
+    assert monitor.read_eeprom(17) == 0xFF
+    assert monitor.write_eeprom(17, 0x5A) == pytest.approx(3.4e-3, abs=20e-6)
+    assert monitor.read_eeprom(17) == 0x5A
+
+
+@pytest.mark.usefixtures("built")
+def test_the_eeprom_is_kept_even_where_the_board_is_killed(tmp_path: Path) -> None:
+    options = ("--eeprom", str(tmp_path / "eeprom"))
+    rig = Rig(SKETCHES / "monitor.elf", tmp_path, *options)
+    with rig:
+        monitor = Monitor(rig)
+        monitor.boot()
+        monitor.write_eeprom(3, 42)
+        rig.process.process.kill()
+        rig.process.process.wait()
+    assert (tmp_path / "eeprom").stat().st_size == 1024
+    with Rig(SKETCHES / "monitor.elf", tmp_path, *options) as again:
+        monitor = Monitor(again)
+        monitor.boot()
+        assert monitor.read_eeprom(3) == 42
+
+
+def test_another_program_can_be_loaded(make_rig: Make) -> None:
+    rig = make_rig("echo")
+    rig.board.run(0.01)
+    assert rig.exchange(b"hello", 0.01) == b"hello"
+    rig.board.load(SKETCHES / "monitor.elf")
+    assert Monitor(rig).boot() == RESET_PIN
+
+
+def test_what_is_no_program_is_refused_and_the_old_one_goes_on(make_rig: Make) -> None:
+    rig = make_rig("echo")
+    rig.board.run(0.01)
+    with pytest.raises(BoardError, match="not an ELF file for an AVR"):
+        rig.board.load(Path(__file__))
+    with pytest.raises(BoardError, match="No such file"):
+        rig.board.load(Path("/nowhere.elf"))
+    assert rig.exchange(b"hello", 0.01) == b"hello"
+    assert rig.board.stats()["resets"] == 1
+
+
+def test_time_is_exact(make_rig: Make) -> None:
+    rig = make_rig("echo")
+    assert [rig.board.run(0.0001) for _ in range(1000)][-1] == pytest.approx(0.1, abs=1e-6)
+    assert rig.board.run(1.0) == pytest.approx(1.1, abs=1e-6)

@@ -1,0 +1,317 @@
+"""The devices as a program finds them on the chip's buses and pins."""
+
+import math
+import struct
+
+import pytest
+
+from robot_runtime.simulation.board import STILL_WATER, BoardError
+from tests.board.conftest import Make
+from tests.board.monitor import (
+    ACKNOWLEDGED_ADDRESS,
+    ACKNOWLEDGED_DATA,
+    LAST_DATA,
+    REFUSED_ADDRESS,
+    REFUSED_READ_ADDRESS,
+    Monitor,
+)
+from tests.board.rig import CLOCK, Rig
+
+IMU = 0x69
+PRESSURE = 0x76
+BRIDGES = (0x64, 0x60, 0x61, 0x63)
+MOTOR_POWER, LED = 1 << 3, 1 << 1
+GRAVITY = 9.80665
+
+
+@pytest.fixture
+def rig(make_rig: Make) -> Rig:
+    return make_rig("monitor")
+
+
+@pytest.fixture
+def monitor(rig: Rig) -> Monitor:
+    monitor = Monitor(rig)
+    monitor.boot()
+    return monitor
+
+
+# The I2C bus
+
+
+def test_an_absent_device_refuses_its_address(monitor: Monitor) -> None:
+    assert monitor.transfer(0x42, b"\0")[0] == REFUSED_ADDRESS
+    assert monitor.transfer(0x42, count=2)[0] == REFUSED_READ_ADDRESS
+
+
+def test_a_device_acknowledges(monitor: Monitor) -> None:
+    assert monitor.transfer(IMU)[0] == ACKNOWLEDGED_ADDRESS
+    assert monitor.transfer(IMU, b"\x75")[0] == ACKNOWLEDGED_DATA
+    assert monitor.transfer(IMU, b"\x75", 1)[0] == LAST_DATA
+
+
+@pytest.mark.parametrize(("twbr", "hertz"), [(12, 400_000), (72, 100_000)])
+def test_i2c_takes_as_long_as_its_clock_says(monitor: Monitor, twbr: int, hertz: int) -> None:
+    monitor.set_bit_rate(twbr)
+    _, duration, _ = monitor.transfer(IMU, b"\x3b", 14)
+    characters, starts = 2 + 1 + 14, 2
+    least = (9 * characters + starts) / hertz
+    # The program's own instructions take a few µs for every character.
+    assert least < duration < least + 4e-6 * (characters + starts)
+
+
+# The IMU
+
+
+def imu_counts(monitor: Monitor) -> tuple[int, ...]:
+    counts: tuple[int, ...] = struct.unpack(">7h", monitor.transfer(IMU, b"\x3b", 14)[2])
+    return counts
+
+
+def test_the_imu_sleeps_until_it_is_woken(monitor: Monitor) -> None:
+    assert monitor.transfer(IMU, b"\x75", 1)[2] == b"\x68"
+    assert monitor.transfer(IMU, b"\x6b", 1)[2] == b"\x40"
+    assert imu_counts(monitor) == (0,) * 7
+    monitor.transfer(IMU, b"\x6b\0")
+    assert imu_counts(monitor)[2] == -16384
+
+
+@pytest.mark.parametrize("scale", [0, 1, 2, 3])
+def test_the_imu_obeys_its_ranges(rig: Rig, monitor: Monitor, scale: int) -> None:
+    rig.board.sense(STILL_WATER._replace(force=(1.0, -2.0, -GRAVITY), rate=(0.5, -1.0, 2.0)))
+    monitor.transfer(IMU, bytes([0x6B, 0]))
+    monitor.transfer(IMU, bytes([0x1B, scale << 3, scale << 3]))
+    x, y, z, temperature, p, q, r = imu_counts(monitor)
+    force, rate = 16384 / 2**scale / GRAVITY, 131.072 / 2**scale * 180 / math.pi
+    assert (x, y, z) == tuple(round(value * force) for value in (1.0, -2.0, -GRAVITY))
+    assert (p, q, r) == tuple(round(value * rate) for value in (0.5, -1.0, 2.0))
+    assert temperature == round((20 - 36.53) * 340)
+
+
+def test_the_imu_saturates(rig: Rig, monitor: Monitor) -> None:
+    monitor.transfer(IMU, b"\x6b\0")
+    rig.board.sense(STILL_WATER._replace(force=(1000.0, -1000.0, 0.0), rate=(100.0, -100.0, 0.0)))
+    x, y, _, _, p, q, _ = imu_counts(monitor)
+    assert (x, y, p, q) == (32767, -32768, 32767, -32768)
+
+
+# The pressure sensor
+
+
+def convert(rig: Rig, monitor: Monitor, command: int, wait: float) -> int:
+    monitor.transfer(PRESSURE, bytes([command]))
+    rig.board.run(wait)
+    return int.from_bytes(monitor.transfer(PRESSURE, b"\0", 3)[2], "big")
+
+
+def prom(monitor: Monitor) -> list[int]:
+    return [
+        int.from_bytes(monitor.transfer(PRESSURE, bytes([0xA0 + 2 * word]), 2)[2], "big") for word in range(7)
+    ]
+
+
+def compensated(c: list[int], d1: int, d2: int) -> tuple[float, float]:
+    """The data sheet's second-order compensation, in whole numbers as it prescribes: Pa and °C."""
+    dt = d2 - (c[5] << 8)
+    temp = 2000 + (dt * c[6] >> 23)
+    off = (c[2] << 16) + (c[4] * dt >> 7)
+    sens = (c[1] << 15) + (c[3] * dt >> 8)
+    if temp < 2000:
+        ti = 3 * dt * dt >> 33
+        off -= 3 * (temp - 2000) ** 2 >> 1
+        sens -= 5 * (temp - 2000) ** 2 >> 3
+    else:
+        ti = 2 * dt * dt >> 37
+        off -= (temp - 2000) ** 2 >> 4
+    return ((d1 * sens >> 21) - off) / 2**13 * 10, (temp - ti) / 100
+
+
+def test_the_prom_carries_its_checksum(monitor: Monitor) -> None:
+    words = prom(monitor)
+    remainder = 0
+    for index, byte in enumerate(
+        b"".join(word.to_bytes(2, "big") for word in [words[0] & 0xFFF, *words[1:], 0])
+    ):
+        assert index < 16
+        remainder ^= byte
+        for _ in range(8):
+            remainder = (remainder << 1 ^ 0x3000 if remainder & 0x8000 else remainder << 1) & 0xFFFF
+    assert remainder >> 12 == words[0] >> 12
+
+
+@pytest.mark.parametrize("pressure", [101325.0, 113098.0, 250000.0])
+@pytest.mark.parametrize("temperature", [4.0, 20.0, 31.5])
+def test_the_compensation_gives_back_what_is_felt(
+    rig: Rig, monitor: Monitor, pressure: float, temperature: float
+) -> None:
+    rig.board.sense(STILL_WATER._replace(pressure=pressure, temperature=temperature))
+    d2 = convert(rig, monitor, 0x5A, 0.02)
+    d1 = convert(rig, monitor, 0x4A, 0.02)
+    felt = compensated(prom(monitor), d1, d2)
+    assert felt[0] == pytest.approx(pressure, abs=10)
+    assert felt[1] == pytest.approx(temperature, abs=0.01)
+
+
+def test_a_conversion_read_too_early_is_zero(rig: Rig, monitor: Monitor) -> None:
+    ready = convert(rig, monitor, 0x4A, 0.02)
+    assert ready > 0
+    # Asking already takes 20 ms, so the read is sent along with the command.
+    command = b"T" + bytes([PRESSURE, 1, 0x4A, 0])
+    read = b"T" + bytes([PRESSURE, 1, 0x00, 3])
+    assert rig.exchange(command + read, 0.02)[-3:] == b"\0\0\0"
+
+
+def test_a_reset_takes_a_while(rig: Rig, monitor: Monitor) -> None:
+    command = b"T" + bytes([PRESSURE, 1, 0x1E, 0])
+    read = b"T" + bytes([PRESSURE, 1, 0xA2, 2])
+    assert rig.exchange(command + read, 0.02)[-2:] == b"\0\0"
+    assert prom(monitor)[1] == 34982
+
+
+# The encoders
+
+
+def test_an_encoder_shows_the_fins_angle_with_parity(rig: Rig, monitor: Monitor) -> None:
+    zeros, rotations = (188, 161, 726, 356), (1, 1, -1, -1)
+    angles = rig.board.fins().angles
+    for fin in range(4):
+        duration, word = monitor.encoder(fin)
+        shaft = rotations[fin] * angles[fin]
+        assert word >> 6 == round(zeros[fin] - shaft * 1024 / math.tau) % 1024
+        assert word & 0b111110 == 0b100000
+        assert word.bit_count() % 2 == 0
+        assert 24 * 16 / CLOCK < duration < 24 * 16 / CLOCK + 6e-6
+
+
+def test_an_absent_encoder_leaves_the_line_high(rig: Rig, monitor: Monitor) -> None:
+    rig.board.fault("encoder2", "absent")
+    assert monitor.encoder(2)[1] == 0xFFFF
+    assert monitor.encoder(1)[1] != 0xFFFF
+
+
+# The motors
+
+
+def drive(monitor: Monitor, fin: int, steps: int) -> int:
+    direction = 1 if steps > 0 else 2
+    return monitor.transfer(BRIDGES[fin], bytes([0, abs(steps) << 2 | direction]))[0]
+
+
+def test_a_motor_turns_its_fin_as_it_is_driven(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    for fin, steps in enumerate((40, -40, 40, 1)):
+        assert drive(monitor, fin, steps) == ACKNOWLEDGED_DATA
+    rig.board.run(0.3)
+    before = rig.board.fins()
+    assert before.drives == (40, -40, 40, 1)
+    assert before.speeds == pytest.approx((12.6, -12.6, -12.6, 0), abs=0.01)
+    rig.board.run(0.1)
+    after = rig.board.fins()
+    turned = [math.remainder(b - a, math.tau) for a, b in zip(before.angles, after.angles, strict=True)]
+    assert turned == pytest.approx((1.26, -1.26, -1.26, 0), abs=0.02)
+
+
+def test_a_motor_follows_with_its_time_constant(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    rig.port.write(b"T" + bytes([BRIDGES[0], 2, 0, 40 << 2 | 1, 0]))
+    rig.run_until(lambda: rig.board.fins().drives[0] == 40, step=1e-4, limit=0.01)
+    rig.board.run(0.030)
+    assert rig.board.fins().speeds[0] == pytest.approx(12.6 * (1 - math.exp(-1)), rel=0.04)
+
+
+def test_without_power_no_motor_turns_and_the_bridges_are_dead(rig: Rig, monitor: Monitor) -> None:
+    assert drive(monitor, 0, 40) == REFUSED_ADDRESS
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    assert rig.board.fins().drives[0] == 40
+    monitor.outputs(0)
+    rig.board.run(0.3)
+    fins = rig.board.fins()
+    assert (fins.drives[0], fins.speeds[0], fins.powered) == (0, 0, False)
+    monitor.outputs(MOTOR_POWER)
+    assert rig.board.fins().drives[0] == 0  # it has forgotten
+
+
+def test_the_bridges_go_on_while_the_chip_is_reset_only_as_long_as_they_have_power(
+    rig: Rig, monitor: Monitor
+) -> None:
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    rig.board.run(0.2)
+    rig.board.reset()
+    fins = rig.board.fins()
+    assert not fins.powered
+    assert fins.drives == (0, 0, 0, 0)
+
+
+# Pins
+
+
+def test_led_beacons_and_battery(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(LED)
+    assert rig.board.led()
+    monitor.outputs(0)
+    assert not rig.board.led()
+    right, left = 1 << 4, 1 << 5
+    assert monitor.inputs() & (right | left) == 0
+    rig.board.sense(STILL_WATER._replace(beacon_left=True, battery=6.1))
+    assert monitor.inputs() & (right | left) == left
+    assert monitor.adc(2) == pytest.approx(6.1 / 2 / 5 * 1023, abs=1)
+    rig.board.sense(STILL_WATER._replace(beacon_right=True))
+    assert monitor.inputs() & (right | left) == right
+    assert monitor.adc(2) == pytest.approx(7.4 / 2 / 5 * 1023, abs=1)
+
+
+def test_inputs_survive_a_reset(rig: Rig, monitor: Monitor) -> None:
+    rig.board.sense(STILL_WATER._replace(beacon_right=True, battery=8.0))
+    rig.board.reset()
+    monitor.boot()
+    assert monitor.inputs() & (1 << 4)
+    assert monitor.adc(2) == pytest.approx(8.0 / 2 / 5 * 1023, abs=1)
+
+
+# Faults
+
+
+def test_absent_devices_refuse_their_addresses(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    for name, address in {"imu": IMU, "pressure": PRESSURE, "bridge3": BRIDGES[3]}.items():
+        assert monitor.transfer(address)[0] == ACKNOWLEDGED_ADDRESS
+        rig.board.fault(name, "absent")
+        assert monitor.transfer(address)[0] == REFUSED_ADDRESS
+        rig.board.fault(name, "none")
+        assert monitor.transfer(address)[0] == ACKNOWLEDGED_ADDRESS
+
+
+def test_stuck_sensors_show_what_they_showed(rig: Rig, monitor: Monitor) -> None:
+    monitor.transfer(IMU, b"\x6b\0")
+    before = imu_counts(monitor), convert(rig, monitor, 0x4A, 0.02)
+    rig.board.fault("imu", "stuck")
+    rig.board.fault("pressure", "stuck")
+    rig.board.sense(STILL_WATER._replace(force=(5.0, 5.0, 5.0), pressure=200000.0))
+    assert (imu_counts(monitor), convert(rig, monitor, 0x4A, 0.02)) == before
+    rig.board.fault("imu", "none")
+    rig.board.fault("pressure", "none")
+    assert imu_counts(monitor)[0] > 0
+    assert convert(rig, monitor, 0x4A, 0.02) > before[1]
+
+
+def test_a_stuck_encoder_and_a_stuck_bridge(rig: Rig, monitor: Monitor) -> None:
+    monitor.outputs(MOTOR_POWER)
+    before = monitor.encoder(0)[1]
+    rig.board.fault("encoder0", "stuck")
+    drive(monitor, 0, 40)
+    rig.board.fault("bridge0", "stuck")
+    drive(monitor, 0, -40)
+    rig.board.run(0.1)
+    assert rig.board.fins().drives[0] == 40
+    assert monitor.encoder(0)[1] == before
+    rig.board.fault("encoder0", "none")
+    rig.board.run(0.01)
+    assert monitor.encoder(0)[1] != before
+
+
+@pytest.mark.parametrize(("device", "kind"), [("imu", "broken"), ("encoder4", "none"), ("", "")])
+def test_unknown_faults_are_refused(rig: Rig, device: str, kind: str) -> None:
+    with pytest.raises(BoardError, match="fault takes imu"):
+        rig.board.fault(device, kind)  # type: ignore[arg-type]

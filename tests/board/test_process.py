@@ -1,0 +1,203 @@
+"""The board as a process: how it starts, keeps time, and ends."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.simulation.board import BoardError, BoardProcess
+from tests.board.rig import PROGRAM, ROOT, SKETCHES, wait_for
+
+pytestmark = pytest.mark.usefixtures("built")
+ECHO = SKETCHES / "echo.elf"
+
+
+def start(folder: Path, *options: str, elf: Path = ECHO) -> BoardProcess:
+    return BoardProcess(PROGRAM, elf, folder / "tty", folder / "board", *options)
+
+
+def test_it_keeps_real_time(tmp_path: Path) -> None:
+    with start(tmp_path) as process, process.connect() as board:
+        before_first = time.monotonic()
+        first = board.stats()
+        after_first = time.monotonic()
+        wait_for(lambda: board.stats()["time"] - first["time"] >= 0.5, "half a second of the board's time")
+        before_last = time.monotonic()
+        last = board.stats()
+        after_last = time.monotonic()
+        # On a busy computer it may be behind; beyond a tenth of a second it skips time and counts it.
+        kept = last["time"] - first["time"] + last["skipped"] - first["skipped"]
+        assert before_last - after_first - 0.11 < kept < after_last - before_first + 0.11
+
+
+def test_time_in_which_it_was_held_up_is_skipped_and_counted(tmp_path: Path) -> None:
+    with start(tmp_path) as process, process.connect() as board:
+        before = board.stats()
+        process.process.send_signal(signal.SIGSTOP)
+        begin = time.monotonic()
+        wait_for(lambda: time.monotonic() - begin > 0.5, "time to pass")
+        process.process.send_signal(signal.SIGCONT)
+        wait_for(lambda: board.stats()["late"] > before["late"], "the board to notice")
+        after = board.stats()
+        assert after["skipped"] - before["skipped"] > 0.4
+        assert after["time"] - before["time"] < 0.4
+
+
+def test_it_can_go_faster_than_time(tmp_path: Path) -> None:
+    with start(tmp_path, "--speed", "0") as process, process.connect() as board:
+        first, begin = board.stats()["time"], time.monotonic()
+        wait_for(lambda: board.stats()["time"] - first >= 2, "two seconds of the board's time")
+        assert time.monotonic() - begin < 2
+
+
+def test_a_host_hears_it_in_real_time(tmp_path: Path) -> None:
+    with start(tmp_path) as process, process.connect() as board:
+        wait_for(lambda: board.stats()["time"] > 0.01, "the sketch to start")
+        port = os.open(process.tty, os.O_RDWR | os.O_NOCTTY)
+        try:
+            os.write(port, b"!")
+            assert os.read(port, 1) == b"!"
+        finally:
+            os.close(port)
+
+
+def test_run_is_for_paused_boards(tmp_path: Path) -> None:
+    with (
+        start(tmp_path) as process,
+        process.connect() as board,
+        pytest.raises(BoardError, match="started with --paused"),
+    ):
+        board.run(1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_it_and_it_tidies_up(tmp_path: Path, number: signal.Signals) -> None:
+    process = start(tmp_path)
+    assert process.tty.is_symlink()
+    assert process.socket.is_socket()
+    process.process.send_signal(number)
+    assert process.process.wait(10) == 0
+    process.stop()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_quit_ends_it(tmp_path: Path) -> None:
+    process = start(tmp_path, "--paused")
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(str(process.socket))
+        client.sendall(b"quit\n")
+    assert process.process.wait(10) == 0
+    process.stop()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_killed_board_left_is_no_hindrance(tmp_path: Path) -> None:
+    process = start(tmp_path)
+    process.process.kill()
+    process.stop()
+    assert process.tty.is_symlink()
+    assert process.socket.is_socket()
+    with start(tmp_path) as again, again.connect() as board:
+        assert board.stats()["resets"] == 1
+
+
+def test_it_ends_with_its_parent(tmp_path: Path) -> None:
+    command = [
+        str(PROGRAM),
+        *("--elf", str(ECHO), "--tty", str(tmp_path / "tty")),
+        *("--socket", str(tmp_path / "board"), "--with-parent"),
+    ]
+    code = (
+        "import subprocess, sys\n"
+        "board = subprocess.Popen(sys.argv[1:], stdout=subprocess.PIPE)\n"
+        "board.stdout.readline()\n"
+        "print(board.pid, flush=True)\n"
+        "sys.stdin.read()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code, *command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT
+    ) as parent:
+        assert parent.stdout
+        board = int(parent.stdout.readline())
+        assert (tmp_path / "board").is_socket()
+        parent.kill()
+    wait_for(lambda: not (tmp_path / "board").exists(), f"board {board} to end with its parent")
+    assert not (tmp_path / "tty").is_symlink()
+
+
+def test_two_boards_cannot_share_a_socket(tmp_path: Path) -> None:
+    with start(tmp_path) as process:
+        with pytest.raises(BoardError, match=r"another board answers at .*choose another --socket"):
+            BoardProcess(PROGRAM, ECHO, tmp_path / "other", process.socket)
+        assert process.socket.is_socket()
+        assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize(
+    ("elf", "tty", "socket_name", "message"),
+    [
+        ("/nowhere.elf", "tty", "board", "board: cannot read /nowhere.elf: No such file or directory"),
+        (__file__, "tty", "board", f"board: {__file__} is not an ELF file for an AVR"),
+        (ECHO, "no/tty", "board", "board: cannot make .*/no/tty: No such file or directory"),
+        (ECHO, "file", "board", "board: .*/file is in the way: it is not a link"),
+        (ECHO, "tty", "file", "board: .*/file is in the way: it is not a socket"),
+        (ECHO, "tty", "no/board", "board: cannot listen at .*/no/board: No such file or directory"),
+        (ECHO, "tty", "b" * 120, "board: the socket's path is longer than 107 bytes"),
+    ],
+)
+def test_bad_paths_are_refused_in_one_line(
+    tmp_path: Path, elf: str | Path, tty: str, socket_name: str, message: str
+) -> None:
+    (tmp_path / "file").write_text("kept")
+    with pytest.raises(BoardError, match=message) as refusal:
+        BoardProcess(PROGRAM, Path(elf), tmp_path / tty, tmp_path / socket_name)
+    assert "\n" not in str(refusal.value)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert (tmp_path / "file").read_text() == "kept"
+
+
+def test_a_file_that_is_no_eeprom_is_refused_and_kept(tmp_path: Path) -> None:
+    file = tmp_path / "notes"
+    file.write_text("kept")
+    with pytest.raises(BoardError, match="not an EEPROM of this chip"):
+        start(tmp_path, "--eeprom", str(file))
+    assert file.read_text() == "kept"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "--elf or --bootloader, --tty and --socket are needed"),
+        (["--speed", "fast"], "--speed takes a number from 0 to 1000"),
+        (["--speed", "-1"], "--speed takes a number from 0 to 1000"),
+        (["--tempo", "1"], "unrecognized option '--tempo'"),
+        (["more"], "an argument too many"),
+    ],
+)
+def test_bad_command_lines_are_refused(arguments: list[str], message: str) -> None:
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stdout == ""
+
+
+def test_help_lists_every_option() -> None:
+    done = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True)
+    assert done.returncode == 0
+    options = {
+        "--elf",
+        "--bootloader",
+        "--tty",
+        "--socket",
+        "--speed",
+        "--paused",
+        "--eeprom",
+        "--reset-on-open",
+        "--with-parent",
+    }
+    assert options <= set(done.stdout.replace("[", " ").split())

@@ -1,0 +1,261 @@
+"""The robot's own firmware on the emulated board: its drivers, its pace and its safety, in emulated time."""
+
+import math
+from collections.abc import Iterator
+from contextlib import ExitStack
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.packets import (
+    Beacon,
+    Debug,
+    Depth,
+    Hello,
+    Imu,
+    Motor,
+    Navigation,
+    ResetCause,
+    SensorFault,
+    Start,
+    Status,
+    StatusFlag,
+)
+from robot_runtime.simulation.board import STILL_WATER
+from robot_runtime.simulation.sensors import Reading
+from robot_runtime.simulation.simulator import FinMotion
+from tests.board.host import Robot, all_of, last, start
+from tests.board.rig import ROOT, build
+
+DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
+FLAPPING = 1.3
+"""Hz."""
+
+
+@pytest.fixture(scope="session")
+def firmware(built: None) -> None:  # noqa: ARG001 - the board comes first
+    build(ROOT / "firmware", "robot", "hang")
+
+
+@pytest.fixture
+def programs(firmware: None, tmp_path: Path) -> Iterator["Programs"]:  # noqa: ARG001 - it must be built first
+    with ExitStack() as boards:
+        yield Programs(boards, tmp_path)
+
+
+class Programs:
+    """Starts boards with programs of the firmware's, and ends them with the test."""
+
+    def __init__(self, boards: ExitStack, folder: Path) -> None:
+        self._boards = boards
+        self._folder = folder
+
+    def start(self, name: str, *options: str) -> Robot:
+        robot = Robot(self._boards.enter_context(start(name, self._folder, *options)))
+        robot.listen(0.3)
+        return robot
+
+
+@pytest.fixture
+def robot(programs: Programs) -> Robot:
+    """Booted, in still water."""
+    return programs.start("robot")
+
+
+# Drivers
+
+
+def test_it_finds_every_device(robot: Robot) -> None:
+    status = robot.status()
+    assert status.faults == 0
+    assert status.reset_cause == ResetCause.POWER_ON
+    assert not status.flags & (StatusFlag.ARMED | StatusFlag.MOTOR_POWER)
+    assert robot.board.stats()["framing_errors_host"] == 0
+
+
+def test_its_drivers_read_what_the_sensors_feel(robot: Robot) -> None:
+    robot.listen(1.0)  # at the surface, whose pressure it takes as zero depth
+    reading = Reading(
+        pressure=101325.0 + 1.5 * 9810,
+        temperature=12.5,
+        force=(1.0, -2.0, -9.5),
+        rate=(0.1, -0.2, 0.3),
+        beacon_right=True,
+        beacon_left=False,
+        battery=7.1,
+    )
+    robot.board.sense(reading)
+    packets = robot.listen(0.3)
+    imu, depth, beacon = last(packets, Imu), last(packets, Depth), last(packets, Beacon)
+    assert imu.force == pytest.approx(reading.force, abs=0.0013)
+    assert imu.rate == pytest.approx(reading.rate, abs=0.0003)
+    assert depth.pressure == pytest.approx(reading.pressure, abs=20)
+    assert depth.temperature == pytest.approx(12.5, abs=0.011)
+    assert depth.depth == pytest.approx(1.5, abs=0.004)
+    assert (beacon.right, beacon.left) == (1, 0)
+    assert last(packets, Status).battery == pytest.approx(7.1, abs=0.01)
+
+
+def test_it_measures_the_fins(robot: Robot) -> None:
+    motor = last(robot.listen(0.1), Motor)
+    assert motor.angle == pytest.approx(robot.board.fins().angles, abs=math.tau / 1024)
+
+
+def test_its_attitude_follows_the_turn_rate(robot: Robot) -> None:
+    robot.board.sense(STILL_WATER._replace(rate=(0.0, 0.0, 0.5)))
+    before = last(robot.listen(0.1), Imu).attitude
+    after = last(robot.listen(1.0), Imu).attitude
+    turned = 2 * (math.atan2(after[3], after[0]) - math.atan2(before[3], before[0]))
+    assert turned == pytest.approx(0.5, abs=0.01)
+
+
+# Pace
+
+
+def test_it_keeps_100_hz(robot: Robot) -> None:
+    robot.arm()
+    packets = robot.converse(5.0, DOWN)
+    times = [imu.time for imu in all_of(packets, Imu)]
+    assert len(times) == pytest.approx(500, abs=1)
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    assert max(gaps) < 12_000  # µs
+    assert len(all_of(packets, Motor)) == pytest.approx(250, abs=1)
+    assert len(all_of(packets, Depth)) == pytest.approx(250, rel=0.15)
+    status = last(packets, Status)
+    assert status.missed_ticks == 0
+    assert status.loop_worst < 10_000
+    assert (status.frames_invalid, status.bytes_lost) == (0, 0)
+    assert robot.board.stats()["overruns"] == 0
+
+
+# Safety
+
+
+def test_start_is_refused_without_steady_traffic_or_with_another_epoch(robot: Robot) -> None:
+    hello = robot.greet()
+    robot.send(Start(epoch=hello.epoch))
+    assert not robot.status().flags & StatusFlag.ARMED
+    robot.converse(0.7)
+    robot.send(Start(epoch=hello.epoch + 1))
+    assert not robot.status().flags & StatusFlag.ARMED
+    robot.send(Start(epoch=hello.epoch))
+    assert robot.status().flags & StatusFlag.ARMED
+    refusals = [debug.text for debug in all_of(robot.heard, Debug) if "refused" in debug.text]
+    assert len(refusals) == 2
+
+
+def record_fins(robot: Robot, period: float = 0.01) -> list[FinMotion]:
+    fins: list[FinMotion] = []
+
+    def water(motion: FinMotion) -> Reading:
+        fins.append(motion)
+        return STILL_WATER
+
+    robot.board.attach(period, water)
+    return fins
+
+
+def test_the_fins_follow_a_command(robot: Robot) -> None:
+    robot.arm()
+    robot.converse(1.5, DOWN)
+    fins = record_fins(robot)
+    robot.converse(4.0, DOWN)
+    assert all(motion.powered for motion in fins)
+    for fin in range(4):
+        angles = [motion.angles[fin] for motion in fins]
+        # The thrust is down with the tips up; the amplitude is 1.6 rad from peak to peak.
+        middle = (max(angles) + min(angles)) / 2
+        assert middle == pytest.approx(-math.pi / 2, abs=0.15)
+        assert 1.3 < max(angles) - min(angles) < 1.7
+        assert frequency(angles, middle, 0.01) == pytest.approx(FLAPPING, rel=0.03)
+
+
+def frequency(values: list[float], middle: float, period: float) -> float:
+    """Hz, from the crossings of the middle upwards."""
+    rising = [i for i in range(1, len(values)) if values[i - 1] < middle <= values[i]]
+    return (len(rising) - 1) / ((rising[-1] - rising[0]) * period)
+
+
+def test_a_silent_host_leads_to_rest_and_then_to_disarming(robot: Robot) -> None:
+    robot.arm()
+    robot.converse(1.5, DOWN)
+    fins = record_fins(robot)
+    neutral = robot.until(lambda status: bool(status.flags & StatusFlag.NEUTRAL), limit=0.62)
+    # A Status comes every 100 ms, and the last command was up to 100 ms old.
+    assert neutral >= 0.25 - 0.1
+    disarmed = neutral + robot.until(lambda status: not status.flags & StatusFlag.ARMED, limit=1.0)
+    assert 0.9 <= disarmed <= 1.12
+    robot.listen(0.1)
+    resting = [motion for motion in fins[50:90] if max(map(abs, motion.speeds)) > 1.5]
+    assert not resting
+    assert fins[-1].drives == (0, 0, 0, 0)
+    assert not fins[-1].powered
+
+
+def test_stop_stops_within_a_tick(robot: Robot) -> None:
+    robot.arm()
+    robot.converse(1.5, DOWN)
+    robot.stop()
+    fins = record_fins(robot, 0.001)
+    robot.listen(0.3)
+    assert not any(motion.powered for motion in fins[5:])
+    assert fins[-1].speeds == pytest.approx((0, 0, 0, 0), abs=0.01)
+    assert not robot.status().flags & StatusFlag.ARMED
+
+
+def test_the_watchdog_brings_a_hung_board_back_disarmed(programs: Programs) -> None:
+    robot = programs.start("robot_hang")
+    robot.arm()
+    assert robot.board.stats()["watchdog_resets"] == 0
+    first_epoch = last(robot.heard, Status).epoch
+    silences = [0.0]
+    for _ in range(400):
+        packets = robot.converse(0.01, DOWN)
+        silences.append(0.0 if packets else silences[-1] + 0.01)
+        if all_of(packets, Hello):
+            break
+    assert 0.2 < max(silences) < 0.5
+    assert last(packets, Hello).epoch == first_epoch + 1
+    assert robot.board.stats()["watchdog_resets"] == 1
+    packets = robot.converse(0.3, DOWN)
+    status = last(packets, Status)
+    assert status.reset_cause == ResetCause.WATCHDOG
+    assert not status.flags & (StatusFlag.ARMED | StatusFlag.MOTOR_POWER)
+    assert not robot.board.fins().powered
+
+
+@pytest.mark.parametrize(
+    ("device", "fault"),
+    [
+        ("imu", SensorFault.IMU),
+        ("pressure", SensorFault.PRESSURE),
+        ("encoder0", SensorFault.FIN_FRONT_RIGHT),
+        ("encoder1", SensorFault.FIN_BACK_RIGHT),
+        ("encoder2", SensorFault.FIN_BACK_LEFT),
+        ("encoder3", SensorFault.FIN_FRONT_LEFT),
+    ],
+)
+def test_an_absent_device_shows_and_heals(robot: Robot, device: str, fault: SensorFault) -> None:
+    robot.board.fault(device, "absent")
+    assert last(robot.listen(0.4), Status).faults == fault
+    robot.board.fault(device, "none")
+    assert last(robot.listen(0.6), Status).faults == 0
+
+
+def test_an_absent_bridge_shows_while_it_has_power(robot: Robot) -> None:
+    robot.arm()
+    robot.board.fault("bridge2", "absent")
+    assert robot.status().faults == SensorFault.FIN_BACK_LEFT
+    robot.board.fault("bridge2", "none")
+    robot.converse(0.4)
+    assert robot.status().faults == 0
+
+
+def test_the_boot_counter_survives(programs: Programs, tmp_path: Path) -> None:
+    options = ("--eeprom", str(tmp_path / "eeprom"))
+    first = programs.start("robot", *options)
+    epoch = last(first.heard, Hello).epoch
+    first.rig.process.stop()
+    second = programs.start("robot", *options)
+    assert last(second.heard, Hello).epoch == epoch + 1

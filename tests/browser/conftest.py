@@ -1,0 +1,55 @@
+"""One running robot and one Chromium for all browser tests; both end with them.
+
+Playwright keeps an event loop running, which tests of other rooms could not stand beside their own.
+"""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.stack import Stack
+
+DESKTOP = {"width": 1440, "height": 900}
+PHONE = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="package")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="package")
+def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
+    with Stack(tmp_path_factory.mktemp("data")) as stack:
+        yield stack
+
+
+@pytest.fixture(params=[DESKTOP, PHONE], ids=["desktop", "phone"])
+def any_page(request: pytest.FixtureRequest, browser: Browser, stack: Stack) -> Iterator[Page]:
+    """The page at both sizes; what its code complains about fails the test."""
+    yield from _open(browser, stack, request.param)
+
+
+@pytest.fixture
+def page(browser: Browser, stack: Stack) -> Iterator[Page]:
+    """The page at desktop size; what its code complains about fails the test."""
+    yield from _open(browser, stack, DESKTOP)
+
+
+def _open(browser: Browser, stack: Stack, size: dict[str, int]) -> Iterator[Page]:
+    context = browser.new_context(viewport={"width": size["width"], "height": size["height"]})
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(stack.url)
+    yield page
+    context.close()
+    # The next test finds the robot as this one did.
+    stack.api.post("/robot/stop").raise_for_status()
+    stack.api.put("/robot/card", json={"colour": None}).raise_for_status()
+    assert complaints == []

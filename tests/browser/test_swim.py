@@ -1,0 +1,212 @@
+"""The main job, in a real browser on the real firmware: dive, see the card, follow, return, stop, export."""
+
+import csv
+import io
+import json
+import re
+import time
+import zipfile
+from collections.abc import Callable
+from datetime import UTC, datetime
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from robot_runtime.simulation.board import Board
+from tests.stack import Stack
+
+DIVE_MS = 30_000
+
+
+def depth(page: Page) -> float:
+    """The depth that the page shows, m."""
+    return float(page.locator(".reading", has_text="Depth").locator(".value").inner_text())
+
+
+def wait_for_depth(page: Page, low: float, high: float) -> None:
+    """Wait until the shown depth lies between these, m."""
+    page.wait_for_function(
+        """([low, high]) => {
+            const readings = [...document.querySelectorAll('.reading')];
+            const shown = readings.find((one) => one.textContent.includes('Depth'));
+            const depth = Number(shown?.querySelector('.value')?.textContent.replace('\u2212', '-'));
+            return depth >= low && depth <= high;
+        }""",
+        arg=[low, high],
+        timeout=DIVE_MS,
+    )
+
+
+def hold_to_arm(page: Page) -> None:
+    button = page.get_by_role("button", name="Hold to arm")
+    expect(button).to_be_enabled()
+    button.hover()
+    page.mouse.down()
+    expect(page.get_by_text("The fins may move")).to_be_visible()
+    page.mouse.up()
+
+
+def read_zip(data: bytes) -> dict[str, list[dict[str, str]]]:
+    archive = zipfile.ZipFile(io.BytesIO(data))
+    return {
+        name: list(csv.DictReader(io.StringIO(archive.read(name).decode())))
+        for name in archive.namelist()
+        if name.endswith(".csv")
+    }
+
+
+def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
+    page.get_by_role("button", name="Record", exact=True).click()
+    page.get_by_label("Name").fill("figure 14")
+    page.get_by_role("button", name="Start recording").click()
+    recording = page.get_by_role("button", name=re.compile("^REC"))
+    expect(recording).to_be_visible()
+
+    hold_to_arm(page)
+    wait_for_depth(page, 0.49, 0.51)
+    expect(page.get_by_text("set point 0.50 m", exact=True)).to_be_visible()
+
+    page.get_by_role("button", name="yellow").click()
+    expect(page.get_by_text("set point 1.00 m", exact=True)).to_be_visible()
+    wait_for_depth(page, 0.99, 1.01)
+    shown = []
+    for _ in range(20):
+        page.wait_for_timeout(100)  # so that the values compared are spread over two seconds
+        shown.append((datetime.now(UTC), depth(page)))
+
+    page.get_by_role("button", name="no card").click()
+    expect(page.get_by_text("set point 0.50 m", exact=True)).to_be_visible()
+    wait_for_depth(page, 0.49, 0.51)
+
+    expect(page.get_by_role("log").get_by_text("armed", exact=True)).to_be_visible()
+
+    page.get_by_role("button", name="STOP").click()
+    expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
+    wait_for_rest(page)
+
+    recording.click()
+    page.get_by_role("button", name="Stop recording").click()
+    page.get_by_role("link", name="Sessions").click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Export figure 14 as CSV").click()
+    path = tmp_path / "session.zip"
+    download.value.save_as(path)
+    check_export(path, shown)
+
+
+def wait_for_rest(page: Page) -> None:
+    """Wait until all four fins show the same angle for half a second."""
+    page.wait_for_function(
+        """() => {
+            const now = [...document.querySelectorAll('.angle')].map((one) => one.textContent).join();
+            if (now !== globalThis.fins) { globalThis.fins = now; globalThis.since = performance.now(); }
+            return now !== '' && performance.now() - globalThis.since > 500;
+        }""",
+        timeout=5_000,
+    )
+
+
+def check_export(path: Path, shown: list[tuple[datetime, float]]) -> None:
+    tables = read_zip(path.read_bytes())
+    session = json.loads(zipfile.ZipFile(path).read("session.json"))
+    assert session["name"] == "figure 14"
+    assert session["state"] == "complete"
+
+    depths = [(datetime.fromisoformat(row["utc"]), float(row["depth [m]"])) for row in tables["depth.csv"]]
+    for when, value in shown:
+        recent = [one for at, one in depths if -0.6 < (at - when).total_seconds() <= 0.0]
+        assert min(abs(one - value) for one in recent) <= 0.0051, (when, value)
+
+    set_points = [float(row["set_point [m]"]) for row in tables["control.csv"]]
+    steps = [b for a, b in pairwise(set_points) if a != b]
+    assert steps == [1.0, 0.5]
+    assert {-1.0, 1.0} <= {float(row["z"]) for row in tables["navigation.csv"]} <= {-1.0, 0.0, 1.0}
+    assert "armed" in {row["text"] for row in tables["debug.csv"]}
+    assert [float(tables["motor.csv"][-1][f"drive_{fin}"]) for fin in range(4)] == [0.0] * 4
+
+
+def test_escape_stops_from_anywhere(page: Page) -> None:
+    hold_to_arm(page)
+    page.get_by_role("link", name="System").click()
+    page.keyboard.press("Escape")
+    expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
+
+
+def test_both_sizes_show_what_matters(any_page: Page) -> None:
+    stop = any_page.get_by_role("button", name="STOP")
+    expect(stop).to_be_in_viewport(ratio=1)
+    box = stop.bounding_box()
+    assert box is not None
+    assert min(box["width"], box["height"]) >= 44
+    value = any_page.locator(".reading", has_text="Depth").locator(".value")
+    expect(value).to_have_text(re.compile(r"\d\.\d\d"))
+    wider = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+    assert any_page.evaluate(wider) == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        ('{"name": "pid", "gains": {"kp": 51}}', "between 0 and 50"),
+        ('{"name": "fuzzy"}', "no controller 'fuzzy'"),
+        ('{"name": "pid", "gains": {"kp": NaN}}', ""),
+        ('{"name": "pid", "gains": {"kq": 1}}', "no gain 'kq'"),
+    ],
+)
+def test_refused_controllers_are_told_in_words(stack: Stack, body: str, why: str) -> None:
+    before = stack.api.get("/robot").json()["controllers"]
+    answer = stack.api.put("/robot/controller", content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code in (409, 422)
+    assert why in answer.json()["detail"]
+    assert stack.api.get("/robot").json()["controllers"] == before
+
+
+def test_a_lost_board_is_named_and_comes_back(page: Page, stack: Stack) -> None:
+    expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
+    board = stack.child("build/board")
+    board.suspend()
+    try:
+        lost = page.get_by_label("Connection lost")
+        expect(lost).to_be_visible()
+        expect(lost).to_contain_text("Arduino")
+    finally:
+        board.resume()
+    expect(lost).to_be_hidden()
+    expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
+
+
+def test_a_reload_keeps_what_happened(page: Page) -> None:
+    hold_to_arm(page)
+    page.keyboard.press("Escape")
+    events = page.get_by_role("region", name="Events").get_by_role("listitem")
+    expect(events.nth(0)).to_contain_text("Stopped by the operator.")
+    expect(events.nth(1)).to_contain_text("Armed.")
+    told = events.count()
+    page.reload()
+    expect(events).to_have_count(told)
+    expect(page.get_by_role("log").get_by_text("armed", exact=True).first).to_be_visible()
+
+
+def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack) -> None:
+    wait_for_state(stack, lambda state: state["refusals"] == [])
+    stack.api.post("/robot/arm").raise_for_status()
+    epoch = stack.api.get("/robot").json()["epoch"]
+    with Board(stack.data / "run/board.sock") as board:
+        board.reset()
+    wait_for_state(stack, lambda state: not state["armed"] and state["epoch"] == epoch + 1)
+    wait_for_state(stack, lambda state: state["refusals"] == [])
+    # The chip wants half a second of steady traffic first, and says so where it refuses.
+    wait_for_state(stack, lambda _: stack.api.post("/robot/arm").status_code == 204)
+    wait_for_state(stack, lambda state: bool(state["armed"]))
+    stack.api.post("/robot/stop").raise_for_status()
+
+
+def wait_for_state(stack: Stack, holds: Callable[[dict[str, Any]], bool]) -> None:
+    """Wait until the robot's state is so."""
+    end = time.monotonic() + 10
+    while not holds(state := stack.api.get("/robot").json()):
+        assert time.monotonic() < end, state
+        time.sleep(0.05)

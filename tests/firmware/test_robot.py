@@ -1,0 +1,353 @@
+"""The robot as a whole: telemetry and its rates, devices that fail, surface, battery, LED, lines of text."""
+
+from collections import Counter
+from itertools import pairwise
+
+import pytest
+
+from robot_runtime.packets import (
+    Beacon,
+    Debug,
+    DebugLevel,
+    Depth,
+    Heartbeat,
+    Imu,
+    Motor,
+    Packet,
+    ResetCause,
+    SensorFault,
+    Start,
+    Status,
+    StatusFlag,
+    Stop,
+)
+from tests.firmware.robot import BRIDGES, IMU, PRESSURE, SURFACE, Robot, hello, navigation
+
+WATER = 9810.0
+"""Pa a metre."""
+LOW_COUNTS = 630
+
+
+def counts(packets: list[Packet]) -> Counter[str]:
+    return Counter(type(packet).__name__ for packet in packets)
+
+
+def test_telemetry_comes_at_its_rates(robot: Robot) -> None:
+    robot.run(1000)
+    came = counts(robot.run(10000))
+    assert came == {"Imu": 1000, "Depth": 500, "Motor": 500, "Beacon": 100, "Status": 100}
+
+
+def test_telemetry_fills_its_frames(robot: Robot) -> None:
+    """One frame a tick, and one more for the status."""
+    robot.run(1000)
+    robot.frames = 0
+    robot.run(10000)
+    assert robot.frames == 1100
+
+
+def test_telemetry_is_the_same_while_swimming(robot: Robot) -> None:
+    robot.arm()
+    robot.run(1)
+    robot.swim(1000, navigation(z=1))
+    robot.received.clear()
+    robot.swim(2000, navigation(z=1))
+    assert counts(robot.received) == {"Imu": 200, "Depth": 100, "Motor": 100, "Beacon": 20, "Status": 20}
+
+
+def test_stamps_are_the_boards_clock(robot: Robot) -> None:
+    robot.run(500)
+    times = [packet.time for packet in robot.run(1000) if isinstance(packet, Imu)]
+    assert all(later - earlier == 10_000 for earlier, later in pairwise(times))
+    assert times[-1] <= robot.now * 1000
+
+
+def test_devices_are_announced_to_the_first_host(robot: Robot) -> None:
+    robot.run(300)
+    assert robot.texts == []
+    robot.greet()
+    robot.run(300)
+    fins = [f"fin {fin}" for fin in ("front right", "back right", "back left", "front left")]
+    assert robot.texts == [
+        "boot 1, power on",
+        *(f"{name}: found" for name in ["IMU", "pressure sensor", *fins]),
+    ]
+    assert robot.status().faults == 0
+
+
+def test_imu_is_set_up_and_passed_on_raw(robot: Robot) -> None:
+    robot.imu.rate, robot.imu.force = (655, -1310, 65), (100, -200, -8190)
+    robot.run(500)
+    imu = robot.last(Imu)
+    assert [round(rate / 0.00026632423) for rate in imu.rate] == [655, -1310, 65]
+    assert [round(force / 0.0011971008) for force in imu.force] == [100, -200, -8190]
+    settings = robot.imu.registers
+    assert (settings[0x1A], settings[0x1B], settings[0x1C]) == (3, 1 << 3, 1 << 3)
+    assert settings[0x6B] & 0x40 == 0
+
+
+def test_attitude_is_level_at_rest_and_follows_a_turn(robot: Robot) -> None:
+    robot.run(500)
+    assert robot.last(Imu).attitude == pytest.approx((1, 0, 0, 0), abs=1e-3)
+    robot.imu.rate = (0, 0, round(30 * 65.5))
+    robot.run(1000)
+    w, x, y, z = robot.last(Imu).attitude
+    assert (w, x, y, z) == pytest.approx((0.9659, 0, 0, 0.2588), abs=3e-3)
+
+
+def test_depth_is_measured_from_the_surface_at_power_on(robot: Robot) -> None:
+    robot.run(1000)
+    assert robot.last(Depth).depth == pytest.approx(0, abs=2e-3)
+    assert robot.last(Depth).pressure == pytest.approx(SURFACE, abs=3)
+    for depth in (0.5, 1.2, 0.05, 12.0):
+        robot.pressure.show(SURFACE + depth * WATER)
+        robot.run(50)
+        assert robot.last(Depth).depth == pytest.approx(depth, abs=2e-3)
+    assert robot.last(Depth).temperature == pytest.approx(19.81)
+
+
+@pytest.mark.parametrize("cause", [ResetCause.WATCHDOG, ResetCause.EXTERNAL, ResetCause.BROWN_OUT])
+def test_surface_outlives_a_reset_under_water(robot: Robot, cause: ResetCause) -> None:
+    robot.run(1000)
+    robot.pressure.show(SURFACE + 2 * WATER)
+    robot.reset(cause)
+    assert any(isinstance(packet, Depth) for packet in robot.run(100))
+    assert robot.last(Depth).depth == pytest.approx(2, abs=2e-3)
+
+
+def test_surface_is_taken_anew_at_power_on(robot: Robot) -> None:
+    robot.run(1000)
+    robot.pressure.show(SURFACE - 2000)
+    robot.reset(ResetCause.POWER_ON)
+    robot.run(1000)
+    assert robot.last(Depth).depth == pytest.approx(0, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("address", "fault", "name"),
+    [(IMU, SensorFault.IMU, "IMU"), (PRESSURE, SensorFault.PRESSURE, "pressure sensor")],
+)
+def test_lost_sensor_is_reported_and_found_again(
+    robot: Robot, address: int, fault: SensorFault, name: str
+) -> None:
+    robot.greet()
+    robot.run(500)
+    robot.absent.add(address)
+    robot.run(300)
+    assert robot.status().faults == fault
+    assert robot.texts[-1] == f"{name}: no sensible answer"
+    silent = robot.run(1000)
+    assert counts(silent)["Imu" if address == IMU else "Depth"] == 0
+    assert counts(silent)["Motor"] == 50
+    robot.absent.clear()
+    robot.run(600)
+    assert robot.status().faults == 0
+    assert robot.texts[-1] == f"{name}: found"
+    assert counts(robot.run(1000))["Imu" if address == IMU else "Depth"] in (50, 100)
+
+
+def test_other_chip_at_the_imus_address_is_refused(robot: Robot) -> None:
+    robot.imu.identity = 0x70
+    robot.reset(ResetCause.EXTERNAL)
+    robot.run(300)
+    assert robot.status().faults == SensorFault.IMU
+
+
+def test_pressure_sensor_with_a_damaged_prom_is_refused(robot: Robot) -> None:
+    robot.pressure.prom[3] ^= 4
+    robot.reset(ResetCause.EXTERNAL)
+    robot.received.clear()
+    robot.run(1000)
+    assert robot.status().faults == SensorFault.PRESSURE
+    assert counts(robot.received)["Depth"] == 0
+
+
+def test_fin_whose_encoder_is_silent_is_not_driven(robot: Robot) -> None:
+    robot.arm()
+    robot.swim(500, navigation(x=1))
+    robot.blind.add(3)
+    robot.swim(500, navigation(x=1))
+    assert robot.status().faults == SensorFault.FIN_FRONT_LEFT
+    robot.received.clear()
+    robot.swim(1000, navigation(x=1))
+    drives = [packet.drive for packet in robot.received if isinstance(packet, Motor)]
+    assert {drive[3] for drive in drives} == {0}
+    assert max(abs(drive[0]) for drive in drives) > 10
+
+
+def test_silent_bridge_is_reported_while_powered(robot: Robot) -> None:
+    robot.absent.add(BRIDGES[1])
+    robot.run(300)
+    assert robot.status().faults == 0
+    robot.arm()
+    robot.beat(300)
+    assert robot.status().faults == SensorFault.FIN_BACK_RIGHT
+    robot.say(Stop())
+    robot.run(100)
+    assert robot.status().faults == 0
+
+
+def test_fault_that_a_bridge_reports_is_told_and_cleared(robot: Robot) -> None:
+    robot.arm()
+    robot.bridges[2].fault = 0b11
+    robot.beat(500)
+    assert robot.bridges[2].clears == 1
+    assert "fin back left: no sensible answer" in robot.texts
+    robot.beat(500)
+    assert robot.texts[-1] == "fin back left: found"
+    assert robot.status().faults == 0
+
+
+def test_motor_reports_drives_as_the_bridges_got_them(robot: Robot) -> None:
+    robot.arm()
+    robot.swim(1000, navigation(z=1))
+    for _ in range(30):
+        robot.say(navigation(z=1))
+        drives = tuple(bridge.drive for bridge in robot.bridges)
+        # What is heard now was said at the tick before.
+        if any(isinstance(packet, Motor) for packet in robot.run(10)):
+            assert robot.last(Motor).drive == drives
+            assert robot.last(Motor).angle == pytest.approx([motor.fin for motor in robot.motors], abs=0.15)
+    assert max(abs(drive) for drive in robot.last(Motor).drive) <= 40
+
+
+def test_beacons_are_passed_on(robot: Robot) -> None:
+    for right, left in ((True, False), (False, True), (False, False)):
+        robot.firmware.board_set_beacons(right, left)
+        robot.run(110)
+        assert (robot.last(Beacon).right, robot.last(Beacon).left) == (right, left)
+
+
+def test_battery_is_measured(robot: Robot) -> None:
+    robot.firmware.board_set_battery(757)
+    robot.run(300)
+    assert robot.last(Status).battery == pytest.approx(7.4, abs=0.01)
+
+
+def test_low_battery_for_20_s_turns_the_fins_down_and_disarms(robot: Robot) -> None:
+    robot.arm()
+    robot.firmware.board_set_battery(LOW_COUNTS)
+    robot.swim(19_900, navigation(x=1))
+    assert robot.texts[-1] == "armed"
+    robot.swim(400, navigation(x=1))
+    assert robot.lines[-1].text == "disarmed: battery is low"
+    assert robot.lines[-2].text == "battery at 6.15 V: fins down, disarmed"
+    assert robot.lines[-2].level == DebugLevel.ERROR
+    assert robot.power
+    robot.swim(1500, navigation(x=1))
+    assert not robot.power
+    assert [motor.fin for motor in robot.motors] == pytest.approx([1.57] * 4, abs=0.05)
+    assert robot.status().flags & (StatusFlag.BATTERY_LOW | StatusFlag.ARMED) == StatusFlag.BATTERY_LOW
+
+
+def test_stop_cuts_power_while_the_fins_turn_down(robot: Robot) -> None:
+    robot.arm()
+    robot.firmware.board_set_battery(LOW_COUNTS)
+    robot.swim(20_200, navigation(x=1))
+    assert robot.power
+    assert "disarmed: battery is low" in robot.texts
+    robot.say(Stop())
+    robot.run(1)
+    assert not robot.power
+    robot.run(300)
+    assert not robot.power
+
+
+def test_low_battery_forbids_arming_even_after_it_recovers(robot: Robot) -> None:
+    robot.firmware.board_set_battery(LOW_COUNTS)
+    robot.run(20_200)
+    assert not robot.power
+    robot.firmware.board_set_battery(700)
+    robot.greet()
+    robot.say(Start(epoch=robot.epoch))
+    robot.run(30)
+    assert robot.texts[-1] == "START refused: battery is low"
+    assert not robot.power
+
+
+def test_battery_that_dips_is_no_alarm(robot: Robot) -> None:
+    for _ in range(3):
+        robot.firmware.board_set_battery(LOW_COUNTS)
+        robot.run(15_000)
+        robot.firmware.board_set_battery(700)
+        robot.run(500)
+    assert not robot.status().flags & StatusFlag.BATTERY_LOW
+
+
+def test_battery_that_is_not_connected_is_no_alarm(robot: Robot) -> None:
+    robot.firmware.board_set_battery(3)
+    robot.run(25_000)
+    assert not robot.status().flags & StatusFlag.BATTERY_LOW
+
+
+def lit_share(robot: Robot) -> tuple[float, int]:
+    """The share of a second in which the LED is lit, and how often it goes on."""
+    seen = []
+    for _ in range(100):
+        robot.say(Heartbeat(time=0))
+        robot.run(10)
+        seen.append(bool(robot.firmware.board_led()))
+    return sum(seen) / 100, sum(
+        now and not before for before, now in zip(seen[-1:] + seen, seen, strict=False)
+    )
+
+
+def test_led_tells_disarmed_armed_and_fault(robot: Robot) -> None:
+    robot.run(500)
+    assert lit_share(robot) == (0.1, 1)
+    robot.arm()
+    assert lit_share(robot) == (1, 0)
+    robot.absent.add(IMU)
+    robot.run(50)
+    assert lit_share(robot) == (0.5, 5)
+
+
+def test_flood_of_lines_is_dropped_and_counted_and_blocks_nothing(robot: Robot) -> None:
+    robot.greet()
+    robot.received.clear()
+    for _ in range(100):
+        robot.say(*[Start(epoch=999)] * 15)
+        robot.run(10)
+    came = counts(robot.received)
+    assert came["Imu"] == 100
+    assert came["Debug"] > 50
+    status = robot.status()
+    refusals = sum(isinstance(packet, Debug) and "refused" in packet.text for packet in robot.received)
+    assert refusals + status.debug_lost == pytest.approx(1500, abs=10)
+    assert status.debug_lost > 0
+    assert not robot.power
+
+
+def test_flood_of_bytes_does_not_stop_the_ticks(robot: Robot) -> None:
+    robot.run(500)
+    robot.received.clear()
+    for _ in range(100):
+        robot.send(b"\x01\x02\0" * 80)
+        robot.run(10)
+    assert counts(robot.received)["Imu"] == 100
+    assert robot.status().missed_ticks == 0
+
+
+def test_flood_of_frames_is_taken_one_a_pass(robot: Robot) -> None:
+    """So that a chip that takes long for each still does its ticks; a pass here is a millisecond."""
+    robot.run(500)
+    robot.send(b"\x01\x02\0" * 1000)
+    start = robot.now
+    assert 0 < robot.status().frames_invalid <= robot.now - start
+
+
+def test_full_line_drops_whole_frames_and_no_line_uncounted(robot: Robot) -> None:
+    robot.greet()
+    robot.run(500)
+    robot.lines.clear()
+    for _ in range(300):
+        robot.say(*[hello()] * 6, Start(epoch=999))
+        robot.run(1)
+    assert robot.firmware.board_overwritten() == 0
+    for _ in range(300):
+        robot.beat(20, every=20)
+    lost = robot.status().debug_lost
+    assert lost > 0
+    assert len(robot.lines) + lost == 300
+    came = counts(robot.run(1000))
+    assert came == {"Imu": 100, "Depth": 50, "Motor": 50, "Beacon": 10, "Status": 10}

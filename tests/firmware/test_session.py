@@ -1,0 +1,142 @@
+"""The host's session and the firmware's link against each other, on a line that damages what it carries."""
+
+import ctypes
+import random
+from itertools import pairwise
+
+import pytest
+
+from robot_runtime.link.session import Session, Stage
+from robot_runtime.packets import Debug, Imu, ResetCause, Start, Status, StatusFlag
+from tests.firmware.robot import Robot
+from tests.runtime.link.line import Noise, Wire
+
+BAUD = 250_000
+STEP = 0.005
+NOISE = Noise(bits=5e-4, drops=0.05, doubles=0.1, inserts=0.05, bursts=0.05, delay=0.01)
+RESTARTS = 300
+
+
+class Pair:
+    """A session of the host's and the firmware on a board in memory, and what the host was told."""
+
+    def __init__(self, robot: Robot, seed: int) -> None:
+        self.robot = robot
+        self.chance = random.Random(seed)
+        self.lines: list[Debug] = []
+        self.statuses: list[Status] = []
+        self.imus = 0
+        self._room = ctypes.create_string_buffer(1 << 16)
+        self._host_epoch = 0
+        self.set_line(NOISE)
+        self.restart_host()
+
+    @property
+    def now(self) -> float:
+        return int(self.robot.firmware.board_now_us()) / 1e6
+
+    @property
+    def epoch(self) -> int:
+        return int(self.robot.firmware.board_epoch())
+
+    @property
+    def joined(self) -> bool:
+        board = self.session.board
+        established = self.session.stage is Stage.ESTABLISHED
+        return established and board is not None and board.epoch == self.epoch
+
+    def set_line(self, noise: Noise) -> None:
+        self._to_board = Wire(BAUD, noise, self.chance)
+        self._to_host = Wire(BAUD, noise, self.chance)
+
+    def restart_host(self) -> None:
+        self._host_epoch += 1
+        self.session = Session(self._host_epoch, BAUD)
+        self.lines.clear()
+
+    def restart_board(self) -> None:
+        self.robot.reset(ResetCause.WATCHDOG)
+        self.lines.clear()
+
+    def start(self, epoch: int) -> None:
+        self._to_board.send(self.session.send([Start(epoch=epoch)], self.now), self.now)
+
+    def run(self, seconds: float) -> None:
+        for _ in range(round(seconds / STEP)):
+            self._to_board.send(self.session.poll(self.now), self.now)
+            self.robot.send(self._to_board.receive(self.now))
+            self.robot.firmware.robot_run(self.robot._robot, round(STEP * 1000))
+            size = self.robot.firmware.board_take(self._room, len(self._room))
+            self._to_host.send(self._room.raw[:size], self.now)
+            for message in self.session.receive(self._to_host.receive(self.now), self.now):
+                if message.type == Debug.type:
+                    self.lines.append(Debug.from_bytes(message.payload))
+                elif message.type == Status.type:
+                    self.statuses.append(Status.from_bytes(message.payload))
+                self.imus += message.type == Imu.type
+
+    def check_lines(self) -> None:
+        """None came twice, and all in order. What is said at one moment differs in its words."""
+        assert all(earlier.time <= later.time for earlier, later in pairwise(self.lines))
+        assert len({(line.time, line.text) for line in self.lines}) == len(self.lines)
+
+
+@pytest.fixture
+def pair(robot: Robot) -> Pair:
+    return Pair(robot, 3)
+
+
+def test_on_a_bad_line_every_command_and_every_line_arrives_once_and_in_order(pair: Pair) -> None:
+    pair.run(3.0)
+    assert pair.joined
+    pair.lines.clear()
+    for number in range(200):
+        pair.start(1000 + number)
+        pair.run(0.1)
+    pair.set_line(Noise())
+    pair.run(2.0)
+    assert not pair.session.urgent
+    assert {line.text for line in pair.lines} == {"START refused: epoch of another boot"}
+    # Where the queue was full, the board says how many it could not keep.
+    assert len(pair.lines) + pair.statuses[-1].debug_lost == 200
+    assert pair.statuses[-1].debug_lost < 10
+    assert all(earlier.time <= later.time for earlier, later in pairwise(pair.lines))
+    statistics = pair.session.statistics()
+    assert statistics.frames_repeated > 10
+    assert statistics.frames_invalid > 100
+
+
+def test_every_gap_in_the_telemetry_is_counted(pair: Pair) -> None:
+    pair.set_line(Noise())
+    pair.run(1.0)
+    before, missed = pair.imus, pair.session.statistics().frames_missed
+    pair.set_line(Noise(bursts=0.3))
+    pair.run(10.0)
+    pair.set_line(Noise())
+    pair.run(0.1)
+    lost = pair.session.statistics().frames_missed - missed
+    # Each tick's frame carries an Imu, and the Status that comes ten times a second has one of its own.
+    assert 0 <= lost - (1010 - (pair.imus - before)) < 110
+    assert lost > 100
+
+
+def test_after_any_restart_nothing_comes_twice_and_nothing_is_armed(pair: Pair) -> None:
+    joins = 0
+    for restart in range(RESTARTS):
+        pair.run(pair.chance.uniform(0.0, 0.6))
+        if pair.joined:
+            joins += 1
+            pair.start(pair.epoch)
+            pair.run(pair.chance.uniform(0.0, 0.05))
+        pair.check_lines()
+        pair.chance.choice([pair.restart_host, pair.restart_board])()
+        if restart % 10 == 0:
+            pair.set_line(Noise())
+            pair.run(2.0)
+            assert pair.joined
+            assert not pair.statuses[-1].flags & StatusFlag.ARMED
+            pair.start(9999)
+            pair.run(0.2)
+            assert pair.lines[-1].text == "START refused: epoch of another boot"
+            pair.set_line(NOISE)
+    assert joins > RESTARTS // 10

@@ -1,0 +1,97 @@
+"""Either end of the serial line in the hand of a test: it says what it is told, when it is told."""
+
+from collections.abc import Sequence
+
+from robot_runtime.link.channel import Channel
+from robot_runtime.link.framing import OPEN, Decoder, build
+from robot_runtime.link.session import session_key
+from robot_runtime.packets import Hello, Packet, Stop, encode
+
+_NO_PACE = 10**30
+"""baud; a line on which everything goes out at once."""
+
+
+class LineEnd:
+    """Greets, delivers and acknowledges as the real ends do, but sends nothing of its own accord.
+
+    What it hears is acknowledged by what it says next.
+    """
+
+    def __init__(self, is_host: bool) -> None:
+        self.frames = 0
+        self._is_host = is_host
+        self._decoder = Decoder()
+        self._channel = Channel(_NO_PACE, 4096)
+        self._mine: int | None = None
+        self._theirs: int | None = None
+        self._asked = False
+
+    @property
+    def invalid(self) -> int:
+        """Frames thrown away."""
+        return self._decoder.invalid
+
+    @property
+    def joined(self) -> bool:
+        """Whether it knows of the other end's session."""
+        return self._channel.key != OPEN
+
+    @property
+    def urgent(self) -> bool:
+        """Whether something is to be acknowledged, by either end."""
+        return self._channel.urgent
+
+    def say(self, packets: Sequence[Packet], now: float) -> bytes:
+        """The bytes that carry these packets: HELLO and STOP in open frames, the others in the session."""
+        opened = [packet for packet in packets if isinstance(packet, Hello | Stop)]
+        data = build(opened, 0, 0) if opened else b""
+        for packet in packets:
+            if isinstance(packet, Hello):
+                self._mine, self._asked = packet.epoch, True
+                if not self._is_host:
+                    self._join()
+            elif packet.reliable:
+                self._channel.queue(encode(packet))
+            elif not isinstance(packet, Stop):
+                self._channel.offer(encode(packet), now)
+        return data + (self.poll(now) if len(opened) < len(packets) else b"")
+
+    def poll(self, now: float) -> bytes:
+        """What is due by itself: repetitions and acknowledgements."""
+        data = b""
+        while frame := self._channel.poll(now):
+            data += frame
+        return data
+
+    def hear(self, data: bytes, now: float) -> list[tuple[int, bytes]]:
+        """The messages, by type and payload, that these bytes let through."""
+        heard: list[tuple[int, bytes]] = []
+        for frame in self._decoder.feed(data):
+            self.frames += 1
+            if frame.open and frame.messages[0][0] in (Hello.type, Stop.type):
+                heard += frame.messages
+                for type_, payload in frame.messages:
+                    if type_ == Hello.type:
+                        self._see(Hello.from_bytes(payload))
+            elif frame.open == (self._channel.key == OPEN):
+                heard += self._channel.receive(frame, now)
+        return heard
+
+    def _see(self, hello: Hello) -> None:
+        another = hello.epoch != self._theirs
+        self._theirs = hello.epoch
+        if self._asked or not self._is_host:
+            self._join()
+        elif another:
+            self._use(OPEN)  # it restarted, and waits for a greeting
+        self._asked = False
+
+    def _join(self) -> None:
+        if self._mine is not None and self._theirs is not None:
+            host, board = (self._mine, self._theirs) if self._is_host else (self._theirs, self._mine)
+            self._use(session_key(host, board))
+
+    def _use(self, key: int) -> None:
+        if key != self._channel.key:
+            self._decoder.key = key
+            self._channel = Channel(_NO_PACE, 4096, key)

@@ -1,0 +1,126 @@
+"""The control node in simulated time: set points from vision, commands only while armed."""
+
+import pytest
+
+from robot_runtime.bus import Bus
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.node import ControlNode
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Depth, Navigation
+from robot_runtime.samples import Control, Detection, Document, Event
+
+
+class Rig:
+    """A control node with its bus, clock and everything it sent."""
+
+    def __init__(self) -> None:
+        self.clock, self.bus = SimulatedClock(100.0), Bus()
+        self.commands: list[Navigation] = []
+        self.ticks: list[Control] = []
+        self.events: list[str] = []
+        self.node = ControlNode(self.bus, self.clock, self.commands.append)
+        self.node.colour = "yellow"
+        self.bus.on_row(
+            "control", lambda _topic, _time, record: self.ticks.append(Control.from_bytes(record))
+        )
+        self.bus.on_document("event", self._event)
+
+    def _event(self, _: str, document: Document) -> None:
+        assert isinstance(document, Event)
+        self.events.append(document.text)
+
+    def depth(self, metres: float) -> None:
+        record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
+        self.bus.publish_row("depth", self.clock.now(), record.to_bytes())
+
+    def see(self, colour: str | None) -> None:
+        now = self.clock.now()
+        seen = Detection(time=now, taken=now, colour=colour, box=None, area=0.1, processing=0.001)
+        self.bus.publish_document("detection", seen)
+
+    def tick(self, armed: bool = True) -> None:
+        self.clock.forward(0.1)
+        self.node.tick(armed)
+
+
+@pytest.fixture
+def rig() -> Rig:
+    return Rig()
+
+
+def test_nothing_is_sent_before_a_depth_came(rig: Rig) -> None:
+    rig.tick()
+    assert rig.commands == []
+    assert rig.ticks == []
+
+
+def test_commands_go_out_only_while_armed(rig: Rig) -> None:
+    rig.depth(0.2)
+    rig.tick(armed=False)
+    assert rig.commands == []
+    assert (rig.ticks[0].output, rig.ticks[0].error) == (0.0, pytest.approx(0.3))
+    rig.tick()
+    assert [command.z for command in rig.commands] == [1.0]
+    assert rig.ticks[1].latency == pytest.approx(0.2)
+
+
+def test_the_wanted_colour_changes_the_set_point_and_its_loss_changes_it_back(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.see("yellow")
+    rig.tick()
+    rig.see(None)
+    rig.tick()
+    assert [tick.set_point for tick in rig.ticks] == [1.0, 0.5]
+    assert rig.events == ["Set point 1.00 m: yellow is seen.", "Set point 0.50 m."]
+
+
+def test_another_colour_changes_nothing(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.see("red")
+    rig.tick()
+    assert rig.ticks[0].set_point == 0.5
+
+
+def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.see("yellow")
+    set_points = []
+    for _ in range(12):
+        rig.tick()
+        set_points.append(rig.ticks[-1].set_point)
+    assert set_points == [1.0] * 10 + [0.5] * 2
+
+
+def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
+    rig.node.choose("pid", {"kp": 0.0, "ki": 1.0, "kd": 0.0})
+    rig.depth(0.0)
+    for armed in (True, True, True, True, False, True):
+        rig.tick(armed)
+    outputs = [command.z for command in rig.commands]
+    assert outputs[3] > outputs[2] > outputs[1] == 0
+    assert outputs[4] == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "gains", "why"),
+    [
+        ("fuzzy", {}, "no controller 'fuzzy'; there are bang_bang"),
+        ("pid", {"kp": float("nan")}, "kp is nan"),
+        ("pid", {"kp": 1e9}, "between 0 and 50"),
+    ],
+)
+def test_bad_choices_are_refused_and_the_old_one_stays(
+    rig: Rig, name: str, gains: dict[str, float], why: str
+) -> None:
+    before = rig.node.controller
+    with pytest.raises(Refused, match=why):
+        rig.node.choose(name, gains)
+    assert rig.node.controller is before
+
+
+@pytest.mark.parametrize("depth", [-0.1, 10.1, float("nan"), float("inf")])
+def test_set_points_out_of_range_are_refused(rig: Rig, depth: float) -> None:
+    for pair in ((depth, 1.0), (0.5, depth)):
+        with pytest.raises(Refused, match="not between 0 and 10"):
+            rig.node.set_points(*pair)
+    assert (rig.node.set_point_default, rig.node.set_point_detected) == (0.5, 1.0)

@@ -1,0 +1,175 @@
+"""Arming and disarming in simulated time, with a line to the board that the test holds."""
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.supervisor import DEPTH_STALE, Supervisor
+from robot_runtime.errors import Refused
+from robot_runtime.packets import (
+    DEFINITIONS_HASH,
+    Hello,
+    Packet,
+    SensorFault,
+    Start,
+    Status,
+    StatusFlag,
+    Stop,
+)
+from robot_runtime.samples import Event
+
+
+class Board:
+    """A board that does as it is told, unless the test says otherwise."""
+
+    def __init__(self) -> None:
+        self.connected = True
+        self.text = "connected"
+        self.board: Hello | None = Hello(definitions=DEFINITIONS_HASH, epoch=7, credit=64)
+        self.sent: list[Packet] = []
+        self.obeys = True
+        self.flags = 0
+        self.faults = 0
+        self.epoch = 7
+
+    def send(self, *packets: Packet) -> bool:
+        self.sent += packets
+        return self.connected
+
+
+class Rig:
+    """A supervisor, its board and what it told."""
+
+    def __init__(self) -> None:
+        self.clock, self.board = SimulatedClock(100.0), Board()
+        self.events: list[Event] = []
+        self.supervisor = Supervisor(self.clock, self.board, self.events.append)
+        self.board.send = self._send  # type: ignore[method-assign]
+
+    def _send(self, *packets: Packet) -> bool:
+        self.board.sent += packets
+        for packet in packets:
+            if isinstance(packet, Start) and self.board.obeys:
+                self.board.flags |= StatusFlag.ARMED
+            if isinstance(packet, Stop):
+                self.board.flags &= ~StatusFlag.ARMED
+            self.report()
+        return self.board.connected
+
+    def report(self) -> None:
+        status = Status(
+            time=0,
+            epoch=self.board.epoch,
+            flags=self.board.flags,
+            faults=self.board.faults,
+            reset_cause=1,
+            battery=7.4,
+            loop_worst=0,
+            missed_ticks=0,
+            frames_invalid=0,
+            bytes_lost=0,
+            debug_lost=0,
+            stack_free=500,
+        )
+        self.supervisor.see_status(status)
+
+    def ready(self) -> None:
+        self.report()
+        self.supervisor.see_depth()
+
+
+@pytest.fixture
+def rig() -> Rig:
+    rig = Rig()
+    rig.ready()
+    return rig
+
+
+def test_arms_when_everything_is_well(rig: Rig) -> None:
+    assert rig.supervisor.refusals() == []
+    rig.supervisor.arm()
+    assert rig.supervisor.armed
+    assert rig.supervisor.mode == "automatic"
+    assert rig.board.sent == [Start(epoch=7)]
+    assert [event.kind for event in rig.events] == ["armed"]
+
+
+def test_every_reason_against_arming_is_told(rig: Rig) -> None:
+    rig.board.faults = SensorFault.IMU | SensorFault.FIN_BACK_LEFT
+    rig.board.flags = StatusFlag.BATTERY_LOW
+    rig.report()
+    rig.clock.forward(DEPTH_STALE)
+    rig.report()
+    rig.clock.forward(0.01)
+    with pytest.raises(Refused) as refusal:
+        rig.supervisor.arm()
+    for word in ("IMU", "back left fin", "fresh depth", "battery is low"):
+        assert word in str(refusal.value)
+    assert rig.board.sent == []
+
+
+def test_no_arming_without_a_connection_or_a_word_from_the_board(rig: Rig) -> None:
+    rig.board.connected, rig.board.text = False, "the port does not exist"
+    assert "the port does not exist" in rig.supervisor.refusals()[0]
+    rig.board.connected = True
+    rig.clock.forward(0.6)
+    assert "says nothing" in rig.supervisor.refusals()[0]
+
+
+def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> None:
+    rig.board.obeys = False
+    with pytest.raises(Refused, match="did not arm"):
+        rig.supervisor.arm()
+    assert isinstance(rig.board.sent[-1], Stop)
+    assert not rig.supervisor.armed
+
+
+def test_stop_disarms_at_once_and_again_and_again(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.supervisor.stop("Stopped.")
+    rig.supervisor.stop("Stopped.")
+    assert not rig.supervisor.armed
+    assert [type(packet) for packet in rig.board.sent[1:]] == [Stop, Stop]
+    assert [event.kind for event in rig.events] == ["armed", "disarmed"]
+
+
+def test_stop_is_repeated_while_the_board_stays_armed(rig: Rig) -> None:
+    rig.board.flags = StatusFlag.ARMED
+    rig.report()
+    rig.supervisor.tick()
+    assert rig.board.sent == [Stop()]
+    rig.supervisor.tick()
+    assert rig.board.sent == [Stop()]
+
+
+def test_a_lost_connection_disarms_with_an_alarm(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.board.connected, rig.board.text = False, "the port went away"
+    rig.supervisor.tick()
+    assert not rig.supervisor.armed
+    assert (rig.events[-1].severity, rig.events[-1].kind) == ("alarm", "disarmed")
+    assert "the port went away" in rig.events[-1].text
+
+
+def test_a_stale_depth_stops_the_robot(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.clock.forward(DEPTH_STALE)
+    rig.supervisor.tick()
+    assert rig.supervisor.armed
+    rig.clock.forward(0.01)
+    rig.supervisor.tick()
+    assert not rig.supervisor.armed
+    assert isinstance(rig.board.sent[-1], Stop)
+    assert "depth" in rig.events[-1].text
+
+
+def test_a_board_that_restarts_or_disarms_itself_is_noticed(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.board.epoch = 8
+    rig.board.flags = 0
+    rig.report()
+    assert "restarted" in rig.events[-1].text
+    rig.supervisor.arm()
+    rig.board.flags = 0
+    rig.report()
+    assert "disarmed itself" in rig.events[-1].text
+    assert not rig.supervisor.armed

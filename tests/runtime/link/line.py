@@ -1,0 +1,158 @@
+"""A serial line in simulated time, which does to bytes what bad lines do, and two channels at its ends."""
+
+import random
+from dataclasses import dataclass
+from math import log
+
+from robot_runtime.link.channel import Channel
+from robot_runtime.link.framing import Decoder
+from robot_runtime.packets import Acknowledge, Packet
+
+KEY = 0x0102_0304
+_SHORTEST_STEP = 1e-6
+MESSAGES = 20_000
+
+
+class Layout:
+    """How long a payload is, as far as the decoder needs it."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+
+
+def packet_of(type_: int, size: int) -> type[Packet]:
+    """A reliable packet for tests, of that many bytes."""
+    attributes = {"type": type_, "reliable": True, "layout": Layout(size), "tail": None, "wires": {}}
+    return type(f"Payload{size}", (Packet,), attributes)
+
+
+PAYLOADS = {size: packet_of(0x70 + place, size) for place, size in enumerate((2, 6, 18))}
+PACKETS: dict[int, type[Packet]] = {cls.type: cls for cls in PAYLOADS.values()}
+PACKETS[Acknowledge.type] = Acknowledge
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Shares of bits that flip and of bytes that vanish, come twice, come from nowhere or begin a burst."""
+
+    bits: float = 0.0
+    drops: float = 0.0
+    doubles: float = 0.0
+    inserts: float = 0.0
+    bursts: float = 0.0
+    delay: float = 0.0
+    """s that any byte may be late, without overtaking."""
+    seed: int = 1
+
+
+class Wire:
+    """One direction: frames go in, and bytes come out when their time has come."""
+
+    def __init__(self, baud: int, noise: Noise, chance: random.Random) -> None:
+        self.sent = 0
+        self._byte_time = 10 / baud
+        self._noise = noise
+        self._chance = chance
+        self._free = 0.0
+        self._arrivals: list[tuple[float, bytes]] = []
+
+    def send(self, frame: bytes, now: float) -> None:
+        """Put a frame on the line behind whatever is on it; nothing is no frame."""
+        if not frame:
+            return
+        self._free = max(self._free, now) + len(frame) * self._byte_time
+        self.sent += len(frame)
+        late = self._chance.uniform(0.0, self._noise.delay)
+        arrival = max(self._free + late, self._arrivals[-1][0] if self._arrivals else 0.0)
+        noise = self._noise
+        if noise.doubles and self._chance.random() < noise.doubles:
+            frame = frame + frame
+        if noise.drops and self._chance.random() < noise.drops:
+            frame = frame[:-1]
+        if noise.inserts and self._chance.random() < noise.inserts:
+            at = self._chance.randrange(len(frame))
+            frame = frame[:at] + self._chance.randbytes(1) + frame[at:]
+        if noise.bursts and self._chance.random() < noise.bursts:
+            frame = self._chance.randbytes(len(frame))
+        self._arrivals.append((arrival, self._flip(frame)))
+
+    def receive(self, now: float) -> bytes:
+        """What has arrived by now."""
+        data = b""
+        while self._arrivals and self._arrivals[0][0] <= now:
+            data += self._arrivals.pop(0)[1]
+        return data
+
+    def due(self) -> float:
+        """When the next bytes arrive."""
+        return self._arrivals[0][0] if self._arrivals else float("inf")
+
+    def _flip(self, frame: bytes) -> bytes:
+        """Bit errors at exponential distances: as many as a share of all bits makes."""
+        if not self._noise.bits:
+            return frame
+        damaged = bytearray(frame)
+        at = 0.0
+        while True:
+            at += -log(1.0 - self._chance.random()) / self._noise.bits
+            if at >= 8 * len(damaged):
+                return bytes(damaged)
+            damaged[int(at) // 8] ^= 1 << int(at) % 8
+
+
+class End:
+    """One end: a channel that has always something to say, or what it was given."""
+
+    def __init__(self, baud: int, credit: int) -> None:
+        self.channel = Channel(baud, credit, KEY, packets=PACKETS)
+        self.heard: list[tuple[int, bytes]] = []
+        self.decoder = Decoder(PACKETS)
+        self.decoder.key = KEY
+
+    def take(self, data: bytes, now: float) -> None:
+        """Take in what the line brought."""
+        for frame in self.decoder.feed(data):
+            if not frame.open:
+                self.heard += self.channel.receive(frame, now)
+
+
+class Line:
+    """Two ends and a wire each way; time goes from one event to the next."""
+
+    def __init__(self, baud: int, noise: Noise | None = None, credit: int = 4096) -> None:
+        noise = noise or Noise()
+        chance = random.Random(noise.seed)
+        self.now = 0.0
+        self.ends = (End(baud, credit), End(baud, credit))
+        self.wires = (Wire(baud, noise, chance), Wire(baud, noise, chance))
+
+    def run(self, until: float) -> None:
+        """Let time pass."""
+        while self.now < until:
+            for end, out, into in zip(self.ends, self.wires, reversed(self.wires), strict=True):
+                end.take(into.receive(self.now), self.now)
+                while frame := end.channel.poll(self.now):
+                    out.send(frame, self.now)
+            due = min(*(end.channel.due() for end in self.ends), *(wire.due() for wire in self.wires))
+            self.now = min(max(due, self.now + _SHORTEST_STEP), until)
+
+
+def numbered(size: int, count: int) -> list[bytes]:
+    """Messages of that payload that differ, zeros among their bytes."""
+    head = bytes([PAYLOADS[size].type])
+    return [head + number.to_bytes(2, "big") + bytes(range(size - 2)) for number in range(count)]
+
+
+def goodput(baud: int, size: int, bit_errors: float = 0.0) -> float:
+    """Share of baud/10 that the slower direction carries while both have always something to say."""
+    line = Line(baud, Noise(bits=bit_errors))
+    messages = numbered(size, MESSAGES)
+    for end in line.ends:
+        for message in messages:
+            end.channel.queue(message)
+    seconds = 600 * 64 * 10 / baud
+    line.run(seconds)
+    for end in line.ends:
+        assert end.heard == [(one[0], one[1:]) for one in messages[: len(end.heard)]]
+        assert len(end.heard) < MESSAGES
+    return min(len(end.heard) for end in line.ends) * size / (seconds * baud / 10)

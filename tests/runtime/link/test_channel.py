@@ -1,0 +1,100 @@
+"""Two channels against each other on a simulated line: how much they carry, and that they lose nothing."""
+
+from itertools import pairwise
+
+import pytest
+
+from robot_runtime.link.channel import WINDOW, Channel
+from robot_runtime.link.framing import Decoder
+from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
+
+
+@pytest.mark.parametrize("baud", [1200, 9600, 115_200, 250_000])
+@pytest.mark.parametrize(("size", "goal"), [(6, 0.70), (18, 0.80)])
+def test_both_ways_at_once_the_line_is_well_used(baud: int, size: int, goal: float) -> None:
+    assert goodput(baud, size) >= goal
+
+
+@pytest.mark.parametrize(("bit_errors", "goal"), [(1e-4, 0.70), (1e-3, 0.40)])
+def test_noise_costs_only_what_it_destroys(bit_errors: float, goal: float) -> None:
+    assert goodput(115_200, 18, bit_errors) >= goal
+
+
+@pytest.mark.parametrize("credit", [1, 64, 255, 4096])
+@pytest.mark.parametrize(
+    "noise",
+    [
+        Noise(bits=2e-3),
+        Noise(drops=0.2),
+        Noise(doubles=0.3),
+        Noise(inserts=0.2),
+        Noise(bursts=0.2),
+        Noise(delay=0.05),
+        Noise(bits=1e-3, drops=0.05, doubles=0.1, inserts=0.05, bursts=0.05, delay=0.02),
+    ],
+    ids=["bits", "drops", "doubles", "inserts", "bursts", "delay", "all"],
+)
+def test_whatever_the_line_does_everything_arrives_once_and_in_order(noise: Noise, credit: int) -> None:
+    line = Line(115_200, noise, credit)
+    given = [numbered(18, 300), numbered(6, 500)]
+    for end, messages in zip(line.ends, given, strict=True):
+        for message in messages:
+            end.channel.queue(message)
+    line.run(60.0)
+    for end, messages in zip(line.ends, reversed(given), strict=True):
+        assert end.heard == [(one[0], one[1:]) for one in messages]
+        assert not end.channel.urgent
+
+
+def test_a_quiet_good_line_repeats_nothing() -> None:
+    line = Line(115_200)
+    for number in range(100):
+        for end in line.ends:
+            end.channel.queue(numbered(6, 100)[number])
+        line.run(0.05 * (number + 1))
+    for end in line.ends:
+        assert len(end.heard) == 100
+        assert (end.channel.counters.frames_repeated, end.channel.counters.frames_duplicate) == (0, 0)
+
+
+def test_a_dead_line_gives_nothing_up_and_is_asked_again_and_again() -> None:
+    channel = Channel(115_200, 4096, KEY, packets=PACKETS)
+    channel.queue(numbered(6, 1)[0])
+    sent = [step * 0.01 for step in range(6000) if channel.poll(step * 0.01)]
+    waits = [later - earlier for earlier, later in pairwise(sent)]
+    assert len(sent) > 500
+    assert max(waits) <= 0.12
+
+
+def test_no_more_than_the_window_and_the_credit_are_in_flight() -> None:
+    for credit, most in ((4096, WINDOW), (255, 3), (64, 1), (1, 1)):
+        channel = Channel(10**9, credit, KEY, packets=PACKETS)
+        for message in numbered(18, 100):
+            channel.queue(message)
+        frames = 0
+        for step in range(1000):
+            frames += bool(channel.poll(step * 1e-5))
+        assert frames == most
+
+
+def test_the_timeout_follows_the_round_trip_and_is_capped() -> None:
+    line = Line(115_200, Noise(delay=0.01))
+    for step in range(200):
+        line.ends[0].channel.queue(numbered(6, 200)[step])
+        line.run(0.1 * (step + 1))
+    trip = line.ends[0].channel.round_trip
+    assert 0.005 < trip.mean < 0.03
+    assert trip.mean < line.ends[0].channel.timeout() <= 0.1
+
+
+def test_a_message_that_is_replaced_never_arrives() -> None:
+    line = Line(115_200)
+    channel = line.ends[0].channel
+    old, new, other = numbered(6, 3)
+    for message in (old, other, old):
+        channel.queue(message)
+    lost = channel.poll(0.0)
+    assert list(Decoder(PACKETS).feed(lost)) == []  # of another session: it stands for a lost one
+    channel.replace(old, new)
+    line.run(1.0)
+    assert [payload for _, payload in line.ends[1].heard] == [new[1:], other[1:], new[1:]]

@@ -1,0 +1,149 @@
+"""The connection over a real pseudo-terminal, with the board's end in the test's hand."""
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.link.connection import Connection
+from robot_runtime.link.framing import build
+from robot_runtime.link.port import Port, PortError
+from robot_runtime.link.session import Message
+from robot_runtime.packets import Debug, Heartbeat, Hello, Stop
+from tests.runtime.board_end import DEADLINE, BoardEnd, hello
+
+
+class Host:
+    """A connection and what it reported."""
+
+    def __init__(self, path: Path) -> None:
+        self.changes = 0
+        self.messages: list[Message] = []
+        self._changed = threading.Condition()
+        self.connection = Connection(str(path), 250_000, SteadyClock(), 1, self._take, self._change)
+
+    def wait(self, condition: Callable[[], bool]) -> None:
+        with self._changed:
+            assert self._changed.wait_for(condition, DEADLINE), self.connection.text
+
+    def _change(self) -> None:
+        self.changes += 1
+        self._wake()
+
+    def _take(self, messages: list[Message]) -> None:
+        self.messages += messages
+        self._wake()
+
+    def _wake(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "board.tty"
+
+
+@pytest.fixture
+def host(path: Path) -> Iterator[Host]:
+    host = Host(path)
+    host.connection.start()
+    yield host
+    host.connection.close()
+
+
+def connect(board: BoardEnd, host: Host) -> None:
+    for _ in range(2):
+        board.hear(Hello.type)
+        board.say(hello())
+    host.wait(lambda: host.connection.connected)
+
+
+def test_waits_for_a_port_and_says_so(host: Host, path: Path) -> None:
+    host.wait(lambda: "does not exist" in host.connection.text)
+    assert not host.connection.send(Stop())
+    connect(BoardEnd(path), host)
+    assert host.connection.text == "connected"
+
+
+def test_packets_pass_both_ways(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    assert host.connection.send(Stop())
+    board.hear(Stop.type)
+    board.say(Debug(time=5, level=1, text="dive"))
+    host.wait(lambda: any(message.type == Debug.type for message in host.messages))
+    assert host.connection.statistics().frames_received == 3
+
+
+def test_a_board_that_pauses_keeps_its_port(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    changes = host.changes
+    for _ in range(4):
+        board.hear(Heartbeat.type)
+    assert host.connection.connected
+    assert host.changes == changes
+
+
+def test_a_port_that_vanishes_and_returns_is_taken_up_again(host: Host, path: Path) -> None:
+    first = BoardEnd(path)
+    connect(first, host)
+    first.vanish()
+    host.wait(lambda: not host.connection.connected)
+    second = BoardEnd(path)
+    connect(second, host)
+    second.say(Debug(time=5, level=1, text="back"))
+    host.wait(lambda: any(message.payload.endswith(b"back") for message in host.messages))
+
+
+def test_the_last_frames_are_logged_when_the_port_vanishes(
+    host: Host, path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    caplog.set_level("INFO")
+    board.say(Debug(time=5, level=1, text="farewell"))
+    host.wait(lambda: any(message.type == Debug.type for message in host.messages))
+    board.vanish()
+    host.wait(lambda: not host.connection.connected)
+    (dump,) = [record.getMessage() for record in caplog.records if "last frames" in record.getMessage()]
+    assert b"farewell".hex() in dump
+    assert " -> " in dump
+
+
+def test_a_line_of_text_is_acknowledged_soon(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    board.say(Debug(time=5, level=1, text="heard?"))
+    board.hear_until(lambda: not board.waiting)
+    assert [message.payload[6:] for message in host.messages if message.type == Debug.type] == [b"heard?"]
+
+
+def test_garbage_on_the_line_is_counted_and_survived(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, host)
+    os.write(
+        board.master,
+        b"\x07garbage\x00" + bytes([0xFF]) * 300 + b"\x00" + build([hello()], 1, 0)[:-3] + b"\x00",
+    )
+    board.say(Debug(time=5, level=1, text="still here"))
+    host.wait(lambda: any(message.payload.endswith(b"still here") for message in host.messages))
+    assert host.connection.statistics().frames_invalid == 3
+
+
+def test_other_definitions_are_refused_in_words(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    board.hear(Hello.type)
+    board.say(hello(definitions=0x1234ABCD))
+    host.wait(lambda: "1234abcd" in host.connection.text and "make firmware" in host.connection.text)
+    assert not host.connection.connected
+
+
+def test_a_port_in_use_is_named(path: Path) -> None:
+    BoardEnd(path)
+    with Port(str(path), 115_200), pytest.raises(PortError, match="in use by another program"):
+        Port(str(path), 115_200)

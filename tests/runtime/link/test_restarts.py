@@ -1,0 +1,171 @@
+"""Restarts of either side on a bad line, in simulated time: nothing twice, nothing out of order or lost."""
+
+import random
+from itertools import pairwise
+
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+
+from robot_runtime.link.session import Session, Stage
+from robot_runtime.packets import DEFINITIONS_HASH, Beacon, Debug, Hello, Packet, Start, decode
+from tests.line_end import LineEnd
+from tests.runtime.link.line import Noise, Wire
+
+BAUD = 115_200
+STEP = 0.004
+BEACON = 0.05
+NOISE = Noise(bits=1e-3, drops=0.05, doubles=0.1, inserts=0.05, bursts=0.05, delay=0.01)
+RESTARTS = 1000
+
+
+class World:
+    """A host and a board; each sends the other numbers, and keeps those that it was sent."""
+
+    def __init__(self, seed: int) -> None:
+        self.chance = random.Random(seed)
+        self.now = 0.0
+        self.number = 0
+        self.at_board: list[int] = []
+        self.at_host: list[int] = []
+        self.owed_to_board: list[int] = []
+        self.owed_to_host: list[int] = []
+        self._host_epoch = 1
+        self._board_epoch = 0
+        self._set_line(NOISE)
+        self._beacon_at = 0.0
+        self.session = Session(self._host_epoch, BAUD)
+        self.restart_board()
+
+    @property
+    def joined(self) -> bool:
+        """Whether both know of each other, so that what is sent now must arrive."""
+        board = self.session.board
+        established = self.session.stage is Stage.ESTABLISHED
+        return established and board is not None and board.epoch == self._board_epoch and self.board.joined
+
+    def restart_host(self) -> None:
+        self._host_epoch += 1
+        self.session = Session(self._host_epoch, BAUD)
+        self._forget()
+
+    def restart_board(self) -> None:
+        self._board_epoch += 1
+        self.board = LineEnd(is_host=False)
+        self._say(Hello(definitions=DEFINITIONS_HASH, epoch=self._board_epoch, credit=255))
+        self._forget()
+
+    def send(self) -> None:
+        """Both send a number each; where they are joined it is owed to the other."""
+        if not self.joined:
+            return
+        self.number += 1
+        self.owed_to_board.append(self.number)
+        self._to_board.send(self.session.send([Start(epoch=self.number)], self.now), self.now)
+        self.owed_to_host.append(self.number)
+        self._say(Debug(time=0, level=1, text=str(self.number)))
+
+    def run(self, seconds: float) -> None:
+        end = self.now + seconds
+        while self.now < end:
+            self.now += STEP
+            self._step_board()
+            data = self._to_host.receive(self.now)
+            self.at_host += [
+                int(Debug.from_bytes(one.payload).text)
+                for one in self.session.receive(data, self.now)
+                if one.type == Debug.type
+            ]
+            self._to_board.send(self.session.poll(self.now), self.now)
+
+    def settle(self) -> None:
+        """Let the line be good until all that is owed has come, but no longer than 3 s."""
+        self._set_line(Noise())
+        self.run(3.0)
+        assert self.joined
+        assert set(self.owed_to_board) <= set(self.at_board)
+        assert set(self.owed_to_host) <= set(self.at_host)
+        self._set_line(NOISE)
+
+    def check(self) -> None:
+        """Nothing came twice, and all in order."""
+        for heard in (self.at_board, self.at_host):
+            assert all(earlier < later for earlier, later in pairwise(heard))
+
+    def _step_board(self) -> None:
+        for type_, payload in self.board.hear(self._to_board.receive(self.now), self.now):
+            packet = decode(type_, payload)
+            if isinstance(packet, Hello):
+                self._say(Hello(definitions=DEFINITIONS_HASH, epoch=self._board_epoch, credit=255))
+            elif isinstance(packet, Start):
+                self.at_board.append(packet.epoch)
+        if self.now >= self._beacon_at:
+            self._beacon_at = self.now + BEACON
+            self._say(Beacon(time=0, right=0, left=0))
+        self._to_host.send(self.board.poll(self.now), self.now)
+
+    def _say(self, *packets: Packet) -> None:
+        self._to_host.send(self.board.say(packets, self.now), self.now)
+
+    def _forget(self) -> None:
+        self.owed_to_board.clear()
+        self.owed_to_host.clear()
+
+    def _set_line(self, noise: Noise) -> None:
+        self._to_board = Wire(BAUD, noise, self.chance)
+        self._to_host = Wire(BAUD, noise, self.chance)
+
+
+def test_a_thousand_restarts_lose_nothing_and_repeat_nothing() -> None:
+    world = World(7)
+    for restart in range(RESTARTS):
+        for _ in range(world.chance.randrange(4)):
+            world.run(world.chance.uniform(0.0, 0.8))
+            world.send()
+        world.check()
+        if restart % 20 == 0:
+            world.settle()
+        world.chance.choice([world.restart_host, world.restart_board])()
+    assert len(world.at_board) > RESTARTS // 2
+    assert len(world.at_host) > RESTARTS // 2
+
+
+class Restarts(RuleBasedStateMachine):
+    """Any order of sending, waiting and restarting."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.world = World(1)
+
+    @rule(seconds=st.floats(0.0, 1.5))
+    def time_passes(self, seconds: float) -> None:
+        self.world.run(seconds)
+
+    @precondition(lambda self: self.world.joined)
+    @rule(count=st.integers(1, 30))
+    def both_send(self, count: int) -> None:
+        for _ in range(count):
+            self.world.send()
+
+    @rule()
+    def host_restarts(self) -> None:
+        self.world.restart_host()
+
+    @rule()
+    def board_restarts(self) -> None:
+        self.world.restart_board()
+
+    @rule()
+    def line_is_good_for_a_while(self) -> None:
+        self.world.settle()
+
+    @invariant()
+    def nothing_came_twice_or_out_of_order(self) -> None:
+        self.world.check()
+
+    def teardown(self) -> None:
+        self.world.settle()
+
+
+Restarts.TestCase.settings = settings(max_examples=15, stateful_step_count=20, deadline=None)
+TestAnyOrder = Restarts.TestCase

@@ -1,0 +1,203 @@
+"""The session, in simulated time: greeting, refusal, silence, restart of the board, delivery, counting."""
+
+import pytest
+
+from robot_runtime.link.framing import Decoder, Frame, build
+from robot_runtime.link.session import NO_BOOT, SILENCE, Session, Stage, session_key
+from robot_runtime.packets import (
+    DEFINITIONS_HASH,
+    Beacon,
+    Debug,
+    Heartbeat,
+    Hello,
+    Navigation,
+    Packet,
+    Start,
+    Stop,
+    encode,
+)
+
+BAUD = 250_000
+KEY = session_key(1, 4)
+
+
+def hello(definitions: int = DEFINITIONS_HASH, epoch: int = 4) -> Hello:
+    return Hello(definitions=definitions, epoch=epoch, credit=64)
+
+
+def heard(data: bytes, key: int = KEY) -> list[Frame]:
+    decoder = Decoder()
+    decoder.key = key
+    return list(decoder.feed(data))
+
+
+def said(data: bytes) -> list[int]:
+    return [type_ for frame in heard(data) for type_, _ in frame.messages]
+
+
+def keyed(*packets: Packet, number: int = 0, acknowledged: int = 0) -> bytes:
+    return build(packets, number, acknowledged, KEY)
+
+
+def established(now: float = 0.0) -> Session:
+    session = Session(1, BAUD)
+    greet(session, now)
+    session.receive(build([hello()], 0, 0), now)
+    return session
+
+
+def greet(session: Session, now: float) -> None:
+    """The board says HELLO by itself; the host greets it."""
+    session.receive(build([hello()], 15, 0), now)
+    assert said(session.poll(now)) == [Hello.type]
+
+
+def beacon(time: int = 0) -> Beacon:
+    return Beacon(time=time, right=0, left=1)
+
+
+def test_greets_until_answered_then_beats() -> None:
+    session = Session(1, BAUD)
+    greetings = b"".join(session.poll(step * 0.05) for step in range(21))
+    assert said(greetings) == [Hello.type] * 5
+    greet(session, 1.0)
+    session.receive(build([hello()], 0, 0), 1.01)
+    assert session.stage is Stage.ESTABLISHED
+    assert session.statistics().round_trip == pytest.approx(0.01)
+    beats = b"".join(session.poll(1.01 + step * 0.025) for step in range(21))
+    assert said(beats) == [Heartbeat.type] * 4
+
+
+def test_nothing_is_taken_before_the_greeting() -> None:
+    session = Session(1, BAUD)
+    assert session.receive(build([beacon()], 0, 0), 0.0) == []
+    greet(session, 0.1)
+    assert session.receive(build([beacon()], 0, 0), 0.1) == []
+    messages = session.receive(build([hello()], 1, 0) + keyed(beacon()), 0.1)
+    assert [message.type for message in messages] == [Hello.type, Beacon.type]
+
+
+def test_other_definitions_are_refused_until_the_board_has_the_right_ones() -> None:
+    session = Session(1, BAUD)
+    session.receive(build([hello(definitions=0xDEAD)], 0, 0), 0.0)
+    assert session.stage is Stage.REFUSED
+    assert session.receive(build([beacon()], 1, 0), 0.1) == []
+    assert said(session.poll(5.0)) == [Hello.type]
+    session.receive(build([hello(epoch=5)], 0, 0), 5.1)
+    session.poll(5.1)
+    session.receive(build([hello(epoch=5)], 1, 0), 5.1)
+    assert session.stage is Stage.ESTABLISHED
+
+
+def test_a_silent_board_counts_as_lost_and_is_greeted_anew() -> None:
+    session = established()
+    session.poll(SILENCE)
+    assert session.stage is Stage.ESTABLISHED
+    assert said(session.poll(SILENCE + 0.01)) == [Hello.type]
+    assert session.stage is Stage.GREETING
+    session.receive(build([hello()], 1, 0), SILENCE + 0.02)
+    assert session.stage is Stage.ESTABLISHED
+
+
+def test_a_board_that_has_heard_needs_not_answer() -> None:
+    session = Session(1, BAUD)
+    greet(session, 0.0)
+    assert [one.type for one in session.receive(keyed(beacon()), 0.1)] == [Beacon.type]
+    assert session.stage is Stage.ESTABLISHED
+
+
+def test_a_board_that_lost_the_session_is_greeted_anew() -> None:
+    session = established()
+    assert session.receive(build([beacon()], 0, 0), 0.1) == []
+    assert said(session.poll(0.1)) == [Hello.type]
+
+
+def test_frames_of_another_session_are_none() -> None:
+    session = established()
+    for key in (session_key(2, 4), session_key(1, 5)):
+        assert session.receive(build([beacon()], 0, 0, key), 0.1) == []
+    assert session.statistics().frames_invalid == 2
+
+
+def test_missing_telemetry_is_counted_by_its_numbers() -> None:
+    session = established()
+    for number in (1, 2, 5, 15, 16, 2000, 4000, 0, 0):
+        session.receive(keyed(beacon(), number=number), 0.1)
+    assert session.statistics().frames_missed == 2 + 9 + 1983 + 1999 + 95
+    assert session.statistics().frames_duplicate == 1
+
+
+def test_a_gap_of_any_size_in_a_second_is_counted() -> None:
+    session = established()
+    session.receive(keyed(beacon(), number=1), 0.1)
+    session.receive(keyed(beacon(), number=101), 1.0)
+    assert session.statistics().frames_missed == 99
+
+
+def test_a_restarted_board_is_greeted_anew_and_counts_from_its_own_start() -> None:
+    session = established()
+    session.receive(keyed(beacon(), number=7), 0.1)
+    session.send([Start(epoch=4)], 0.1)
+    session.receive(build([hello(epoch=5)], 0, 0), 0.2)
+    assert session.stage is Stage.GREETING
+    assert said(session.poll(0.2)) == [Hello.type]
+    session.receive(build([hello(epoch=5)], 0, 0), 0.21)
+    assert session.stage is Stage.ESTABLISHED
+    assert Start.type not in said(session.poll(1.0))
+    session.receive(build([beacon()], 0, 0, session_key(1, 5)), 0.3)
+    assert session.statistics().frames_missed == 0
+    assert session.statistics().messages_discarded == 1
+    assert session.board is not None
+    assert session.board.epoch == 5
+
+
+def test_a_start_is_repeated_until_it_is_acknowledged() -> None:
+    session = established(0.9)
+    assert said(session.send([Start(epoch=4)], 1.0)) == [Start.type]
+    assert session.urgent
+    assert said(session.send([Start(epoch=4)], 1.05)) == []
+    assert Start.type in said(session.poll(1.2) + session.poll(1.21))
+    session.receive(keyed(beacon(), acknowledged=1), 1.25)
+    assert not session.urgent
+    assert Start.type not in said(session.poll(1.5) + session.poll(1.6))
+
+
+def test_stop_goes_out_at_once_and_voids_a_start_that_is_under_way() -> None:
+    session = established(0.9)
+    session.send([Start(epoch=4)], 1.0)
+    (stop,) = heard(session.send([Stop()], 1.0))
+    assert (stop.open, stop.messages) == (True, ((Stop.type, b""),))
+    data = session.poll(1.3) + session.poll(1.31)
+    starts = [payload for frame in heard(data) for type_, payload in frame.messages if type_ == Start.type]
+    assert starts == [Start(epoch=NO_BOOT).to_bytes()]
+
+
+def test_stop_goes_out_where_nobody_has_answered() -> None:
+    assert said(Session(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
+
+
+def test_of_commands_that_wait_for_a_slow_line_the_newest_goes_out_unless_it_is_old() -> None:
+    session = Session(1, 1200)
+    session.receive(build([hello()], 0, 0) + keyed(beacon()), 0.0)
+    commands = [Navigation(x=0.0, y=0.0, z=z, roll=0.0, pitch=0.0, yaw=0.0) for z in (0.1, 0.2, 0.3)]
+    session.send([Stop()], 0.0)
+    assert session.send(commands[:2], 0.01) == b""
+    taken = [one for frame in heard(session.poll(0.2)) for one in frame.messages]
+    assert (Navigation.type, commands[1].to_bytes()) in taken
+    assert (Navigation.type, commands[0].to_bytes()) not in taken
+    session.send([Stop()] * 4, 0.3)
+    session.send(commands[2:], 0.31)
+    assert Navigation.type not in said(session.poll(0.9))
+
+
+def test_lines_pass_in_order_and_are_acknowledged() -> None:
+    session = established()
+    lines = [Debug(time=0, level=1, text=text) for text in ("one", "two", "three")]
+    first, second, third = (keyed(line, number=number) for number, line in enumerate(lines))
+    assert [one.type for one in session.receive(first + third + third, 1.0)] == [Debug.type]
+    (answer,) = heard(session.poll(1.02))
+    assert answer.acknowledged == 1
+    assert answer.messages[-1] == (0x0D, b"\x01")
+    passed = session.receive(second + first, 1.03)
+    assert [one.payload for one in passed] == [encode(line)[1:] for line in lines[1:]]
+    assert {frame.acknowledged for frame in heard(session.poll(1.05))} == {3}

@@ -1,0 +1,56 @@
+"""robot.toml: the shipped file holds the defaults, and what is wrong is named."""
+
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.config import Config, ConfigError, load, parse
+from robot_runtime.control.controllers import CONTROLLERS
+
+SHIPPED = Path(__file__).resolve().parents[2] / "robot.toml"
+
+
+def test_the_shipped_file_says_the_defaults() -> None:
+    shipped, plain = load(SHIPPED), Config()
+    assert (shipped.robot, shipped.link, shipped.zenoh, shipped.server) == (
+        plain.robot,
+        plain.link,
+        plain.zenoh,
+        plain.server,
+    )
+    assert (shipped.control.rate, shipped.control.controller) == (
+        plain.control.rate,
+        plain.control.controller,
+    )
+    defaults = {cls.name: {name: one.default for name, one in cls.limits.items()} for cls in CONTROLLERS}
+    assert shipped.control.gains == defaults
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("[robot]\nnmae = 'x'", r"robot: 'nmae' is not known here; known are name, mode"),
+        ("[robot]\nmode = 'pool'", r"mode is 'pool'; it must be one of 'emulated', 'robot'"),
+        ("[link]\nbaud = 300", "between 1200 and 500000"),
+        ("[link]\nbaud = '250000'", "must be a int"),
+        ("[control]\nrate = nan", "must be a float"),
+        ("[control]\nrate = true", "must be a float"),
+        ("[control.gains.pid]\nkp = 'much'", r"gains.pid.kp is 'much'"),
+        ("robot = 3", "must be a table"),
+        ("[robot", "cannot be read"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path: Path, text: str, why: str) -> None:
+    path = tmp_path / "robot.toml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=why):
+        load(path)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"robot\.toml cannot be read"):
+        load(tmp_path / "robot.toml")
+
+
+def test_whole_numbers_serve_as_numbers() -> None:
+    assert parse(Config, {"control": {"rate": 20}}, "test").control.rate == 20.0

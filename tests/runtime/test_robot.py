@@ -1,0 +1,282 @@
+"""The runtime as its own process: a board on a pseudo-terminal below it, Zenoh above it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.errors import Refused
+from robot_runtime.messages import Messages
+from robot_runtime.outbox import STREAM
+from robot_runtime.packets import Debug, Depth, Hello, Navigation, Packet, Start, Status, StatusFlag, Stop
+from robot_runtime.topics import Kind, read_blocks, read_rows
+from tests.runtime.board_end import DEADLINE, BoardEnd, hello
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Board:
+    """A board that sends telemetry at 50 Hz, arms and stops as told, and notes what it hears."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.end = BoardEnd(path)
+        self.heard: list[tuple[float, int, bytes]] = []
+        self.depth = 0.2
+        self.silent = False
+        self._armed = False
+        self._ending = threading.Event()
+        self._changed = threading.Condition()
+        self._threads = [threading.Thread(target=self._listen), threading.Thread(target=self._report)]
+        for thread in self._threads:
+            thread.start()
+
+    def close(self) -> None:
+        self._ending.set()
+        for thread in self._threads:
+            thread.join()
+        self.end.vanish()
+
+    def wait(self, condition: Callable[[], bool]) -> None:
+        with self._changed:
+            assert self._changed.wait_for(condition, DEADLINE)
+
+    def count(self, type_: int) -> int:
+        return sum(heard == type_ for _, heard, _ in self.heard)
+
+    def _listen(self) -> None:
+        while not self._ending.is_set():
+            for type_, payload in self.end.listen(0.05):
+                self._answer(type_)
+                with self._changed:
+                    self.heard.append((time.monotonic(), type_, payload))
+                    self._changed.notify_all()
+
+    def _answer(self, type_: int) -> None:
+        if type_ == Hello.type:
+            self.end.say(hello())
+        elif type_ == Start.type:
+            self._armed = True
+            self.end.say(Debug(time=_micros(), level=1, text="armed"))
+        elif type_ == Stop.type:
+            self._armed = False
+
+    def _report(self) -> None:
+        while not self._ending.wait(0.02):
+            if not self.silent:
+                depth = Depth(time=_micros(), depth=self.depth, pressure=103_000, temperature=20.0)
+                self.end.say(depth, self._status())
+
+    def _status(self) -> Packet:
+        flags = StatusFlag.HOST_ALIVE | (StatusFlag.ARMED if self._armed else 0)
+        return Status(
+            time=_micros(),
+            epoch=9,
+            flags=flags,
+            faults=0,
+            reset_cause=1,
+            battery=7.4,
+            loop_worst=3000,
+            missed_ticks=0,
+            frames_invalid=0,
+            bytes_lost=0,
+            debug_lost=0,
+            stack_free=600,
+        )
+
+
+class Listener:
+    """Everything that the runtime publishes."""
+
+    def __init__(self, messages: Messages) -> None:
+        self.documents: list[tuple[str, dict[str, Any]]] = []
+        self.rows: list[tuple[str, float, Any]] = []
+        self._changed = threading.Condition()
+        self._subscription = messages.subscribe(STREAM, self._take)
+
+    def wait(self, condition: Callable[[], bool]) -> None:
+        with self._changed:
+            assert self._changed.wait_for(condition, DEADLINE), self.documents[-5:]
+
+    def newest_state(self) -> dict[str, Any]:
+        states = [document for name, document in self.documents if name == "state"]
+        return states[-1] if states else {}
+
+    def texts(self, name: str) -> list[str]:
+        return [document["text"] for topic, document in self.documents if topic == name]
+
+    def _take(self, _: str, data: bytes) -> None:
+        with self._changed:
+            for block in read_blocks(data):
+                name = block.topic.name
+                if block.topic.kind is Kind.DOCUMENTS:
+                    self.documents += [(name, document) for document in json.loads(block.payload)]
+                else:
+                    self.rows += [(name, time_, record) for time_, record in read_rows(block)]
+            self._changed.notify_all()
+
+
+class Rig:
+    """A runtime process, its board, and another process's view of it."""
+
+    def __init__(self, folder: Path) -> None:
+        tty = folder / "board.tty"
+        self.board = Board(tty)
+        command = [sys.executable, "-m", "robot_runtime", "--config", str(ROOT / "robot.toml")]
+        command += ["--data", str(folder), "--port", str(tty), "--with-parent"]
+        self.process = subprocess.Popen(command, cwd=ROOT)
+        run = folder / "run"
+        run.mkdir(exist_ok=True)
+        server, runtime = (f"unixsock-stream/{run}/{name}.sock" for name in ("server", "runtime"))
+        self.messages = Messages("turtle", [server], [runtime])
+        self.listener = Listener(self.messages)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.terminate()
+            self.process.wait(DEADLINE)
+        self.messages.close()
+        self.board.close()
+
+    def ready(self) -> None:
+        self.listener.wait(lambda: self.listener.newest_state().get("refusals") == [])
+
+    def arm(self) -> None:
+        self.ask("arm")
+        self.listener.wait(lambda: bool(self.listener.newest_state()["armed"]))
+
+    def ask(self, name: str, /, **question: Any) -> None:
+        self.messages.ask(f"command/{name}", question)
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[Rig]:
+    rig = Rig(tmp_path)
+    yield rig
+    rig.close()
+
+
+def _micros() -> int:
+    return time.monotonic_ns() // 1000 & 0xFFFFFFFF
+
+
+def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
+    times = [at for at, type_, _ in rig.board.heard if type_ == Navigation.type]
+    assert (times[20] - times[0]) / 20 == pytest.approx(0.1, rel=0.1)
+    assert Navigation.from_bytes(rig.board.heard[-1][2]).z == pytest.approx(1.0)
+    rig.ask("stop")
+    rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
+    after = rig.board.count(Navigation.type)
+    rig.board.wait(lambda: sum(at > time.monotonic() - 0.5 for at, _, _ in rig.board.heard) > 3)
+    assert rig.board.count(Navigation.type) <= after + 1
+    assert rig.listener.texts("event")[-1] == "Stopped by the operator."
+
+
+def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.listener.wait(lambda: "armed" in rig.listener.texts("debug"))
+    rig.listener.wait(lambda: any(name == "control" for name, _, _ in rig.listener.rows))
+    depths = [(at, record) for name, at, record in rig.listener.rows if name == "depth"]
+    assert {record.depth for _, record in depths} == {0.2}
+    for at, record in depths:
+        # This board's clock is the host's, so that the estimate can be judged: never early, hardly late.
+        assert (at - record.time * 1e-6) % (2**32 * 1e-6) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("name", "question", "why"),
+    [
+        ("controller", {"name": "fuzzy"}, "no controller 'fuzzy'"),
+        ("controller", {"name": "pid", "gains": {"kp": 1e6}}, "between 0 and 50"),
+        ("controller", {"name": "pid", "gains": {"kp": "3"}}, "must be a number"),
+        ("controller", {"name": "pid", "gains": [3]}, "numbers by name"),
+        ("controller", {}, "name is missing"),
+        ("set_points", {"default": 11}, "not between 0 and 10"),
+        ("set_points", {"default": "deep"}, "must be a number"),
+        ("card", {"colour": "plaid"}, "no card of colour 'plaid'"),
+        ("vision", {"rate": 1000}, "not between 2 and 30"),
+        ("vision", {"colour": "plaid"}, "no colour is named 'plaid'"),
+    ],
+)
+def test_bad_commands_are_refused_with_the_reason(
+    shared: Rig, name: str, question: dict[str, Any], why: str
+) -> None:
+    before = {**shared.listener.newest_state(), "time": 0}
+    with pytest.raises(Refused, match=why):
+        shared.ask(name, **question)
+    seen = len(shared.listener.documents)
+    shared.listener.wait(lambda: any(topic == "state" for topic, _ in shared.listener.documents[seen:]))
+    assert {**shared.listener.newest_state(), "time": 0} == before
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
+    rig = Rig(tmp_path_factory.mktemp("shared"))
+    rig.ready()
+    yield rig
+    rig.close()
+
+
+def test_garbage_on_the_line_does_not_disturb_the_control(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.board.wait(lambda: rig.board.count(Navigation.type) >= 3)
+    os.write(rig.board.end.master, bytes(range(1, 256)) * 20 + b"\0")
+    before = rig.board.count(Navigation.type)
+    rig.board.wait(lambda: rig.board.count(Navigation.type) >= before + 10)
+    assert rig.process.poll() is None
+    assert rig.listener.newest_state()["armed"]
+
+
+def test_a_port_that_vanishes_disarms_and_its_return_does_not_arm(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.board.close()
+    rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
+    with pytest.raises(Refused, match="no connection"):
+        rig.ask("arm")
+    rig.board = Board(rig.board.path)
+    rig.ready()
+    assert not rig.listener.newest_state()["armed"]
+    assert rig.board.count(Start.type) == 0
+
+
+def test_a_silent_board_is_noticed_within_a_second(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.board.silent = True
+    began = time.monotonic()
+    rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
+    assert time.monotonic() - began < 1.0
+
+
+def test_ending_the_runtime_stops_the_board(rig: Rig) -> None:
+    rig.ready()
+    rig.arm()
+    rig.board.wait(lambda: rig.board.count(Navigation.type) >= 1)
+    for _ in range(20):  # whoever is impatient asks more than once
+        rig.process.send_signal(signal.SIGTERM)
+    rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
+    assert rig.process.wait(DEADLINE) == 0
+
+
+def test_a_bad_configuration_is_one_clear_line(tmp_path: Path) -> None:
+    config = tmp_path / "robot.toml"
+    config.write_text("[control]\nrate = 1000\n")
+    command = [sys.executable, "-m", "robot_runtime", "--config", str(config), "--data", str(tmp_path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=DEADLINE, check=False)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "rate is 1000; it must lie between 1 and 50" in done.stderr

@@ -1,0 +1,227 @@
+"""The cameras: drawn, from files, and the Pi's with a stand-in for its library."""
+
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.vision.camera import Camera, CameraError
+from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
+from robot_runtime.vision.colours import DEFAULTS, ColourRange, Picture
+from robot_runtime.vision.detector import Detector
+from robot_runtime.vision.file_camera import FileCamera
+from robot_runtime.vision.pi_camera import PiCamera
+from tests.runtime.vision.harness import drawn
+
+FPS = 10.0
+
+
+class TestCardCamera:
+    def test_same_time_same_picture(self) -> None:
+        assert np.array_equal(drawn(3.25, "red"), drawn(3.25, "red"))
+
+    def test_light_noise_and_card_move(self) -> None:
+        assert not np.array_equal(drawn(3.25, None), drawn(3.5, None))
+        detector = Detector(DEFAULTS, 0.01)
+        boxes = {patch.box for time in range(10) if (patch := detector.find(drawn(time, "red"), "red"))}
+        assert len(boxes) > 5
+
+    @pytest.mark.parametrize(("width", "height"), [(64, 48), (320, 240), (640, 480), (333, 101)])
+    def test_pictures_have_the_wanted_shape(self, width: int, height: int) -> None:
+        picture = drawn(1.0, "blue", width, height)
+        assert picture.shape == (height, width, 3)
+        assert picture.dtype == np.uint8
+
+    def test_noise_has_its_size_and_differs_from_picture_to_picture(self) -> None:
+        early, late = (drawn(time, None)[100:140].astype(float) for time in (3.0, 3.001))
+        # Light hardly changes within a millisecond: what differs is noise, twice.
+        assert (late - early).std() == pytest.approx(NOISE * 2**0.5, rel=0.1)
+
+    def test_water_grows_darker_downwards(self) -> None:
+        picture = drawn(1.0, None).astype(float)
+        assert picture[:40].mean() > 1.3 * picture[-40:].mean()
+
+    def test_water_takes_red_from_a_card(self) -> None:
+        white = ColourRange(hue=(0, 0), saturation=(0, 0), value=(255, 255))
+        camera = CardCamera(320, 240, SimulatedClock(), {"white": white}, lambda: "white")
+        blue, green, red = camera.draw(0.0, "white")[110:130, 150:170].reshape(-1, 3).mean(axis=0)
+        assert blue > green > red
+        assert red / blue < 0.93
+        assert ATTENUATION[2] * CARD_DISTANCE == pytest.approx(0.24)
+
+    def test_reads_the_time_and_the_card_of_now(self) -> None:
+        clock, cards = SimulatedClock(5.0), ["red"]
+        camera = CardCamera(320, 240, clock, DEFAULTS, lambda: cards[0])
+        assert camera.read().taken == 5.0
+        assert "red card" in str(camera)
+        cards[0] = "blue"
+        clock.forward(1.0)
+        frame = camera.read()
+        assert frame.taken == 6.0
+        assert np.array_equal(frame.picture, drawn(6.0, "blue"))
+        camera.close()
+
+    def test_colours_without_a_paint_get_a_card_too(self) -> None:
+        pink = {"pink": ColourRange(hue=(145, 165), saturation=(120, 255), value=(120, 255))}
+        picture = CardCamera(320, 240, SimulatedClock(), pink, lambda: "pink").draw(1.0, "pink")
+        assert Detector(pink, 0.01).find(picture, "pink") is not None
+
+
+@pytest.fixture(params=[("mjpg.avi", "MJPG"), ("mp4v.mp4", "mp4v")], ids=["avi", "mp4"])
+def video(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """Twelve pictures, each brighter by 20 than the one before."""
+    name, code = request.param
+    file: Path = tmp_path / name
+    writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*code), FPS, (160, 120))
+    assert writer.isOpened()
+    for index in range(12):
+        writer.write(np.full((120, 160, 3), 20 * index, np.uint8))
+    writer.release()
+    return file
+
+
+def shown(camera: Camera) -> int:
+    """Which of the video's pictures this is."""
+    return round(float(camera.read().picture.mean()) / 20)
+
+
+class TestFileCamera:
+    def test_video_plays_at_its_own_speed_and_again(self, video: Path) -> None:
+        clock = SimulatedClock(50.0)
+        camera = FileCamera(video, 160, 120, clock)
+        clock.forward(0.01)
+        seen = []
+        for _ in range(8):
+            seen.append(shown(camera))
+            clock.forward(0.31)
+        assert seen[:4] == [0, 3, 6, 9]
+        # From its end it begins again with the first picture.
+        assert seen[4:] == [0, 3, 6, 9]
+        camera.close()
+
+    def test_video_looked_at_faster_than_it_plays_goes_on_picture_by_picture(self, video: Path) -> None:
+        camera = FileCamera(video, 160, 120, SimulatedClock())
+        assert [shown(camera) for _ in range(3)] == [0, 1, 2]
+        camera.close()
+
+    def test_pictures_are_scaled(self, video: Path) -> None:
+        camera = FileCamera(video, 320, 240, SimulatedClock(7.0))
+        frame = camera.read()
+        assert frame.picture.shape == (240, 320, 3)
+        assert frame.taken == 7.0
+        assert str(camera) == f"file {video.name}"
+        camera.close()
+
+    @pytest.mark.parametrize("name", ["card.png", "card.jpg", "card 01.bmp"])
+    def test_picture_stays(self, tmp_path: Path, name: str) -> None:
+        file = tmp_path / name
+        assert cv2.imwrite(str(file), drawn(1.0, "yellow"))
+        clock = SimulatedClock()
+        camera = FileCamera(file, 320, 240, clock)
+        detector = Detector(DEFAULTS, 0.01)
+        for _ in range(3):
+            patch = detector.find(camera.read().picture, "yellow")
+            assert patch is not None
+            assert patch.colour == "yellow"
+            clock.forward(10)
+        camera.close()
+
+    def test_missing_file_is_told_of(self, tmp_path: Path) -> None:
+        with pytest.raises(CameraError, match=r"there is no file .*gone.mp4.*robot.toml"):
+            FileCamera(tmp_path / "gone.mp4", 320, 240, SimulatedClock())
+
+    def test_no_name_is_told_of(self) -> None:
+        with pytest.raises(CameraError, match="name a video or a picture"):
+            FileCamera(Path(), 320, 240, SimulatedClock())
+
+    @pytest.mark.parametrize("name", ["broken.mp4", "broken.png"])
+    def test_what_is_no_picture_is_told_of(self, tmp_path: Path, name: str) -> None:
+        file = tmp_path / name
+        file.write_bytes(b"this is no picture" * 50)
+        with pytest.raises(
+            CameraError, match=f"{name} (is neither a video nor a|holds no) picture that OpenCV can"
+        ):
+            FileCamera(file, 320, 240, SimulatedClock()).read()
+
+
+class StandIn:
+    """What PiCamera uses of picamera2.Picamera2."""
+
+    made: "list[StandIn]"
+    picture: Picture
+    failure: Exception | None
+
+    def __init__(self) -> None:
+        self.calls: list[Any] = []
+        self.made.append(self)
+
+    def create_video_configuration(self, main: dict[str, Any]) -> dict[str, Any]:
+        return main
+
+    def configure(self, configuration: dict[str, Any]) -> None:
+        self.calls.append(configuration)
+
+    def start(self) -> None:
+        if self.failure:
+            raise self.failure
+        self.calls.append("start")
+
+    def capture_array(self, name: str) -> Picture:
+        self.calls.append(name)
+        if self.failure:
+            raise self.failure
+        return self.picture
+
+    def close(self) -> None:
+        self.calls.append("close")
+
+
+@pytest.fixture
+def library(monkeypatch: pytest.MonkeyPatch) -> type[StandIn]:
+    class Fresh(StandIn):
+        made: list[StandIn] = []  # noqa: RUF012 - one a test
+        picture = drawn(1.0, "yellow")
+        failure = None
+
+    module: Any = ModuleType("picamera2")
+    module.Picamera2 = Fresh
+    monkeypatch.setitem(sys.modules, "picamera2", module)
+    return Fresh
+
+
+class TestPiCamera:
+    def test_reads_what_the_library_gives(self, library: type[StandIn]) -> None:
+        camera = PiCamera(320, 240, SimulatedClock(4.0))
+        frame = camera.read()
+        camera.close()
+        assert np.array_equal(frame.picture, library.picture)
+        assert frame.taken == 4.0
+        assert library.made[0].calls == [{"size": (320, 240), "format": "RGB888"}, "start", "main", "close"]
+
+    def test_says_how_to_get_the_library(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setitem(sys.modules, "picamera2", None)
+        with pytest.raises(CameraError, match="needs picamera2, which is not installed: run"):
+            PiCamera(320, 240, SimulatedClock())
+
+    def test_says_that_no_camera_is_there(self, library: type[StandIn]) -> None:
+        library.failure = IndexError("list index out of range")
+        with pytest.raises(CameraError, match=r"does not start \(list index out of range\); check its cable"):
+            PiCamera(320, 240, SimulatedClock())
+
+    def test_says_that_the_camera_went_away(self, library: type[StandIn]) -> None:
+        camera = PiCamera(320, 240, SimulatedClock())
+        library.failure = RuntimeError("timeout")
+        with pytest.raises(CameraError, match=r"gives no picture \(timeout\)"):
+            camera.read()
+
+
+def test_library_is_asked_for_only_by_the_pi_camera(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "picamera2", SimpleNamespace())
+    file = tmp_path / "a.png"
+    cv2.imwrite(str(file), drawn(1.0, None))
+    FileCamera(file, 64, 48, SimulatedClock()).close()

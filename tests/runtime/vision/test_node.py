@@ -1,0 +1,251 @@
+"""The vision node: what it tells, when, and that no camera ends it."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from robot_runtime.clock import Clock, SimulatedClock, SteadyClock
+from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.errors import Refused
+from robot_runtime.samples import Detection, Event
+from robot_runtime.vision.camera import Camera, CameraError
+from robot_runtime.vision.node import RETRY, Vision
+from tests.runtime.vision.harness import ShakyCamera, drawn
+
+DEADLINE = 10.0
+
+
+@dataclass
+class Listener:
+    """Keeps what the node tells."""
+
+    watching: bool = False
+    detections: list[Detection] = field(default_factory=list)
+    pictures: list[tuple[float, bytes]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+
+    def node(
+        self, clock: Clock, camera: Callable[[], Camera] | None = None, config: VisionConfig | None = None
+    ) -> Vision:
+        return Vision(
+            config or VisionConfig(),
+            clock,
+            self.detections.append,
+            lambda time, jpeg: self.pictures.append((time, jpeg)),
+            lambda: self.watching,
+            self.events.append,
+            camera,
+        )
+
+
+@pytest.fixture
+def listener() -> Listener:
+    return Listener()
+
+
+@pytest.fixture
+def clock() -> SimulatedClock:
+    return SimulatedClock(20.0)
+
+
+def wait_for(condition: Callable[[], bool], what: str) -> None:
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < end, f"no {what} within {DEADLINE} s"
+        time.sleep(0.005)
+
+
+def test_tells_what_each_picture_holds(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock)
+    for card in (None, "yellow", "red", None):
+        node.show_card(card)
+        node.look()
+        clock.forward(0.25)
+    assert [detection.colour for detection in listener.detections] == [None, "yellow", "red", None]
+    assert [detection.taken for detection in listener.detections] == [20.0, 20.25, 20.5, 20.75]
+    nothing, yellow = listener.detections[:2]
+    assert (nothing.box, nothing.area) == (None, 0.0)
+    assert yellow.box is not None
+    assert yellow.area > 0.05
+
+
+def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimulatedClock(20.0)
+    node = listener.node(clock)
+    convert = cv2.cvtColor
+
+    def slow(*arguments: object) -> object:
+        clock.forward(0.03)
+        return convert(*arguments)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(cv2, "cvtColor", slow)
+    node.look()
+    assert listener.detections[0].processing == pytest.approx(0.03)
+    assert listener.detections[0].time == pytest.approx(20.03)
+
+
+def test_wanted_colour_goes_first(listener: Listener, clock: SimulatedClock) -> None:
+    picture = drawn(1.0, "red")
+    picture[:60, :60] = (0, 220, 240)
+    node = listener.node(clock, ShakyCamera(picture, clock).open)
+    for colour in ("yellow", "red", "green"):
+        node.colour = colour
+        node.look()
+    assert [detection.colour for detection in listener.detections] == ["yellow", "red", "red"]
+
+
+def test_pictures_are_made_only_while_somebody_watches(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock)
+    node.look()
+    assert listener.pictures == []
+    listener.watching = True
+    node.show_card("yellow")
+    node.look()
+    listener.watching = False
+    node.look()
+    ((taken, jpeg),) = listener.pictures
+    assert taken == 20.0
+    decoded = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert decoded is not None
+    # What was drawn, but for the losses of JPEG: nothing is added to it.
+    difference = np.abs(decoded.astype(float) - drawn(20.0, "yellow"))
+    assert difference.mean() < 5
+
+
+def test_a_camera_that_fails_is_reported_once_and_tried_again(
+    listener: Listener, clock: SimulatedClock
+) -> None:
+    camera = ShakyCamera(drawn(1.0, "yellow"), clock)
+    node = listener.node(clock, camera.open)
+    node.look()
+    assert node.text == "shaky camera"
+    camera.failure = CameraError("the lens cap is on; take it off")
+    for _ in range(20):
+        clock.forward(0.25)
+        node.look()
+    assert node.text == "no picture: the lens cap is on; take it off"
+    assert [event.severity for event in listener.events] == ["caution"]
+    assert "the lens cap is on; take it off" in listener.events[0].text
+    # Opened at the start, then every two seconds.
+    assert camera.opened == 1 + int(20 * 0.25 / RETRY)
+    assert camera.closed == 1
+    camera.failure = None
+    clock.forward(RETRY)
+    node.look()
+    assert [event.severity for event in listener.events] == ["caution", "info"]
+    assert node.text == "shaky camera"
+    assert [detection.colour for detection in listener.detections] == ["yellow", "yellow"]
+
+
+def test_another_failure_is_reported_anew(listener: Listener, clock: SimulatedClock) -> None:
+    camera = ShakyCamera(drawn(1.0, None), clock)
+    node = listener.node(clock, camera.open)
+    for text in ("no light", "no light", "no power"):
+        camera.failure = CameraError(text)
+        node.look()
+        clock.forward(RETRY)
+    assert len(listener.events) == 2
+
+
+def test_a_camera_may_fail_in_any_way(
+    listener: Listener, clock: SimulatedClock, caplog: pytest.LogCaptureFixture
+) -> None:
+    camera = ShakyCamera(drawn(1.0, None), clock)
+    camera.failure = ZeroDivisionError("oops")
+    node = listener.node(clock, camera.open)
+    node.look()
+    assert "oops" in node.text
+    assert "ZeroDivisionError" in caplog.text
+    camera.failure = None
+    clock.forward(RETRY)
+    node.look()
+    assert len(listener.detections) == 1
+
+
+def test_missing_file_and_its_return(tmp_path: Path, listener: Listener, clock: SimulatedClock) -> None:
+    file = tmp_path / "pool.png"
+    node = listener.node(clock, config=VisionConfig(camera="file", file=str(file)))
+    node.look()
+    assert "there is no file" in node.text
+    cv2.imwrite(str(file), drawn(1.0, "yellow"))
+    clock.forward(RETRY)
+    node.look()
+    assert node.text == "file pool.png"
+    assert listener.detections[0].colour == "yellow"
+
+
+def test_pi_camera_where_there_is_none(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock, config=VisionConfig(camera="pi"))
+    node.look()
+    assert "picamera2" in node.text
+    assert listener.detections == []
+
+
+def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock: SimulatedClock) -> None:
+    node = listener.node(clock)
+    with pytest.raises(Refused, match="no card of colour 'pink'; there are red, yellow, green, blue"):
+        node.show_card("pink")
+    assert node.card is None
+    other = listener.node(clock, config=VisionConfig(camera="file", file="a.mp4"))
+    with pytest.raises(Refused, match="the camera is 'file'"):
+        other.show_card("red")
+
+
+def test_a_wanted_colour_without_ranges_is_refused(listener: Listener, clock: SimulatedClock) -> None:
+    with pytest.raises(ConfigError, match="colour is 'pink'; it must be one of red, yellow, green, blue"):
+        listener.node(clock, config=VisionConfig(colour="pink"))
+
+
+class TestThread:
+    def test_looks_at_its_rate(self, listener: Listener) -> None:
+        node = listener.node(SteadyClock(), config=VisionConfig(rate=20.0, width=64, height=48))
+        node.start()
+        wait_for(lambda: len(listener.detections) >= 11, "eleven pictures")
+        node.close()
+        taken = [detection.taken for detection in listener.detections]
+        # However late single pictures are, none comes early and the rhythm is not outrun.
+        assert (taken[10] - taken[0]) / 10 > 0.045
+
+    def test_a_higher_rate_holds_at_once(self, listener: Listener) -> None:
+        node = listener.node(SteadyClock(), config=VisionConfig(rate=0.2, width=64, height=48))
+        node.start()
+        wait_for(lambda: len(listener.detections) >= 1, "first picture")
+        begun = time.monotonic()
+        node.rate = 30.0
+        wait_for(lambda: len(listener.detections) >= 4, "pictures at the new rate")
+        assert time.monotonic() - begun < 4.0
+        node.close()
+
+    def test_close_ends_it_and_gives_the_camera_back(self, listener: Listener) -> None:
+        clock = SimulatedClock()
+        camera = ShakyCamera(drawn(1.0, None), clock)
+        node = listener.node(clock, camera.open)
+        node.start()
+        wait_for(lambda: len(listener.detections) == 1, "picture")
+        node.close()
+        assert camera.closed == 1
+        assert "vision" not in [thread.name for thread in threading.enumerate()]
+
+    def test_survives_a_listener_that_fails(self, caplog: pytest.LogCaptureFixture) -> None:
+        calls = []
+
+        def fail(detection: Detection) -> None:
+            calls.append(detection)
+            raise RuntimeError("nobody wants to know")
+
+        config = VisionConfig(rate=30.0, width=64, height=48)
+        node = Vision(config, SteadyClock(), fail, lambda *_: None, lambda: False, lambda _: None)
+        node.start()
+        wait_for(lambda: len(calls) >= 3, "pictures")
+        node.close()
+        assert "nobody wants to know" in caplog.text
+
+    def test_close_before_start(self, listener: Listener, clock: SimulatedClock) -> None:
+        listener.node(clock).close()
+        assert listener.detections == []

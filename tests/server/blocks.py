@@ -1,0 +1,76 @@
+"""Blocks as the runtime writes them, with contents that tests can tell apart."""
+
+import json
+from typing import Any
+
+from robot_runtime import packets, samples
+from robot_runtime.link.statistics import LinkStatistics
+from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
+from server.arrivals import Arrival, read_arrivals
+
+
+def depth_record(number: int) -> packets.Depth:
+    return packets.Depth(time=number, depth=number % 1000 / 1000, pressure=101_325 + number, temperature=20.5)
+
+
+def depth_block(first: int, count: int, start: float = 100.0, period: float = 0.02) -> Block:
+    """Rows whose board time is their own number."""
+    rows = b"".join(
+        row(start + number * period, depth_record(number).to_bytes())
+        for number in range(first, first + count)
+    )
+    return Block(BY_NAME["depth"], count, first, rows)
+
+
+def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
+    lines = [
+        samples.DebugLine(time=start + first + place, level=1, text=text) for place, text in enumerate(texts)
+    ]
+    return Block(BY_NAME["debug"], len(lines), first, documents(lines))
+
+
+def picture_block(number: int, size: int = 20) -> Block:
+    return Block(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
+
+
+def link_block(first: int, bytes_received: int) -> Block:
+    values: dict[str, Any] = dict.fromkeys(LinkStatistics.wires, 0) | {"bytes_received": bytes_received}
+    return Block(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))
+
+
+def state_block(first: int, **changes: Any) -> Block:
+    document: dict[str, Any] = {
+        "time": 100.0,
+        "mode": "disarmed",
+        "armed": False,
+        "armed_since": None,
+        "refusals": [],
+        "connected": True,
+        "connection": "connected",
+        "port": "board.tty",
+        "baud": 250_000,
+        "epoch": 1,
+        "controller": "pid",
+        "controllers": [],
+        "set_point": 0.5,
+        "set_point_default": 0.5,
+        "set_point_detected": 1.0,
+        "control_rate": 10.0,
+        "vision_rate": 4.0,
+        "vision_colour": "yellow",
+        "colours": ["yellow"],
+        "card": None,
+        "camera": "card",
+    }
+    return Block(BY_NAME["state"], 1, first, json.dumps([document | changes]).encode())
+
+
+def arrive(block: Block) -> Arrival:
+    (arrival,) = read_arrivals(block.to_bytes())
+    return arrival
+
+
+def truth_block(first: int) -> Block:
+    topic = BY_NAME["truth"]
+    assert topic.kind is Kind.ROWS
+    return Block(topic, 1, first, bytes(topic.row_bytes))

@@ -1,0 +1,29 @@
+"""A data folder of its own for every test, with a short path for its sockets."""
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from server.schema import prepare
+from server.settings import DataFolder, Settings, make_folders
+from server.store import Store
+
+
+@pytest.fixture
+def settings() -> Iterator[Settings]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        folder = DataFolder(Path(name) / "data")
+        make_folders(folder)
+        config = Path(name) / "robot.toml"
+        config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
+        yield Settings(data=folder, config=config, robot="tested", page=Path(name) / "page")
+
+
+@pytest.fixture
+def store(settings: Settings) -> Iterator[Store]:
+    prepare(settings.data)
+    store = Store(settings.data.database)
+    yield store
+    store.close()

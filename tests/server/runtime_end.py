@@ -1,0 +1,61 @@
+"""The runtime's end of Zenoh, for tests: publishes what it is told to, and answers every command."""
+
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Self
+
+from robot_runtime.errors import Refused
+from robot_runtime.messages import Messages
+from robot_runtime.outbox import STREAM
+from robot_runtime.topics import Block, Kind
+
+COMMANDS = ("stop", "arm", "controller", "set_points", "card", "vision")
+
+
+class RuntimeEnd:
+    """Joins the server's conversation as the runtime does.
+
+    `asked` holds every command that came; each is answered once its gate is open.
+    """
+
+    def __init__(self, socket: Path, robot: str) -> None:
+        self.asked: list[tuple[str, dict[str, Any]]] = []
+        self.refusal: str | None = None
+        self.gates = {name: threading.Event() for name in COMMANDS}
+        self._messages = Messages(robot, listen=[f"unixsock-stream/{socket}"])
+        for name, gate in self.gates.items():
+            gate.set()
+            self._answer(name, gate)
+        # The last of all: who reaches this one reaches every other.
+        self._messages.answer("command/there", lambda _: None)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._messages.close()
+
+    def publish(self, *blocks: Block) -> None:
+        """Send blocks, each as one publication."""
+        for block in blocks:
+            name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
+            self._messages.publish(name, block.to_bytes())
+
+    def publish_bytes(self, data: bytes) -> None:
+        """Send anything."""
+        self._messages.publish(STREAM, data)
+
+    def is_heard(self, topic: str) -> bool:
+        """Whether anybody listens to a topic."""
+        return self._messages.watched(topic)
+
+    def _answer(self, name: str, gate: threading.Event) -> None:
+        def handle(question: dict[str, Any]) -> Mapping[str, Any] | None:
+            self.asked.append((name, question))
+            gate.wait(30)
+            if self.refusal is not None and name != "stop":
+                raise Refused(self.refusal)
+            return None
+
+        self._messages.answer(f"command/{name}", handle)

@@ -1,0 +1,84 @@
+"""A whole server on a loopback port, inside the test's own event loop."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+import httpx
+from websockets.asyncio.client import ClientConnection, connect
+
+from server.app import create_app
+from server.assembly import Assembly
+from server.bridge import RuntimeSilent
+from server.parts import Command
+from server.schema import prepare
+from server.settings import Settings
+from server.web import make_server, open_socket
+from tests.server.runtime_end import RuntimeEnd
+from tests.server.waiting import SECONDS, until
+
+
+@dataclass
+class Served:
+    """A running server, an HTTP client of it, and the runtime's end."""
+
+    settings: Settings
+    assembly: Assembly
+    api: httpx.AsyncClient
+    runtime: RuntimeEnd
+
+    def connect(self, **options: Any) -> connect:
+        """A WebSocket to /api/live, as from the server's own page."""
+        own = f"http://127.0.0.1:{self.settings.port}"
+        defaults: dict[str, Any] = {"origin": own, "max_size": None, "compression": None}
+        return connect(f"ws://127.0.0.1:{self.settings.port}/api/live", **(defaults | options))
+
+    async def heard(self, topic: str) -> None:
+        """Wait until the server listens to a topic."""
+        await until(lambda: self.runtime.is_heard(topic), f"somebody to listen to {topic}")
+
+    async def reached(self) -> None:
+        """Wait until the runtime's end can be asked."""
+        async with asyncio.timeout(SECONDS):
+            while True:
+                try:
+                    return await self.assembly.bridge.command("there", {})
+                except RuntimeSilent:
+                    await asyncio.sleep(0.005)
+
+
+@asynccontextmanager
+async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIterator[Served]:
+    """Run the server of these settings, on a port of the system's choice."""
+    with open_socket("127.0.0.1", 0) as listener:
+        settings = replace(settings, port=listener.getsockname()[1])
+        prepare(settings.data)
+        app = create_app(settings, commands)
+        server = make_server(app)
+        # The runtime listens before the server comes, which then need not try again.
+        with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
+            running = asyncio.create_task(server.serve(sockets=[listener]))
+            try:
+                await until(lambda: server.started or running.done(), "the server to start")
+                url = f"http://127.0.0.1:{settings.port}/api"
+                async with httpx.AsyncClient(base_url=url, timeout=10) as api:
+                    served = Served(settings, app.state.assembly, api, runtime)
+                    await served.heard("stream")
+                    await served.reached()
+                    yield served
+            finally:
+                server.should_exit = True
+                await running
+
+
+async def next_text(socket: ClientConnection, op: str) -> dict[str, Any]:
+    """The next text message with this `op`; others are passed over."""
+    async with asyncio.timeout(10):
+        async for message in socket:
+            if isinstance(message, str) and (found := json.loads(message))["op"] == op:
+                assert isinstance(found, dict)
+                return found
+    raise AssertionError(f"the socket was closed before {op} came")

@@ -1,0 +1,181 @@
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import psutil
+import pytest
+
+from server import VERSION
+from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def mucat(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "server.cli", *arguments]
+    return subprocess.run(
+        command,
+        cwd=ROOT,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+
+
+@contextmanager
+def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
+    """`mucat run` for a robot without any hardware: its runtime finds no port, and the server serves."""
+    settings.config.write_text('[robot]\nname = "tested"\nmode = "robot"\n[link]\nport = "/nowhere"\n')
+    command = [sys.executable, "-m", "server.cli", "run", "--port", str(port)]
+    command += ["--config", str(settings.config), "--data", str(settings.data.path)]
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        try:
+            wait_for_answer(port, process)
+            yield process
+        finally:
+            process.kill()
+
+
+def wait_for_answer(port: int, process: subprocess.Popen[str]) -> None:
+    end = time.monotonic() + 20
+    while time.monotonic() < end and process.poll() is None:
+        try:
+            httpx.get(f"http://127.0.0.1:{port}/api/health")
+        except httpx.TransportError:
+            time.sleep(0.05)
+        else:
+            return
+    process.kill()
+    raise AssertionError(f"the server did not answer: {process.stdout and process.stdout.read()}")
+
+
+@pytest.fixture
+def port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        number: int = probe.getsockname()[1]
+        return number
+
+
+def test_the_version_is_the_project_s() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["version"] == VERSION
+    assert mucat("--version").stdout == f"mucat {VERSION}\n"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_ends_in_order_and_leaves_nothing_behind(
+    settings: Settings, port: int, number: signal.Signals
+) -> None:
+    with running(settings, port) as process:
+        mine = psutil.Process(process.pid)
+        end = time.monotonic() + 10
+        while not (children := mine.children(recursive=True)):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        process.send_signal(number)
+        output, _ = process.communicate(timeout=15)
+        assert (process.returncode, "Traceback" in output) == (0, False)
+        assert f"http://127.0.0.1:{port}/" in output
+        assert not any(child.is_running() for child in children)
+
+
+def test_a_killed_server_takes_its_processes_along(settings: Settings, port: int) -> None:
+    with running(settings, port) as process:
+        end = time.monotonic() + 10
+        log = settings.data.logs / "runtime.log"
+        while not log.exists() or not log.read_text():
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        children = psutil.Process(process.pid).children(recursive=True)
+        process.kill()
+        process.wait()
+        _, alive = psutil.wait_procs(children, timeout=10)
+        assert children
+        assert not alive
+
+
+def test_one_server_to_a_folder_and_one_to_a_port(settings: Settings, port: int) -> None:
+    with running(settings, port):
+        config = ("--config", str(settings.config))
+        same_folder = mucat("run", "--port", str(port + 1), "--data", str(settings.data.path), *config)
+        assert_refused(same_folder, "Another server works on")
+        other = settings.data.path.parent / "other"
+        same_port = mucat("run", "--port", str(port), *config, MUCAT_DATA=str(other))
+        assert_refused(same_port, f"Port {port} of 127.0.0.1 cannot be had")
+
+
+def test_what_cannot_work_is_refused_in_one_line(settings: Settings, tmp_path: Path) -> None:
+    data = ("--data", str(settings.data.path))
+    assert_refused(mucat("run", *data, "--config", str(tmp_path / "no.toml")), "no.toml cannot be read")
+    bad = tmp_path / "bad.toml"
+    for text, words in (
+        ("[robot]\nname = 3", "name"),
+        ('[robot]\nname = "a/b"', "robot.name"),
+        ("[server]\nport = 0", "port"),
+        ("[sever]\nport = 1", "sever"),
+        ("nonsense", "cannot be read"),
+    ):
+        bad.write_text(text)
+        assert_refused(mucat("run", *data, "--config", str(bad)), words)
+    long = tmp_path / ("x" * 90)
+    good = ("--config", str(settings.config))
+    assert_refused(mucat("run", "--data", str(long), *good), "too long")
+    assert not long.exists()
+    assert_refused(mucat("run", "--port", "70000", *data, *good), "70000")
+    assert_refused(mucat("run", "--host", "203.0.113.1", *data, *good), "203.0.113.1")
+
+
+def assert_refused(result: subprocess.CompletedProcess[str], words: str) -> None:
+    assert result.returncode == 1
+    assert result.stdout == ""
+    assert result.stderr.startswith("mucat: ")
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_command_line_before_environment_before_file(settings: Settings, tmp_path: Path) -> None:
+    config = settings.config
+    config.write_text('[server]\nport = 9001\nhost = "127.0.0.2"\nallowed_hosts = ["Turtle.local"]\n')
+    environment = {"MUCAT_DATA": str(tmp_path / "env")}
+    plain = read_settings(config, None, None, None, environment)
+    assert (plain.port, plain.host, plain.data.path) == (9001, "127.0.0.2", tmp_path / "env")
+    assert plain.allowed_hosts == ("turtle.local", "127.0.0.2")
+    chosen = read_settings(config, tmp_path / "line", "::1", 9002, environment)
+    assert (chosen.port, chosen.host, chosen.data.path) == (9002, "::1", tmp_path / "line")
+    assert chosen.allowed_hosts == ("turtle.local", "[::1]")
+    assert read_settings(config, None, "0.0.0.0", None, {}).allowed_hosts == ("turtle.local",)
+
+
+def test_run_is_emptied_and_the_rest_is_kept(settings: Settings) -> None:
+    folder = settings.data
+    (folder.run / "board.sock").touch()
+    (folder.path / "kept").touch()
+    make_folders(folder)
+    assert not list(folder.run.iterdir())
+    assert (folder.path / "kept").exists()
+    assert folder.run.stat().st_mode & 0o777 == 0o700
+    with pytest.raises(SetupError, match="cannot be used"):
+        make_folders(DataFolder(folder.path / "kept"))
+
+
+def test_no_heavy_library_is_in_the_server_s_process() -> None:
+    program = (
+        "import sys, server.app; print(*sorted({'numpy', 'cv2', 'plotly', 'alembic'} & set(sys.modules)))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == ""

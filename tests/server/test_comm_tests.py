@@ -1,0 +1,175 @@
+"""`mucat commtest`, from the document to the export, on the emulated board."""
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.comm_test.results import Cell, CellResult, Counts, LineErrors
+from server.cli import main
+from server.comm_tests import tables
+from server.comm_tests.reference import read_table
+from server.comm_tests.runs import Runs
+from server.settings import Settings
+from server.store import Store
+from tests.board.rig import ROOT, build
+from tests.runtime.comm_test.conftest import make_test
+
+ENTRY: dict[str, Any] = {
+    "id": 1,
+    "name": "two delays",
+    "ino_path": "/micro_cat_test/arduino/test_6/test_6.ino",
+    "delay": [0.0, 0.5],
+    "baud_rate": [115200],
+    "from_val": 1,
+    "to_val": 13,
+    "expected": 12,
+    "arduinodelay": [0.1],
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _board() -> None:
+    build(ROOT / "firmware/emulator")
+
+
+@pytest.fixture
+def options(settings: Settings) -> list[str]:
+    return ["--data", str(settings.data.path), "--config", str(settings.config)]
+
+
+def write(folder: Path, *entries: dict[str, Any]) -> str:
+    path = folder / "test.json"
+    path.write_text(json.dumps(entries), encoding="utf-8")
+    return str(path)
+
+
+def test_run_show_compare_and_export(
+    options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = write(tmp_path, ENTRY, ENTRY | {"framing": "plain", "direction": "both"})
+    assert main(["commtest", "run", document, *options]) == 0
+    output = capsys.readouterr().out
+    assert "[  2/2] 115200 baud, Arduino 0.1 s, Pi 0.5 s" in output
+    assert "0:00 remaining" in output
+    assert "115200  0.1                0.5           0.83  framing error" in output
+
+    assert main(["commtest", "list", *options]) == 0
+    listed = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in listed] == ["id", "2", "1"]
+    assert "complete  plain    both" in listed[1]
+
+    assert main(["commtest", "show", "1", *options]) == 0
+    shown = capsys.readouterr().out
+    for words in ("avr-g++", "emulated board", "/micro_cat_test/", "ring overrun: the bytes came faster"):
+        assert words in shown
+
+    assert main(["commtest", "compare", "1", "2", "table6", "table5", *options]) == 0
+    compared = capsys.readouterr().out.splitlines()
+    header = ["1", "2", "difference", "table6", "difference", "table5", "difference"]
+    assert compared[0].split()[-7:] == header
+    assert compared[2].split() == ["115200", "0.1", "0.5", "0.83", "1.00", "+0.17", "0.96", "+0.13", "-", "-"]
+
+    assert main(["commtest", "export", "1", *options]) == 0
+    first, second = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    assert (first["run"], first["framing"], first["pi_delay"], second["pi_delay"]) == (
+        "1",
+        "thesis",
+        "0.0",
+        "0.5",
+    )
+    assert float(second["rate"]) == int(second["right"]) / 12 == 10 / 12
+    assert int(first["bytes_read"]) + int(first["bytes_lost"]) == 12 * 9
+
+    assert main(["commtest", "export", "2", "--format", "json", *options]) == 0
+    exported = json.loads(capsys.readouterr().out)
+    assert exported["document"]["expected"] == 12
+    assert exported["tools"]["emulated board"]
+    assert [cell["pi_delay"] for cell in exported["cells"]] == [0.0, 0.5]
+
+
+def test_what_cannot_be_done_is_said(
+    options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = write(tmp_path, ENTRY | {"delay": [-1], "speed": 3})
+    for arguments, words in (
+        (["run", document], "test 1: speed: there is no such field"),
+        (["run", document], "test 1: delay[0]: -1 is not a delay"),
+        (["run", str(tmp_path / "none.json")], "none.json cannot be read"),
+        (["show", "7"], "There is no run 7"),
+        (["export", "7"], "There is no run 7"),
+        (["compare", "table6", "table7"], "'table7' is neither the number of a run"),
+    ):
+        assert main(["commtest", *arguments, *options]) == 1
+        assert words in capsys.readouterr().err
+    assert main(["commtest", "list", *options]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1
+
+
+def test_a_damaged_database_is_told_of(
+    settings: Settings, options: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.data.database.write_bytes(b"nonsense" * 1000)
+    assert main(["commtest", "list", *options]) == 1
+    assert "cannot be used: file is not a database" in capsys.readouterr().err
+
+
+def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[str], tmp_path: Path) -> None:
+    delays = [number / 100 for number in range(100)]
+    document = write(tmp_path, ENTRY | {"delay": delays, "arduinodelay": [0]})
+    command = [sys.executable, "-m", "server.cli", "commtest", "run", document, *options]
+    # In a group of its own, so that the interruption reaches the emulated board too, as from a terminal.
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        assert next(line for line in process.stdout if line.startswith("[  2/100]"))
+        os.killpg(process.pid, signal.SIGINT)
+        _, errors = process.communicate(timeout=30)
+    assert (process.returncode, "was cancelled" in errors, "Traceback" in errors) == (1, True, False)
+    with closing(Store(settings.data.database)) as store:
+        (run,) = Runs(store).list()
+        cells = Runs(store).cells(1)
+    assert run.state == "cancelled"
+    assert run.ended is not None
+    assert 2 <= len(cells) < 100
+    assert [cell.number for cell in cells] == list(range(len(cells)))
+
+
+def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
+    runs = Runs(store)
+    number = runs.start(make_test(), "firmware", {})
+    runs.mark_interrupted()
+    other = runs.start(make_test(), "firmware", {})
+    assert [(run.id, run.state) for run in runs.list()] == [(other, "running"), (number, "interrupted")]
+
+
+def test_a_lost_result_is_kept_as_such(store: Store) -> None:
+    runs = Runs(store)
+    number = runs.start(make_test(), "firmware", {})
+    cell = Cell(9600, 0.5, 1.0)
+    lost = CellResult(cell, "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
+    runs.add(number, 0, lost)
+    (kept,) = runs.cells(number)
+    assert (kept.rate, kept.answered, kept.line_errors) == (0.0, False, 7)
+    assert kept.causes == "lost result, line"
+    run = runs.find(number)
+    assert run is not None
+    assert "9600 baud, Arduino 0.5 s, Pi 1 s: lost result" in tables.show_run(run, [kept])
+
+
+def test_the_thesis_s_tables_are_whole() -> None:
+    table5, table6 = read_table("table5"), read_table("table6")
+    assert len(table5) == 15
+    assert len(table6) == 75
+    assert table5[115200, 0.0, 0.0] == 0.94
+    assert table6[4800, 1.0, 0.5] == 0.57
+    assert {place for place in table6 if place[1] == 0} == set(table5)

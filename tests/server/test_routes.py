@@ -1,0 +1,321 @@
+import asyncio
+import csv
+import io
+import json
+import sys
+import zipfile
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+import server.bridge as bridge_module
+from server.openapi import main as print_openapi
+from server.parts import Command
+from server.settings import Settings
+from tests.server.blocks import depth_block, link_block, state_block, truth_block
+from tests.server.serving import Served, serve
+from tests.server.waiting import until
+
+
+def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: Command) -> None:
+    async def run() -> None:
+        async with serve(settings, commands) as served:
+            await scenario(served)
+
+    asyncio.run(run())
+
+
+def test_health_names_every_part_and_its_words(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async def states() -> dict[str, str]:
+            answer = await served.api.get("/health")
+            assert answer.status_code == 200
+            assert answer.json()["robot"] == "tested"
+            assert all(part["text"] for part in answer.json()["parts"])
+            return {part["name"]: part["state"] for part in answer.json()["parts"]}
+
+        assert list(await states()) == ["server", "database", "runtime", "link", "board", "simulator"]
+        assert (await served.api.get("/health")).json()["status"] == "starting"
+        served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
+        await until(lambda: served.assembly.watch.health().status == "ok", "all to be well")
+        assert set((await states()).values()) == {"ok"}
+
+    play(settings, scenario)
+
+
+def test_the_newest_state_is_shown(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.get("/robot")
+        assert answer.status_code == 503
+        assert "/api/health" in answer.json()["detail"]
+        served.runtime.publish(state_block(0, set_point=0.5), state_block(1, set_point=0.75))
+        await until(lambda: (served.assembly.watch.state() or {}).get("set_point") == 0.75, "the state")
+        answer = await served.api.get("/robot")
+        assert (answer.status_code, answer.json()["set_point"]) == (200, 0.75)
+
+    play(settings, scenario)
+
+
+COMMANDS = [
+    ("POST", "stop", None, "stop", {}),
+    ("POST", "arm", None, "arm", {}),
+    (
+        "PUT",
+        "controller",
+        {"name": "pid", "gains": {"kp": 2}},
+        "controller",
+        {"name": "pid", "gains": {"kp": 2}},
+    ),
+    ("PUT", "controller", {"name": "pid"}, "controller", {"name": "pid", "gains": {}}),
+    ("PUT", "set-points", {"default": 0.4}, "set_points", {"default": 0.4}),
+    (
+        "PUT",
+        "set-points",
+        {"default": 0, "detected": 10},
+        "set_points",
+        {"default": 0, "detected": 10},
+    ),
+    ("PUT", "card", {"colour": "red"}, "card", {"colour": "red"}),
+    ("PUT", "card", {"colour": None}, "card", {"colour": None}),
+    ("PUT", "vision", {"rate": 8}, "vision", {"rate": 8}),
+    ("PUT", "vision", {"colour": "red"}, "vision", {"colour": "red"}),
+]
+
+
+def test_every_command_reaches_the_runtime(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for method, path, body, name, expected in COMMANDS:
+            answer = await served.api.request(method, f"/robot/{path}", json=body)
+            assert (answer.status_code, answer.content) == (204, b""), answer.text
+            assert served.runtime.asked[-1] == (name, expected)
+        assert len(served.runtime.asked) == len(COMMANDS)
+
+    play(settings, scenario)
+
+
+INVALID = [
+    ("controller", "{}"),
+    ("controller", '{"name": ""}'),
+    ("controller", '{"name": "pid", "gains": {"kp": NaN}}'),
+    ("controller", '{"name": "pid", "gains": {"kp": Infinity}}'),
+    ("controller", '{"name": "pid", "extra": 1}'),
+    ("set-points", '{"default": -0.1}'),
+    ("set-points", '{"default": 10.1}'),
+    ("set-points", '{"detected": "deep"}'),
+    ("card", "{}"),
+    ("card", '{"colour": 3}'),
+    ("vision", '{"rate": 0}'),
+    ("vision", '{"rate": 1e999}'),
+    ("vision", "no JSON"),
+    ("vision", "[]"),
+]
+
+
+def test_what_is_not_valid_never_reaches_the_runtime(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for path, body in INVALID:
+            headers = {"content-type": "application/json"}
+            answer = await served.api.put(f"/robot/{path}", content=body, headers=headers)
+            assert answer.status_code == 422, (path, body)
+            assert answer.json()["detail"].startswith("The request is not valid.")
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
+def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.refusal = "There is no fresh depth. Check the pressure sensor."
+        answer = await served.api.post("/robot/arm")
+        assert (answer.status_code, answer.json()) == (409, {"detail": served.runtime.refusal})
+
+    play(settings, scenario)
+
+
+def test_a_runtime_that_is_not_there_is_told_at_once(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.__exit__()
+        async with asyncio.timeout(1.5):
+            answer = await served.api.post("/robot/stop")
+            while answer.status_code == 204:
+                answer = await served.api.post("/robot/stop")
+        assert answer.status_code == 503
+        assert "not running" in answer.json()["detail"]
+
+    play(settings, scenario)
+
+
+def test_a_runtime_that_does_not_answer_is_told_in_the_end_and_stop_does_not_wait_for_it(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", 1.0)
+
+    async def scenario(served: Served) -> None:
+        gate = served.runtime.gates["vision"]
+        gate.clear()
+        slow = [
+            asyncio.create_task(served.assembly.bridge.command("vision", {}))
+            for _ in range(bridge_module.COMMANDS_AT_ONCE)
+        ]
+        await asyncio.sleep(0)
+        refused = await served.api.post("/robot/arm")
+        assert refused.status_code == 503
+        assert "busy" in refused.json()["detail"]
+        stopped = await served.api.post("/robot/stop")
+        early = [task for task in slow if task.done()]
+        outcomes = await asyncio.gather(*slow, return_exceptions=True)
+        gate.set()
+        assert (stopped.status_code, early) == (204, [])
+        assert all(isinstance(one, bridge_module.RuntimeSilent) and one.waited for one in outcomes)
+
+    play(settings, scenario)
+
+
+def test_a_session_from_start_to_download(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        api = served.api
+        assert (await api.get("/sessions")).json() == []
+        started = await api.post("/sessions", json={"name": " Dive ", "note": "cold"})
+        assert started.status_code == 201
+        session = started.json()
+        assert (session["name"], session["note"], session["state"]) == ("Dive", "cold", "recording")
+        assert session["started"].endswith("Z")
+        again = await api.post("/sessions", json={})
+        assert again.status_code == 409
+        assert "“Dive” is being recorded" in again.json()["detail"]
+        served.runtime.publish(depth_block(0, 10, start=served.assembly.clock.now()))
+        recorder = served.assembly.recorder
+        await until(lambda: recorder.session is not None and recorder.session.samples >= 10, "the samples")
+        half = await api.get(f"/sessions/{session['id']}/csv")
+        assert "depth.csv" in zipfile.ZipFile(io.BytesIO(half.content)).namelist()
+        stopped = (await api.post(f"/sessions/{session['id']}/stop")).json()
+        assert stopped["state"] == "complete"
+        assert (await api.get("/sessions")).json() == [stopped]
+        assert (await api.get(f"/sessions/{session['id']}")).json() == stopped
+        assert (await api.post(f"/sessions/{session['id']}/stop")).status_code == 409
+        whole = await api.get(f"/sessions/{session['id']}/csv")
+        assert whole.headers["content-type"] == "application/zip"
+        assert '_Dive.zip"' in whole.headers["content-disposition"]
+        archive = zipfile.ZipFile(io.BytesIO(whole.content))
+        lines = list(csv.DictReader(io.StringIO(archive.read("depth.csv").decode())))
+        assert [int(line["time [µs]"]) for line in lines] == list(range(10))
+        assert json.loads(archive.read("session.json"))["configuration"] == settings.config.read_text()
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        ({"name": "x" * 101}, 422),
+        ({"note": "x" * 10_001}, 422),
+        ({"name": 1}, 422),
+        ({"other": ""}, 422),
+        ({}, 201),
+    ],
+)
+def test_new_sessions_are_looked_at(settings: Settings, body: dict[str, object], status: int) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.post("/sessions", json=body)
+        assert answer.status_code == status
+        if status == 201:
+            assert answer.json()["name"].endswith(" UTC")
+
+    play(settings, scenario)
+
+
+def test_sessions_that_do_not_exist(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for answer in (
+            await served.api.get("/sessions/7"),
+            await served.api.get("/sessions/7/csv"),
+            await served.api.post("/sessions/7/stop"),
+        ):
+            assert answer.status_code == 404
+            assert "There is no session 7" in answer.json()["detail"]
+        for strange in ("0", "-1", "x", "1.5", str(2**63), "..%2f1"):
+            assert (await served.api.get(f"/sessions/{strange}")).status_code in (404, 422)
+
+    play(settings, scenario)
+
+
+def test_a_session_is_completed_when_the_server_ends_in_order(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            await served.api.post("/sessions", json={"name": "cut"})
+            served.runtime.publish(depth_block(0, 4))
+            seen = served.assembly.watch._newest
+            await until(lambda: "depth" in seen, "the samples")
+        async with serve(settings) as served:
+            (session,) = (await served.api.get("/sessions")).json()
+            assert (session["state"], session["samples"] >= 4) == ("complete", True)
+
+    asyncio.run(scenario())
+
+
+def test_foreign_hosts_and_pages_are_refused_everywhere(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for headers in ({"host": "evil.example"}, {"origin": "http://evil.example"}, {"origin": "null"}):
+            answer = await served.api.post("/robot/arm", headers=headers)
+            assert answer.status_code == 403
+            assert answer.json()["detail"]
+        assert served.runtime.asked == []
+        own = await served.api.post(
+            "/robot/arm", headers={"origin": f"http://127.0.0.1:{served.settings.port}"}
+        )
+        assert own.status_code == 204
+
+    play(settings, scenario)
+
+
+def test_every_answer_binds_the_browser(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        root = f"http://127.0.0.1:{served.settings.port}"
+        for url in ("/health", "/nothing", f"{root}/", f"{root}/operate"):
+            headers = (await served.api.get(url)).headers
+            assert headers["x-content-type-options"] == "nosniff"
+            assert "frame-ancestors 'none'" in headers["content-security-policy"]
+            assert "unsafe" not in headers["content-security-policy"]
+            assert "server" not in headers
+        assert (await served.api.get("/health")).headers["cache-control"] == "no-store"
+
+    play(settings, scenario)
+
+
+def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) -> None:
+    broken = Command("board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')"))
+
+    async def scenario(served: Served) -> None:
+        await until(lambda: served.assembly.watch.health().status == "failed", "the failure")
+        parts = {part["name"]: part for part in (await served.api.get("/health")).json()["parts"]}
+        assert parts["board"]["state"] == "failed"
+        assert parts["board"]["text"] == "It has ended with exit status 1. Its last words: no firmware."
+        history = b"".join(b"".join(group) for group in served.assembly.hub.history.since(-1, 10**6))
+        assert "The emulated board has ended with exit status 1" in history.decode(errors="replace")
+
+    play(settings, scenario, broken)
+
+
+def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        good = depth_block(0, 2).to_bytes()
+        for bad in (good[:11], good[:-1], good + b"x", b"\xff" + good[1:], good[:1] + b"\x01" + good[2:]):
+            served.runtime.publish_bytes(bad)
+        served.runtime.publish(depth_block(0, 2))
+        await until(lambda: served.assembly.bridge.damaged == 5, "the damaged blocks")
+        await until(lambda: "depth" in served.assembly.watch._newest, "the good one")
+        assert b"".join(b"".join(one) for one in served.assembly.hub.history.since(-1, 10**6)) == good
+
+    play(settings, scenario)
+
+
+def test_the_interface_is_described_in_the_same_words_every_time(capsys: pytest.CaptureFixture[str]) -> None:
+    print_openapi()
+    first = capsys.readouterr().out
+    print_openapi()
+    assert capsys.readouterr().out == first
+    paths = json.loads(first)["paths"]
+    assert "/api/live" not in paths
+    assert all(way["summary"] and way["operationId"] for path in paths.values() for way in path.values())
+    schemas = json.loads(first)["components"]["schemas"]
+    assert {"Health", "Session", "State", "Controller", "Problem"} <= set(schemas)

@@ -1,0 +1,15 @@
+"""Waiting for what must come soon."""
+
+import asyncio
+import time
+from collections.abc import Callable
+
+SECONDS = 10.0
+
+
+async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:
+    """Let the event loop run until the condition holds. Fails with `what` when it never does."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
+        await asyncio.sleep(0.005)

@@ -1,0 +1,117 @@
+"""The whole robot as a person starts it: `mucat run` on a loopback port, with a data folder of its own."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import httpx
+import psutil
+
+ROOT = Path(__file__).resolve().parents[1]
+READY_SECONDS = 40.0
+_STOP_SECONDS = 10.0
+_POLL = 0.05
+
+
+def free_port() -> int:
+    """A TCP port of the loopback that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+class Stack:
+    """A running robot; leaving the context ends it and everything it started."""
+
+    def __init__(self, data: Path, *options: str) -> None:
+        self.data = data
+        self.port = free_port()
+        self.url = f"http://127.0.0.1:{self.port}"
+        self.log = data / "stack.log"
+        self._options = options
+        self._process: subprocess.Popen[bytes] | None = None
+        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0)
+
+    def __enter__(self) -> Self:
+        self.start()
+        try:
+            self.wait_ready()
+        except BaseException:
+            self.stop()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    @property
+    def process(self) -> psutil.Process:
+        """The process that was started."""
+        assert self._process is not None
+        return psutil.Process(self._process.pid)
+
+    def start(self) -> None:
+        """Start `mucat run` without waiting for anything."""
+        self.data.mkdir(parents=True, exist_ok=True)
+        command = [
+            str(Path(sys.executable).parent / "mucat"),
+            "run",
+            "--port",
+            str(self.port),
+            *self._options,
+        ]
+        environment = os.environ | {"MUCAT_DATA": str(self.data), "PYTHONUNBUFFERED": "1"}
+        with self.log.open("ab") as log:
+            self._process = subprocess.Popen(
+                command,
+                cwd=ROOT,
+                env=environment,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    def wait_ready(self) -> None:
+        """Wait until every part is well."""
+        end = time.monotonic() + READY_SECONDS
+        health: dict[str, Any] = {}
+        while time.monotonic() < end:
+            assert self._process is not None
+            if self._process.poll() is not None:
+                break
+            try:
+                health = self.api.get("/health").json()
+            except httpx.TransportError:
+                health = {}
+            if health.get("status") == "ok":
+                return
+            time.sleep(_POLL)
+        raise AssertionError(f"not ready: {health}\n{self.log.read_text(errors='replace')[-4000:]}")
+
+    def child(self, word: str) -> psutil.Process:
+        """The started process whose command line holds `word`."""
+        found = [one for one in self.process.children(recursive=True) if word in " ".join(one.cmdline())]
+        assert len(found) == 1, f"{len(found)} processes with {word}"
+        return found[0]
+
+    def stop(self) -> None:
+        """Press Ctrl-C and wait for the end."""
+        self.api.close()
+        if self._process is None or self._process.poll() is not None:
+            return
+        self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(_STOP_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+            raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None
