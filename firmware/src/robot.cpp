@@ -80,7 +80,7 @@ void Robot::handle(const Message& message) {
 
 void Robot::greet(const Hello& hello) {
   say_disarmed(arming_.greet(hello));
-  link_.begin(static_cast<uint32_t>(hello.epoch) << 16 | epoch_);
+  link_.begin(session_key(hello.epoch, epoch_));
   link_.set_credit(hello.credit);
   send_hello();
 }

@@ -68,8 +68,15 @@ class Message(NamedTuple):
 
 
 def session_key(host_epoch: int, board_epoch: int) -> int:
-    """The key of the frames between these two."""
-    return host_epoch << 16 | board_epoch
+    """The key of the frames between these two: both epochs, mixed by MurmurHash3's finaliser.
+
+    Like epochs differ in few bits, and bit errors must not make up for it. Mixing by a CRC would not do, as
+    some bit errors have the same effect. It is `OPEN` for epochs of 0 alone, and no boot is numbered 0.
+    """
+    key = host_epoch << 16 | board_epoch
+    key = (key ^ key >> 16) * 0x85EBCA6B & 0xFFFFFFFF
+    key = (key ^ key >> 13) * 0xC2B2AE35 & 0xFFFFFFFF
+    return key ^ key >> 16
 
 
 class Session:

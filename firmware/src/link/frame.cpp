@@ -29,6 +29,13 @@ uint8_t message_bytes(const uint8_t* at, uint8_t available) {
 
 }  // namespace
 
+uint32_t session_key(uint16_t host_epoch, uint16_t board_epoch) {
+  uint32_t key = static_cast<uint32_t>(host_epoch) << 16 | board_epoch;
+  key = (key ^ key >> 16) * 0x85ebca6bUL;
+  key = (key ^ key >> 13) * 0xc2b2ae35UL;
+  return key ^ key >> 16;
+}
+
 bool FrameDecoder::feed(uint8_t byte) {
   if (byte != 0) {
     if (size_ < sizeof block_) {
