@@ -1,0 +1,159 @@
+"""Corrupted frames by the million, through the chip's decoder and the host's, over the same bytes.
+
+`firmware/host/proofs/corruption.h` says how lines harm frames and what counts as corrupted and as undetected:
+a frame that was believed and is not one that was sent in this session, in order and at most once.
+"""
+
+import ctypes
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Self
+
+from robot_runtime.link.framing import Decoder, assemble
+from tests.board.rig import ROOT, build
+
+Checksum = Literal["crc32", "crc16", "xor8"]
+End = Literal["chip", "host"]
+ENDS: tuple[End, ...] = ("chip", "host")
+STRETCH = 2000
+"""Harmed frames that are read at once."""
+
+
+class Model(NamedTuple):
+    """A way to harm frames: its number in corruption.h, and the rate of bit errors where that matters."""
+
+    harm: int
+    rate: float = 0.0
+
+
+MODELS = {
+    "bit errors 1e-4": Model(0, 1e-4),
+    "bit errors 1e-3": Model(0, 1e-3),
+    "bit errors 1e-2": Model(0, 1e-2),
+    "bit errors 1e-1": Model(0, 1e-1),
+    "bursts": Model(1),
+    "deleted bytes": Model(2),
+    "inserted bytes": Model(3),
+    "doubled bytes": Model(4),
+    "moved bytes": Model(5),
+    "truncated": Model(6),
+    "joined": Model(7),
+    "garbage": Model(8),
+    "wrong checksum": Model(9),
+    "another session": Model(10),
+    "another session, bit errors": Model(11),
+}
+
+
+@dataclass
+class Counts:
+    """Frames that were not whole, whole ones that were believed, and believed ones that were never sent."""
+
+    corrupted: int = 0
+    believed: int = 0
+    undetected: int = 0
+
+    def __add__(self, other: Self) -> "Counts":
+        return Counts(
+            self.corrupted + other.corrupted,
+            self.believed + other.believed,
+            self.undetected + other.undetected,
+        )
+
+
+class HarmfulLine:
+    """A line of firmware/host/proofs, whose frames have this checksum."""
+
+    def __init__(self, checksum: Checksum, model: str, seed: int) -> None:
+        self._library = _load(checksum)
+        self._line = self._library.corruption_create(*MODELS[model], seed)
+        self.key = int(self._library.corruption_key(self._line))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._library.corruption_destroy(self._line)
+
+    def stretches(self, frames: int) -> Iterator[None]:
+        """Carry at least so many harmed frames, a stretch at a time, to be read by `chip` and `host`."""
+        for start in range(0, frames, STRETCH):
+            self._library.corruption_carry(self._line, min(STRETCH, frames - start))
+            yield
+
+    def chip(self) -> Counts:
+        """What the chip's decoder makes of the stretch."""
+        counts = (ctypes.c_uint32 * 3)()
+        self._library.corruption_read(self._line, counts)
+        return Counts(*counts)
+
+    def host(self) -> Counts:
+        """What the host's decoder makes of the same bytes."""
+        harmed = self._bytes("harmed")
+        counts = Counts(corrupted=sum(harmed) + int(self._library.corruption_strangers(self._line)))
+        sent = [frame + b"\0" for frame in self._bytes("sent").split(b"\0")[:-1]]
+        decoder = Decoder()
+        decoder.key = self.key
+        at = 0
+        for frame in decoder.feed(self._bytes("line")):
+            key = 0 if frame.open else self.key
+            messages = b"".join(bytes([type_]) + payload for type_, payload in frame.messages)
+            try:
+                found = sent.index(
+                    assemble(messages, frame.reliable, frame.number, frame.acknowledged, key), at
+                )
+            except ValueError:
+                counts.undetected += 1
+                continue
+            counts.believed += 1
+            counts.corrupted -= harmed[found]
+            at = found + 1
+        return counts
+
+    def _bytes(self, name: str) -> bytes:
+        size = getattr(self._library, f"corruption_{name}_size")(self._line)
+        return ctypes.string_at(getattr(self._library, f"corruption_{name}")(self._line), size)
+
+
+def prepare() -> None:
+    """Compile the lines."""
+    build(ROOT / "firmware", "proofs")
+
+
+def measure(end: End, model: str, frames: int, checksum: Checksum = "crc32", seed: int = 0) -> Counts:
+    """Let one end read at least so many harmed frames; the same for the same seed."""
+    with HarmfulLine(checksum, model, seed * len(MODELS) + list(MODELS).index(model)) as line:
+        read: Callable[[], Counts] = getattr(line, end)
+        return sum((read() for _ in line.stretches(frames)), Counts())
+
+
+def measure_all(frames: int, ends: Iterable[End] = ENDS) -> dict[tuple[End, str], Counts]:
+    """By end and model: each end reads at least so many harmed frames, the models in equal shares."""
+    prepare()
+    share = -(-frames // len(MODELS) // STRETCH) * STRETCH
+    tasks: list[tuple[End, str]] = [(end, model) for end in ends for model in MODELS]
+    with ProcessPoolExecutor(2) as processes:
+        futures = [processes.submit(measure, end, model, share) for end, model in tasks]
+        return {task: future.result() for task, future in zip(tasks, futures, strict=True)}
+
+
+def _load(checksum: Checksum) -> ctypes.CDLL:
+    library = ctypes.CDLL(str(ROOT / f"build/firmware/libcorruption_{checksum}.so"))
+    pointer, number = ctypes.c_void_p, ctypes.c_uint32
+    library.corruption_create.restype = pointer
+    library.corruption_create.argtypes = [ctypes.c_uint8, ctypes.c_double, ctypes.c_uint64]
+    library.corruption_destroy.argtypes = [pointer]
+    library.corruption_carry.argtypes = [pointer, number]
+    library.corruption_read.argtypes = [pointer, pointer]
+    for name in ("line", "sent", "harmed"):
+        getattr(library, f"corruption_{name}").restype = pointer
+    for name in ("key", "line_size", "sent_size", "harmed_size", "strangers"):
+        getattr(library, f"corruption_{name}").restype = number
+    for name in (
+        "key",
+        "strangers",
+        *(f"{it}{of}" for it in ("line", "sent", "harmed") for of in ("", "_size")),
+    ):
+        getattr(library, f"corruption_{name}").argtypes = [pointer]
+    return library

@@ -1,0 +1,40 @@
+"""A short version of `make soak`'s corrupted frames, and that weaker checksums would be found out."""
+
+import zlib
+from functools import reduce
+from operator import xor
+
+import pytest
+
+from tests.proofs.corruption import ENDS, MODELS, End, measure, prepare
+
+FRAMES = 4000
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built() -> None:
+    prepare()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_no_corruption_is_believed_by_either_end(model: str) -> None:
+    chip, host = (measure(end, model, FRAMES) for end in ENDS)
+    assert chip == host
+    assert chip.undetected == 0
+    assert chip.corrupted > 0.98 * FRAMES
+    # What is whole is understood, so it was not deaf.
+    assert chip.believed > 0.2 * FRAMES
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_the_thesiss_checksum_would_let_corruptions_pass(end: End, monkeypatch: pytest.MonkeyPatch) -> None:
+    def xor8(data: bytes) -> int:
+        return reduce(xor, data, 0)
+
+    monkeypatch.setattr(zlib, "crc32", xor8)
+    counts = measure(end, "doubled bytes", FRAMES, "xor8")
+    assert counts.undetected > 0.02 * FRAMES
+
+
+def test_crc16_would_let_corruptions_pass() -> None:
+    assert measure("chip", "wrong checksum", 300_000, "crc16").undetected > 0
