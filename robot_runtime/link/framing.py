@@ -143,7 +143,7 @@ class Decoder:
                 return None
             start, size = at + 1, cls.layout.size
             if cls.tail:
-                if start + size >= end:
+                if start + size >= end or body[start + size] > cls.tail[1].max_bytes:
                     return None
                 size += 1 + body[start + size]
             at = start + size

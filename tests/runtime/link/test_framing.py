@@ -107,9 +107,18 @@ def test_idle_zeros_are_no_error() -> None:
         b"\x10" + bytes([Navigation.type]) + bytes(5),
         b"\x10" + bytes([Debug.type]) + bytes(5),
         b"\x10" + bytes([Debug.type]) + bytes(5) + b"\x04abc",
+        b"\x10" + bytes([Debug.type]) + bytes(5) + b"\x29" + b"a" * 41,
         b"\x10" + bytes([Hello.type]) + bytes(8) + bytes([Beacon.type]),
     ],
-    ids=["empty", "unknown type", "short", "text without length", "text cut off", "second cut off"],
+    ids=[
+        "empty",
+        "unknown type",
+        "short",
+        "text without length",
+        "text cut off",
+        "text too long",
+        "second cut off",
+    ],
 )
 def test_right_checksums_do_not_save_wrong_contents(content: bytes) -> None:
     decoder = Decoder()
