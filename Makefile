@@ -1,12 +1,13 @@
 # `make run` and `make test` set up what a fresh machine lacks. `make help` lists the rest.
 PORT ?= 8000
 ONLY ?=
+FUZZ_SECONDS ?= 600
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench fuzz soak generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -34,6 +35,12 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 
 bench: setup-test ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
+
+fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
+	@nice $(PYTHON) -m tests.proofs.fuzz $(FUZZ_SECONDS)
+
+soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
+	@nice $(PYTHON) -m tests.proofs
 
 firmware: ## compile the firmware and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."

@@ -5,7 +5,7 @@ a frame that was believed and is not one that was sent in this session, in order
 """
 
 import ctypes
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Self
@@ -128,14 +128,27 @@ def measure(end: End, model: str, frames: int, checksum: Checksum = "crc32", see
         return sum((read() for _ in line.stretches(frames)), Counts())
 
 
-def measure_all(frames: int, ends: Iterable[End] = ENDS) -> dict[tuple[End, str], Counts]:
+def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
     """By end and model: each end reads at least so many harmed frames, the models in equal shares."""
     prepare()
     share = -(-frames // len(MODELS) // STRETCH) * STRETCH
-    tasks: list[tuple[End, str]] = [(end, model) for end in ends for model in MODELS]
+    tasks: list[tuple[End, str]] = [(end, model) for end in ENDS for model in MODELS]
     with ProcessPoolExecutor(2) as processes:
         futures = [processes.submit(measure, end, model, share) for end, model in tasks]
         return {task: future.result() for task, future in zip(tasks, futures, strict=True)}
+
+
+def table(counts: Mapping[tuple[End, str], Counts]) -> str:
+    """For people: undetected of corrupted frames, by model and end."""
+    lines = [f"{'undetected of corrupted':<28}" + "".join(f"{end:>22}" for end in ENDS)]
+    for model in MODELS:
+        cells = (counts[end, model] for end in ENDS)
+        lines.append(
+            f"{model:<28}" + "".join(f"{f'{one.undetected} of {one.corrupted}':>22}" for one in cells)
+        )
+    totals = (sum((one for (end, _), one in counts.items() if end == of), Counts()) for of in ENDS)
+    lines.append(f"{'all':<28}" + "".join(f"{f'{one.undetected} of {one.corrupted}':>22}" for one in totals))
+    return "\n".join(lines)
 
 
 def _load(checksum: Checksum) -> ctypes.CDLL:
