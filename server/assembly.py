@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager, suppress
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
-from server.arrivals import Arrival
+from robot_runtime.topics import Block
 from server.bridge import Bridge
 from server.health import Watch
 from server.hub import Hub
@@ -30,7 +30,7 @@ class Assembly:
         self.clock: Clock = SteadyClock()
         self.page = Page(settings.page)
         self.store = Store(settings.data.database)
-        self.notices = Notices(self.clock, lambda arrival: self._deliver([arrival]))
+        self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
@@ -67,11 +67,11 @@ class Assembly:
             await self.bridge.close()
             await asyncio.to_thread(self.store.close)
 
-    def _deliver(self, arrivals: list[Arrival]) -> None:
-        self.hub.add(arrivals)
-        for arrival in arrivals:
-            self.recorder.add(arrival)
-            self.watch.see(arrival)
+    def _deliver(self, blocks: list[Block]) -> None:
+        self.hub.add(blocks)
+        for block in blocks:
+            self.recorder.add(block)
+            self.watch.see(block)
 
     def _tell_session(self) -> None:
         session = self.recorder.session

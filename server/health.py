@@ -7,9 +7,8 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.link.statistics import LinkStatistics
-from robot_runtime.topics import TIME
+from robot_runtime.topics import TIME, Block
 from server import VERSION
-from server.arrivals import Arrival
 from server.parts import Part, Parts
 from server.settings import Settings
 from server.store import Store
@@ -50,16 +49,16 @@ class Watch:
         self._store = store
         self._parts = parts
         self._began = clock.now()
-        self._newest: dict[str, tuple[float, Arrival]] = {}
+        self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew: float | None = None
 
-    def see(self, arrival: Arrival) -> None:
+    def see(self, block: Block) -> None:
         """Take note of a block."""
         now = self._clock.now()
-        self._newest[arrival.topic.name] = (now, arrival)
-        if arrival.topic.name == "link":
-            self._see_link(arrival, now)
+        self._newest[block.topic.name] = (now, block)
+        if block.topic.name == "link":
+            self._see_link(block, now)
 
     def state(self) -> dict[str, Any] | None:
         """The newest `state` document; None where there has been none that can be read."""
@@ -89,8 +88,8 @@ class Watch:
             status = "starting"
         return Health(status=status, version=VERSION, robot=self._settings.robot, parts=parts)
 
-    def _see_link(self, arrival: Arrival, now: float) -> None:
-        row = arrival.data[len(arrival.data) - arrival.topic.row_bytes + TIME.size :]
+    def _see_link(self, block: Block, now: float) -> None:
+        row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
         received = LinkStatistics.from_bytes(row).bytes_received
         if received > self._bytes_received >= 0:
             self._bytes_grew = now
