@@ -33,7 +33,7 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 	$(PYTHON) -m robot_runtime.generate
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
 
-bench: setup-test ## measure; a part by name with ONLY=link; figures go to build/bench.json
+bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
 
 fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
@@ -65,6 +65,10 @@ build/.packages-%: setup.sh
 	@python3 -m venv .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
 	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --editable . --group dev
+	@touch $@
+
+.venv/.ready-bench: .venv/.ready
+	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --group bench
 	@touch $@
 
 frontend/node_modules/.ready: frontend/package.json frontend/package-lock.json | build/.packages-run

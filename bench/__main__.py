@@ -1,4 +1,4 @@
-"""`python -m bench [PART ...]`: measure, print a table, and write build/bench.json."""
+"""`python -m bench [PART ...]`: measure, print a table beside the goals, and write build/bench.json."""
 
 import argparse
 import importlib
@@ -7,7 +7,21 @@ import sys
 import time
 from pathlib import Path
 
-PARTS = ("firmware", "emulator", "physics", "codec", "link", "corruption", "start", "stack", "latency")
+from bench.goals import GOALS
+
+PARTS = (
+    "firmware",
+    "emulator",
+    "physics",
+    "codec",
+    "link",
+    "corruption",
+    "setpoint",
+    "connection",
+    "start",
+    "stack",
+    "latency",
+)
 RESULT = Path("build/bench.json")
 
 
@@ -32,11 +46,25 @@ def main() -> int:
             continue
         figures |= measured
         for figure, value in measured.items():
-            print(f"  {figure:<36} {value:>12.4g}")
+            print(_row(figure, value), flush=True)
         print(f"{name} took {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+    missed = [_row(name, value) for name, value in figures.items() if name in GOALS and not _met(name, value)]
+    if missed:
+        print("\nGoals missed:", *missed, sep="\n")
     RESULT.parent.mkdir(exist_ok=True)
     RESULT.write_text(json.dumps(dict(sorted(figures.items())), indent=2) + "\n")
     return 1 if failed else 0
+
+
+def _met(figure: str, value: float) -> bool:
+    return GOALS[figure].met(value)
+
+
+def _row(figure: str, value: float) -> str:
+    row = f"  {figure:<40} {value:>12.4g}"
+    if figure not in GOALS:
+        return row
+    return f"{row}   goal {GOALS[figure]!s:<8} {'met' if _met(figure, value) else 'MISSED'}"
 
 
 if __name__ == "__main__":

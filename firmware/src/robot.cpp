@@ -100,9 +100,10 @@ void Robot::arm(const Start& start) {
 void Robot::tick(uint8_t ticks) {
   const uint32_t now = board::milliseconds();
   say_disarmed(arming_.tick(now));
-  sensors_.step(ticks, !armed());
   watch_battery(now);
+  // First of all that takes long: a command waits no longer for its effect than it must.
   fins_.step(motion(now));
+  sensors_.step(ticks, !armed());
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
   if (++slot_tick_ >= kTicksPerSlot) {
@@ -136,7 +137,6 @@ void Robot::send_telemetry() {
   if (sensors_.take(&imu)) link_.send(imu);
   if (has_motor(slot_)) {
     Motor motor;
-    motor.time = board::microseconds();
     fins_.report(&motor);
     link_.send(motor);
   }

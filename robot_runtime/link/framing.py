@@ -16,12 +16,14 @@ ends derive from their epochs. A frame of another session is thus no frame at al
 open frames, whose key is 0: they must be understood by whoever hears them.
 """
 
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from struct import Struct
+from typing import NamedTuple
+from zlib import crc32
 
-from cobs import cobs
+from cobs.cobs import DecodeError
+from cobs.cobs import decode as unstuff
+from cobs.cobs import encode as stuff
 
 from robot_runtime.packets import FRAME_BYTES_MAX, PACKETS, Packet, encode
 from robot_runtime.packets.layout import LayoutError
@@ -35,13 +37,14 @@ _CRC = Struct("<I")
 CONTENT_BYTES_MAX = FRAME_BYTES_MAX - 2
 MESSAGES_BYTES_MAX = CONTENT_BYTES_MAX - 1 - _CRC.size
 """In a reliable frame; an unreliable one has room for one byte less."""
+_CONTENT_BYTES_MIN = 2 + _CRC.size
+_BYTES = [bytes([value]) for value in range(256)]
 
 Messages = tuple[tuple[int, bytes], ...]
 Seen = Callable[[bytes], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(NamedTuple):
     """One valid frame. `open` tells one that belongs to no session; messages are type and payload."""
 
     number: int
@@ -63,12 +66,24 @@ def assemble(messages: bytes, reliable: bool, number: int, acknowledged: int, ke
     room = MESSAGES_BYTES_MAX if reliable else MESSAGES_BYTES_MAX - 1
     if len(messages) > room:
         raise LayoutError(f"{len(messages)} bytes of packets do not fit a frame, which takes {room}")
-    upper = number if reliable else number >> 8
-    content = bytes([(upper & 15) << 4 | acknowledged & 15]) + messages
-    if not reliable:
-        content += bytes([number & 255])
-    stuffed: bytes = cobs.encode(content + _CRC.pack(zlib.crc32(content) ^ key))
+    if reliable:
+        content = _BYTES[(number & 15) << 4 | acknowledged & 15] + messages
+    else:
+        control = number >> 4 & 0xF0 | acknowledged & 15
+        content = _BYTES[control] + messages + _BYTES[number & 255]
+    stuffed: bytes = stuff(content + _CRC.pack(crc32(content) ^ key))
     return stuffed + b"\0"
+
+
+def _residue(key: int) -> int:
+    """The CRC of anything that is followed by its own CRC, combined with this key.
+
+    A CRC is linear, so that what stands before has no part in it: this takes the CRC of nothing, which is 0.
+    """
+    return crc32(_CRC.pack(key))
+
+
+_OPEN_RESIDUE = _residue(OPEN)
 
 
 class Decoder:
@@ -80,74 +95,74 @@ class Decoder:
     def __init__(self, packets: Mapping[int, type[Packet]] = PACKETS, seen: Seen | None = None) -> None:
         self.invalid = 0
         self.key = OPEN
-        self._packets = packets
+        self._reliable = {type_ for type_, cls in packets.items() if cls.reliable}
+        self._texts = {type_: cls.tail[1].max_bytes for type_, cls in packets.items() if cls.tail}
+        # An unknown type is longer than any frame, and so never fits one.
+        self._sizes = [FRAME_BYTES_MAX] * 256
+        for type_, cls in packets.items():
+            self._sizes[type_] = cls.layout.size
         self._seen = seen
-        self._pending = bytearray()
-        self._overlong = False
+        self._pending = b""
+
+    @property
+    def key(self) -> int:
+        """That of the session's frames."""
+        return self._key
+
+    @key.setter
+    def key(self, key: int) -> None:
+        self._key = key
+        self._residues = {_residue(OPEN), _residue(key)}
 
     def feed(self, data: bytes) -> Iterator[Frame]:
-        """The frames that these bytes complete, in order."""
-        *ends, rest = data.split(b"\0")
-        for part in ends:
-            self._take(part)
-            frame = self._close()
-            if frame is not None:
+        """The frames that these bytes complete, in order; another key counts from the next one on."""
+        parts = (self._pending + data).split(b"\0")
+        # Of what is too long for a frame the head is enough to tell; garbage must not fill the memory.
+        self._pending = parts.pop()[:FRAME_BYTES_MAX]
+        for stuffed in parts:
+            if not stuffed:
+                continue  # two zeros in a row: an idle line, nothing lost
+            if self._seen is not None:
+                self._seen(stuffed[:FRAME_BYTES_MAX])
+            frame = self._parse(stuffed)
+            if frame is None:
+                self.invalid += 1
+            else:
                 yield frame
-        self._take(rest)
-
-    def _take(self, part: bytes) -> None:
-        self._pending += part
-        if len(self._pending) >= FRAME_BYTES_MAX:
-            # No frame is this long: forget it now, so that garbage never fills the memory.
-            self._overlong = True
-            self._pending.clear()
-
-    def _close(self) -> Frame | None:
-        content, self._pending = bytes(self._pending), bytearray()
-        overlong, self._overlong = self._overlong, False
-        if not content and not overlong:
-            return None  # two zeros in a row: an idle line, nothing lost
-        if self._seen is not None:
-            self._seen(content)
-        frame = None if overlong else self._parse(content)
-        if frame is None:
-            self.invalid += 1
-        return frame
 
     def _parse(self, stuffed: bytes) -> Frame | None:
         """The frame between two zeros; None where it is damaged in any way."""
+        if len(stuffed) >= FRAME_BYTES_MAX:
+            return None
         try:
-            content = cobs.decode(stuffed)
-        except cobs.DecodeError:
+            content = unstuff(stuffed)
+        except DecodeError:
             return None
-        if len(content) < 2 + _CRC.size:
+        residue = crc32(content)
+        if residue not in self._residues or len(content) < _CONTENT_BYTES_MIN:
             return None
-        body = content[: -_CRC.size]
-        key = _CRC.unpack_from(content, len(body))[0] ^ zlib.crc32(body)
-        first = self._packets.get(body[1])
-        if key not in (OPEN, self.key) or first is None:
-            return None
-        end = len(body) if first.reliable else len(body) - 1
-        messages = self._split(body, end)
-        if messages is None:
-            return None
-        number = body[0] >> 4 if first.reliable else (body[0] >> 4) << 8 | body[-1]
-        return Frame(number, body[0] & 15, first.reliable, key == OPEN, messages)
-
-    def _split(self, body: bytes, end: int) -> Messages | None:
+        control = content[0]
+        end = len(content) - _CRC.size
+        reliable = content[1] in self._reliable
+        if reliable:
+            number = control >> 4
+        else:
+            end -= 1
+            number = (control & 0xF0) << 4 | content[end]
+        sizes = self._sizes
         messages: list[tuple[int, bytes]] = []
         at = 1
         while at < end:
-            cls = self._packets.get(body[at])
-            if cls is None:
-                return None
-            start, size = at + 1, cls.layout.size
-            if cls.tail:
-                if start + size >= end or body[start + size] > cls.tail[1].max_bytes:
+            type_ = content[at]
+            start = at + 1
+            at = start + sizes[type_]
+            if type_ in self._texts:
+                if at >= end or content[at] > self._texts[type_]:
                     return None
-                size += 1 + body[start + size]
-            at = start + size
+                at += 1 + content[at]
             if at > end:
                 return None
-            messages.append((body[start - 1], body[start:at]))
-        return tuple(messages) or None
+            messages.append((type_, content[start:at]))
+        if not messages:
+            return None
+        return Frame(number, control & 15, reliable, residue == _OPEN_RESIDUE, tuple(messages))

@@ -7,6 +7,7 @@ on the serial line, between processes, to the page and into the database.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import mul
 from struct import Struct, error
 from typing import (
     Annotated,
@@ -57,15 +58,20 @@ class Wire:
         """Whether values are whole counts, without a scale."""
         return self.scale == 1 and self.code not in "fd"
 
-    def clamp(self, value: float) -> float | int:
-        """The nearest count that the code can hold; the value itself for floating point."""
+    def counter(self) -> Callable[[float], float]:
+        """What turns a value into the nearest count that the code can hold; nothing for floating point."""
         if self.code in "fd":
-            return value
-        bits = _LIMITS[self.code]
+            return _unchanged
+        scale, bits = self.scale, _LIMITS[self.code]
         low, high = (
             (0, (1 << bits) - 1) if self.code.isupper() else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
         )
-        return min(max(round(value / self.scale), low), high)
+
+        def count(value: float) -> int:
+            nearest = round(value / scale)
+            return nearest if low <= nearest <= high else low if nearest < low else high
+
+        return count
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,14 +90,21 @@ class Record:
     wires: ClassVar[dict[str, Wire]]
     tail: ClassVar[tuple[str, Text] | None]
     layout: ClassVar[Struct]
+    # What `wires` says, made ready once, for every packet on the line passes here.
+    _writers: ClassVar[tuple[tuple[str, Callable[[float], float], bool], ...]]
+    _places: ClassVar[tuple[tuple[str, int | slice], ...]]
+    _scales: ClassVar[tuple[float, ...]]
 
     def to_bytes(self) -> bytes:
         """The record's bytes; numbers out of range are clamped. Raises LayoutError on NaN or infinity."""
-        counts: list[float | int] = []
+        counts: list[float] = []
         try:
-            for name, wire in self.wires.items():
+            for name, count, is_array in self._writers:
                 value = getattr(self, name)
-                counts.extend(map(wire.clamp, value) if wire.count > 1 else (wire.clamp(value),))
+                if is_array:
+                    counts.extend(map(count, value))
+                else:
+                    counts.append(count(value))
             body = self.layout.pack(*counts)
         except (ValueError, OverflowError, error) as problem:
             raise LayoutError(f"{type(self).__name__} cannot be written: {problem}") from problem
@@ -103,11 +116,8 @@ class Record:
         size = cls.layout.size
         if len(data) != size if cls.tail is None else len(data) <= size or len(data) != size + 1 + data[size]:
             raise LayoutError(f"{cls.__name__} of {len(data)} bytes; expected {cls.describe_size()}")
-        counts = iter(cls.layout.unpack_from(data))
-        values: dict[str, Any] = {}
-        for name, wire in cls.wires.items():
-            scaled = [_scaled(next(counts), wire) for _ in range(wire.count)]
-            values[name] = tuple(scaled) if wire.count > 1 else scaled[0]
+        numbers = tuple(map(mul, cls.layout.unpack_from(data), cls._scales))
+        values: dict[str, Any] = {name: numbers[place] for name, place in cls._places}
         if cls.tail:
             values[cls.tail[0]] = bytes(data[size + 1 :]).decode("utf-8", "replace")
         return cls(**values)
@@ -152,10 +162,18 @@ def _lay_out(cls: type[Record]) -> None:
     cls.layout = Struct(
         "<" + "".join(f"{wire.count if wire.count > 1 else ''}{wire.code}" for wire in wires.values())
     )
+    cls._writers = tuple((name, wire.counter(), wire.count > 1) for name, wire in wires.items())
+    cls._scales = tuple(wire.scale for wire in wires.values() for _ in range(wire.count))
+    places: list[tuple[str, int | slice]] = []
+    at = 0
+    for name, wire in wires.items():
+        places.append((name, slice(at, at + wire.count) if wire.count > 1 else at))
+        at += wire.count
+    cls._places = tuple(places)
 
 
-def _scaled(count: float | int, wire: Wire) -> float | int:
-    return count if wire.integral or wire.scale == 1 else count * wire.scale
+def _unchanged(value: float) -> float:
+    return value
 
 
 def _text_bytes(value: str, text: Text) -> bytes:

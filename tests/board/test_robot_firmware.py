@@ -129,6 +129,17 @@ def test_it_keeps_100_hz(robot: Robot) -> None:
     assert robot.board.stats()["overruns"] == 0
 
 
+def test_a_motor_packet_tells_when_the_fins_were_measured(robot: Robot) -> None:
+    robot.arm()
+    packets = robot.converse(1.0, DOWN)
+    # They share a frame, and the fins' turn in a tick comes first.
+    pairs = [(first, second) for first, second in pairwise(packets) if isinstance(second, Motor)]
+    for imu, motor in pairs:
+        assert isinstance(imu, Imu)
+        assert 0 < imu.time - motor.time < 10_000
+    assert len(pairs) > 40
+
+
 # Safety
 
 

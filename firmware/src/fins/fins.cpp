@@ -64,6 +64,7 @@ FinDemand Fins::demand(uint8_t fin) const {
 }
 
 void Fins::read_encoders() {
+  measured_us_ = board::microseconds();
   for (uint8_t i = 0; i < kFinCount; ++i) {
     const bool valid = read_encoder_counts(i, &counts_[i]);
     assign(&encoder_faults_, i, !valid);
@@ -122,6 +123,7 @@ uint8_t Fins::faults() const {
 }
 
 void Fins::report(Motor* packet) const {
+  packet->time = measured_us_;
   for (uint8_t i = 0; i < kFinCount; ++i) {
     packet->wanted[i] = lroundf(wanted_[i] * 1000);
     packet->angle[i] = lroundf(angles_[i] * 1000);

@@ -34,7 +34,7 @@ class Fins {
   bool powered() const { return motion_ != Motion::kOff; }
   // Bits of SensorFault: encoders that gave nonsense, H-bridges that failed while powered.
   uint8_t faults() const;
-  // Wanted and measured angles and drives, as the packet carries them; its time is left alone.
+  // Wanted and measured angles and drives, as the packet carries them; its time is that of measuring.
   void report(Motor* packet) const;
 
  private:
@@ -52,6 +52,7 @@ class Fins {
   float wanted_[kFinCount] = {};
   float angles_[kFinCount] = {};
   int16_t counts_[kFinCount] = {};
+  uint32_t measured_us_ = 0;
   int8_t drives_[kFinCount] = {};
   uint8_t encoder_faults_ = 0;
   uint8_t silent_bridges_ = 0;

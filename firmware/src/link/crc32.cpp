@@ -5,22 +5,34 @@
 namespace mucat {
 namespace {
 
-// One entry a nibble: 64 bytes of flash and two look-ups a byte, where one a byte would take a kilobyte.
-const uint32_t kTable[16] PROGMEM = {
-    0x00000000UL, 0x1db71064UL, 0x3b6e20c8UL, 0x26d930acUL, 0x76dc4190UL, 0x6b6b51f4UL,
-    0x4db26158UL, 0x5005713cUL, 0xedb88320UL, 0xf00f9344UL, 0xd6d6a3e8UL, 0xcb61b38cUL,
-    0x9b64c2b0UL, 0x86d3d2d4UL, 0xa00ae278UL, 0xbdbdf21cUL,
-};
+constexpr uint32_t kPolynomial = 0xedb88320UL;
+
+// What `bits` more zeros make of a remainder.
+constexpr uint32_t divide(uint32_t remainder, uint8_t bits) {
+  return bits == 0 ? remainder : divide(remainder >> 1 ^ (remainder & 1 ? kPolynomial : 0), bits - 1);
+}
+
+#define MUCAT_FOUR(first) \
+  divide(first, 8), divide((first) + 1, 8), divide((first) + 2, 8), divide((first) + 3, 8)
+#define MUCAT_SIXTEEN(first) \
+  MUCAT_FOUR(first), MUCAT_FOUR((first) + 4), MUCAT_FOUR((first) + 8), MUCAT_FOUR((first) + 12)
+#define MUCAT_SIXTY_FOUR(first) \
+  MUCAT_SIXTEEN(first), MUCAT_SIXTEEN((first) + 16), MUCAT_SIXTEEN((first) + 32), MUCAT_SIXTEEN((first) + 48)
+
+// One entry a byte: a kilobyte of flash, and a third of the time that one a nibble would take. At 500 kbaud
+// both ways that is a third of the chip.
+const uint32_t kTable[256] PROGMEM = {MUCAT_SIXTY_FOUR(0), MUCAT_SIXTY_FOUR(64), MUCAT_SIXTY_FOUR(128),
+                                      MUCAT_SIXTY_FOUR(192)};
+
+#undef MUCAT_SIXTY_FOUR
+#undef MUCAT_SIXTEEN
+#undef MUCAT_FOUR
 
 }  // namespace
 
 uint32_t crc32(const uint8_t* bytes, uint8_t size) {
   uint32_t crc = 0xFFFFFFFFUL;
-  while (size--) {
-    crc ^= *bytes++;
-    crc = (crc >> 4) ^ pgm_read_dword(&kTable[crc & 15]);
-    crc = (crc >> 4) ^ pgm_read_dword(&kTable[crc & 15]);
-  }
+  while (size--) crc = (crc >> 8) ^ pgm_read_dword(&kTable[static_cast<uint8_t>(crc) ^ *bytes++]);
   return ~crc;
 }
 
