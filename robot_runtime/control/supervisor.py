@@ -6,20 +6,24 @@ from typing import Protocol
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
+from robot_runtime.link.pace import airtime, stale_after
+from robot_runtime.packets import Depth, Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
 from robot_runtime.samples import Event, Mode, Severity
 
 DEPTH_STALE = 0.5
-"""s without a depth after which there is nothing to steer by."""
+"""s without a depth after which there is nothing to steer by; more where the line is too slow for that."""
 _STATUS_STALE = 0.5
 _ARM_TRIES = 10
 _ARM_WAIT = 0.1
+_ARM_BYTES = 96
+"""What START and the answer wait for and are themselves, on the line."""
 
 
 class Line(Protocol):
     """What the supervisor needs of the connection to the board."""
 
     text: str
+    baud: int
 
     @property
     def connected(self) -> bool:
@@ -50,6 +54,9 @@ class Supervisor:
         self._status: Status | None = None
         self._status_time = float("-inf")
         self._depth_time = float("-inf")
+        self._depth_stale = stale_after(DEPTH_STALE, Depth, line.baud)
+        self._status_stale = stale_after(_STATUS_STALE, Status, line.baud)
+        self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / _ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
         self._changed = threading.Condition(threading.RLock())
 
@@ -85,10 +92,10 @@ class Supervisor:
         if not self._line.connected:
             return [f"There is no connection to the board: {self._line.text}."]
         now, status = self._clock.now(), self._status
-        if status is None or now - self._status_time > _STATUS_STALE:
+        if status is None or now - self._status_time > self._status_stale:
             return ["The board says nothing of its state. Wait a moment, or reset it."]
         reasons = [_FAULTS[fault] for fault in SensorFault if status.faults & fault]
-        if now - self._depth_time > DEPTH_STALE:
+        if now - self._depth_time > self._depth_stale:
             reasons.append("There is no fresh depth. Check the pressure sensor.")
         if status.flags & StatusFlag.BATTERY_LOW:
             reasons.append(f"The battery is low ({status.battery:.2f} V). Charge it.")
@@ -102,7 +109,7 @@ class Supervisor:
         board = self._line.board
         if reasons or board is None:
             raise Refused(" ".join(reasons))
-        for _ in range(_ARM_TRIES):
+        for _ in range(self._arm_tries):
             # Repeated because the board wants half a second of steady traffic first. It ignores what it
             # has, and the line does not carry the same twice at a time.
             self._line.send(Start(epoch=board.epoch))
@@ -126,7 +133,7 @@ class Supervisor:
         with self._changed:
             if self.armed and not self._line.connected:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
-            elif self.armed and self._clock.now() - self._depth_time > DEPTH_STALE:
+            elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
                 self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
             elif not self.armed and self._board_armed():
                 self._line.send(Stop())

@@ -21,8 +21,9 @@ from robot_runtime.samples import Event
 class Board:
     """A board that does as it is told, unless the test says otherwise."""
 
-    def __init__(self) -> None:
+    def __init__(self, baud: int) -> None:
         self.connected = True
+        self.baud = baud
         self.text = "connected"
         self.board: Hello | None = Hello(definitions=DEFINITIONS_HASH, epoch=7, credit=64)
         self.sent: list[Packet] = []
@@ -39,8 +40,8 @@ class Board:
 class Rig:
     """A supervisor, its board and what it told."""
 
-    def __init__(self) -> None:
-        self.clock, self.board = SimulatedClock(100.0), Board()
+    def __init__(self, baud: int = 250_000) -> None:
+        self.clock, self.board = SimulatedClock(100.0), Board(baud)
         self.events: list[Event] = []
         self.supervisor = Supervisor(self.clock, self.board, self.events.append)
         self.board.send = self._send  # type: ignore[method-assign]
