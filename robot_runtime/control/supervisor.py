@@ -51,6 +51,7 @@ class Supervisor:
         self._clock = clock
         self._line = line
         self._tell = tell
+        self._arming = False
         self._status: Status | None = None
         self._status_time = float("-inf")
         self._depth_time = float("-inf")
@@ -109,21 +110,18 @@ class Supervisor:
         board = self._line.board
         if reasons or board is None:
             raise Refused(" ".join(reasons))
-        for _ in range(self._arm_tries):
-            # Repeated because the board wants half a second of steady traffic first. It ignores what it
-            # has, and the line does not carry the same twice at a time.
-            self._line.send(Start(epoch=board.epoch))
-            with self._changed:
-                if self._changed.wait_for(self._board_armed, _ARM_WAIT):
-                    self.armed_since = self._clock.now()
-                    self._event("armed", "info", "Armed.")
-                    return
-        self._line.send(Stop())
-        raise Refused("The board did not arm; the console says why. Try again in a moment.")
+        with self._changed:
+            self._arming = True
+            try:
+                self._arm(board)
+            finally:
+                self._arming = False
 
     def stop(self, why: str, severity: Severity = "info") -> None:
         """Disarm at once, whatever was before."""
         with self._changed:
+            self._arming = False
+            self._changed.notify_all()
             # First, so that the board's own word of it is no surprise.
             self._disarmed(severity, why)
         self._line.send(Stop())
@@ -135,8 +133,23 @@ class Supervisor:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
             elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
                 self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
-            elif not self.armed and self._board_armed():
+            elif not self.armed and not self._arming and self._board_armed():
                 self._line.send(Stop())
+
+    def _arm(self, board: Hello) -> None:
+        for _ in range(self._arm_tries):
+            # Repeated because the board wants half a second of steady traffic first. It ignores what it
+            # has, and the line does not carry the same twice at a time.
+            self._line.send(Start(epoch=board.epoch))
+            self._changed.wait_for(lambda: self._board_armed() or not self._arming, _ARM_WAIT)
+            if not self._arming:
+                raise Refused("Stopped before the board was armed.")
+            if self._board_armed():
+                self.armed_since = self._clock.now()
+                self._event("armed", "info", "Armed.")
+                return
+        self._line.send(Stop())
+        raise Refused("The board did not arm; the console says why. Try again in a moment.")
 
     def _board_armed(self) -> bool:
         return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)
