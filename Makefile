@@ -42,9 +42,10 @@ fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on
 soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
 	@nice $(PYTHON) -m tests.proofs
 
-firmware: ## compile the firmware and the emulated board
+firmware: ## compile the firmware, for the baud of robot.toml, and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
+	@python3 -m robot_runtime.firmware
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 

@@ -1,4 +1,7 @@
-"""What the other processes may ask of the robot: each command is checked here, then done or refused."""
+"""What the other processes may ask of the robot: each command is checked here, then done or refused.
+
+Queries are answered here as well; they change nothing.
+"""
 
 import math
 from collections.abc import Callable, Mapping
@@ -10,7 +13,7 @@ from robot_runtime.robot import Robot
 
 
 class Commands:
-    """Answers every command for one robot."""
+    """Answers every command and query for one robot."""
 
     def __init__(self, robot: Robot, messages: Messages) -> None:
         self._robot = robot
@@ -24,6 +27,7 @@ class Commands:
         }
         for name, handler in handlers.items():
             messages.answer(f"command/{name}", self._announcing(handler))
+        messages.answer("query/frames", lambda _: robot.frames())
 
     def _announcing(self, handler: Callable[[Mapping[str, Any]], None]) -> Callable[[dict[str, Any]], None]:
         def handle(question: dict[str, Any]) -> None:

@@ -28,6 +28,16 @@ SET_POINT = Range(0, 10)
 VISION_RATE = Range(2, 30)
 """Hz; slower, and what was seen would be stale before the next look."""
 
+_CHIP_CLOCK = 16_000_000
+_BAUD_ERROR_MAX = 0.025
+"""Of one end alone; firmware/src/board/avr/line.cpp refuses the same."""
+
+
+def _chip_baud(baud: int) -> float:
+    """The nearest speed, bit/s, of the ATmega328P's UART with 8 or 16 samples a bit (data sheet, 20.3.1)."""
+    made = (_CHIP_CLOCK / (samples * max(round(_CHIP_CLOCK / (samples * baud)), 1)) for samples in (8, 16))
+    return min(made, key=lambda one: abs(one - baud))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
@@ -43,6 +53,14 @@ class LinkConfig:
 
     port: str = "/dev/serial0"
     baud: Annotated[int, Range(1200, 500_000)] = 250_000
+
+    def __post_init__(self) -> None:
+        made = _chip_baud(self.baud)
+        if abs(made / self.baud - 1) > _BAUD_ERROR_MAX:
+            raise ConfigError(
+                f"link.baud is {self.baud}; the chip at 16 MHz makes {made:.0f} of it, "
+                f"{made / self.baud - 1:+.1%}, and the line needs it within {_BAUD_ERROR_MAX:.1%}"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

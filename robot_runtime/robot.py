@@ -4,7 +4,9 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock, SteadyClock
@@ -13,11 +15,13 @@ from robot_runtime.control.controllers import Controller
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.connection import Connection
+from robot_runtime.link.dissection import dissect
+from robot_runtime.link.pace import periods
 from robot_runtime.link.session import Message
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
 from robot_runtime.packets import Beacon, Debug, Depth, Imu, Motor, Navigation, Status
-from robot_runtime.samples import ControllerChoice, DebugLine, Detection, Event, Gain, Severity, State
+from robot_runtime.samples import ControllerChoice, DebugLine, Detection, Event, Gain, Pace, Severity, State
 from robot_runtime.topics import TOPICS, Kind
 from robot_runtime.vision.node import Vision
 
@@ -53,6 +57,10 @@ class Robot:
         self.connection = Connection(
             port, config.link.baud, self.clock, epoch, self._take_messages, self._link_changed
         )
+        self._paces = [
+            Pace(topic=_ROW_OF[packet.type], period=period)
+            for packet, period in periods(config.link.baud).items()
+        ]
         self.supervisor = Supervisor(self.clock, self.connection, self.tell)
         self.control = ControlNode(self.bus, self.clock, self._navigate)
         self.vision = Vision(
@@ -108,6 +116,7 @@ class Robot:
             connection=self.connection.text,
             port=Path(self.connection.path).name,
             baud=self.connection.baud,
+            paces=self._paces,
             epoch=board.epoch if board and self.connection.connected else None,
             controller=self.control.controller.name,
             controllers=[_choice(one) for one in self.control.controllers.values()],
@@ -121,6 +130,20 @@ class Robot:
             card=self.vision.card,
             camera=self.vision.text,
         )
+
+    def frames(self) -> dict[str, Any]:
+        """The last frames on the serial line, now and at the last fault, in words; for a JSON object."""
+        fault = self.connection.fault
+        return {
+            "time": self.clock.now(),
+            "frames": [asdict(dissect(frame)) for frame in self.connection.frames()],
+            "fault": fault
+            and {
+                "time": fault.time,
+                "text": fault.text,
+                "frames": [asdict(dissect(frame)) for frame in fault.frames],
+            },
+        }
 
     def _configure(self) -> None:
         settings = self.config.control

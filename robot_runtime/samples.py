@@ -104,6 +104,14 @@ class ControllerChoice:
     gains: list[Gain]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pace:
+    """How often the board sends a topic on this line: s between two samples."""
+
+    topic: str
+    period: float
+
+
 Mode = Literal["disarmed", "automatic"]
 
 
@@ -121,6 +129,7 @@ class State(Document):
     connection: str = field(metadata={"meaning": "the serial connection in words"})
     port: str
     baud: int
+    paces: list[Pace]
     epoch: int | None
     controller: str
     controllers: list[ControllerChoice]

@@ -82,7 +82,19 @@ class Bridge:
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
-        stop = name == "stop"
+        await self._ask(f"command/{name}", payload, stop=name == "stop")
+
+    async def query(self, name: str) -> Mapping[str, Any]:
+        """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
+        return await self._ask(f"query/{name}", {}, stop=False)
+
+    async def close(self) -> None:
+        """Leave the conversation."""
+        self._stops.shutdown(wait=False, cancel_futures=True)
+        self._commands.shutdown(wait=False, cancel_futures=True)
+        await asyncio.to_thread(self._messages.close)
+
+    async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilent(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False
@@ -90,21 +102,15 @@ class Bridge:
         self._asking += not stop
         started = self._loop.time()
         try:
-            await self._loop.run_in_executor(
+            return await self._loop.run_in_executor(
                 self._stops if stop else self._commands,
-                lambda: self._messages.ask(f"command/{name}", payload, ANSWER_SECONDS),
+                lambda: self._messages.ask(name, payload, ANSWER_SECONDS),
             )
         except NoAnswer as problem:
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
             raise RuntimeSilent(_silence(waited), waited) from problem
         finally:
             self._asking -= not stop
-
-    async def close(self) -> None:
-        """Leave the conversation."""
-        self._stops.shutdown(wait=False, cancel_futures=True)
-        self._commands.shutdown(wait=False, cancel_futures=True)
-        await asyncio.to_thread(self._messages.close)
 
     def _receive(self, name: str, data: bytes) -> None:
         """Called in Zenoh's thread."""

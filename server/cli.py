@@ -89,11 +89,17 @@ def _commtest(options: argparse.Namespace, settings: Settings) -> int:
 
 def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
+    from robot_runtime.firmware import BuildError, build_firmware
     from server.app import create_app
     from server.parts import plan
     from server.schema import prepare
     from server.web import make_server, open_socket
 
+    if settings.mode == "emulated":
+        try:
+            build_firmware(settings.build, settings.baud)
+        except BuildError as problem:
+            raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         prepare(settings.data)
         server = make_server(create_app(settings, plan(settings)))

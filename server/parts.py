@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Literal
 
 from robot_runtime.clock import Clock
+from robot_runtime.firmware import firmware_path
 from robot_runtime.samples import Severity
 from server.logs import PartLog
 from server.process import Process
@@ -152,7 +153,7 @@ def plan(settings: Settings) -> list[Command]:
     if settings.mode == "robot":
         return [Command("runtime", "robot's runtime", (*runtime, "--with-parent"))]
     runtime += ["--port", str(folder.board_tty), "--with-parent"]
-    board = [str(build / "board"), "--elf", str(build / "firmware" / "robot.elf")]
+    board = [str(build / "board"), "--elf", str(firmware_path(build, settings.baud, ".elf"))]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]

@@ -86,6 +86,7 @@ class Settings:
     config: Path
     robot: str = "turtle"
     mode: Mode = "emulated"
+    baud: int = 250_000
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
@@ -114,6 +115,7 @@ def read_settings(
         config=config.absolute(),
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
+        baud=loaded.link.baud,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

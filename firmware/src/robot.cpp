@@ -106,7 +106,9 @@ void Robot::tick(uint8_t ticks) {
   sensors_.step(ticks, !armed());
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
-  if (++slot_tick_ >= kTicksPerSlot) {
+  if (slot_tick_ < kTicksPerSlot) ++slot_tick_;
+  // A slow line is waited for, so that what it gets is the newest.
+  if (slot_tick_ == kTicksPerSlot && (kTicksPerSlot == 1 || link_.calm())) {
     slot_tick_ = 0;
     send_telemetry();
     slot_ = (slot_ + 1) % kSlots;
@@ -134,7 +136,7 @@ Motion Robot::motion(uint32_t now_ms) {
 
 void Robot::send_telemetry() {
   Imu imu;
-  if (sensors_.take(&imu)) link_.send(imu);
+  if (has_imu(slot_) && sensors_.take(&imu)) link_.send(imu);
   if (has_motor(slot_)) {
     Motor motor;
     fins_.report(&motor);
@@ -147,10 +149,9 @@ void Robot::send_telemetry() {
     sensors_.read(&beacon);
     link_.send(beacon);
   }
-  if (slot_ == kStatusSlot) {
-    say_changed_faults();
-    send_status();
-  }
+  if (slot_ == kStatusSlot) say_changed_faults();
+  // On a slow line its turn may be far, and who armed it waits for its word.
+  if (slot_ == kStatusSlot || (kSlow && armed() != said_armed_)) send_status();
   link_.flush();
 }
 
@@ -169,6 +170,7 @@ void Robot::send_status() {
   status.debug_lost = link_.lines_lost();
   status.stack_free = board::stack_free();
   loop_worst_ = 0;
+  said_armed_ = armed();
   link_.send(status);
 }
 

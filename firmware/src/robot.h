@@ -48,6 +48,7 @@ class Robot {
   uint8_t slot_tick_ = 0;
   uint8_t said_faults_ = 0;
   bool said_devices_ = false;
+  bool said_armed_ = false;
 };
 
 }  // namespace mucat

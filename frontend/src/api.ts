@@ -3,6 +3,8 @@ import type { components } from './generated/api';
 
 type Schemas = components['schemas'];
 export type Part = Schemas['PartHealth'];
+export type LinkFrame = Schemas['LinkFrame'];
+export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -50,6 +52,7 @@ export const api = {
   card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
   health: () => request<Schemas['Health']>('GET', '/health'),
+  linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: () => request<Session[]>('GET', '/sessions'),
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),

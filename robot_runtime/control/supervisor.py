@@ -6,20 +6,24 @@ from typing import Protocol
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
+from robot_runtime.link.pace import airtime, stale_after
+from robot_runtime.packets import Depth, Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
 from robot_runtime.samples import Event, Mode, Severity
 
 DEPTH_STALE = 0.5
-"""s without a depth after which there is nothing to steer by."""
+"""s without a depth after which there is nothing to steer by; more where the line is too slow for that."""
 _STATUS_STALE = 0.5
 _ARM_TRIES = 10
 _ARM_WAIT = 0.1
+_ARM_BYTES = 96
+"""What START and the answer wait for and are themselves, on the line."""
 
 
 class Line(Protocol):
     """What the supervisor needs of the connection to the board."""
 
     text: str
+    baud: int
 
     @property
     def connected(self) -> bool:
@@ -47,9 +51,13 @@ class Supervisor:
         self._clock = clock
         self._line = line
         self._tell = tell
+        self._arming = False
         self._status: Status | None = None
         self._status_time = float("-inf")
         self._depth_time = float("-inf")
+        self._depth_stale = stale_after(DEPTH_STALE, Depth, line.baud)
+        self._status_stale = stale_after(_STATUS_STALE, Status, line.baud)
+        self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / _ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
         self._changed = threading.Condition(threading.RLock())
 
@@ -85,10 +93,10 @@ class Supervisor:
         if not self._line.connected:
             return [f"There is no connection to the board: {self._line.text}."]
         now, status = self._clock.now(), self._status
-        if status is None or now - self._status_time > _STATUS_STALE:
+        if status is None or now - self._status_time > self._status_stale:
             return ["The board says nothing of its state. Wait a moment, or reset it."]
         reasons = [_FAULTS[fault] for fault in SensorFault if status.faults & fault]
-        if now - self._depth_time > DEPTH_STALE:
+        if now - self._depth_time > self._depth_stale:
             reasons.append("There is no fresh depth. Check the pressure sensor.")
         if status.flags & StatusFlag.BATTERY_LOW:
             reasons.append(f"The battery is low ({status.battery:.2f} V). Charge it.")
@@ -102,21 +110,18 @@ class Supervisor:
         board = self._line.board
         if reasons or board is None:
             raise Refused(" ".join(reasons))
-        for _ in range(_ARM_TRIES):
-            # Repeated because the board wants half a second of steady traffic first. It ignores what it
-            # has, and the line does not carry the same twice at a time.
-            self._line.send(Start(epoch=board.epoch))
-            with self._changed:
-                if self._changed.wait_for(self._board_armed, _ARM_WAIT):
-                    self.armed_since = self._clock.now()
-                    self._event("armed", "info", "Armed.")
-                    return
-        self._line.send(Stop())
-        raise Refused("The board did not arm; the console says why. Try again in a moment.")
+        with self._changed:
+            self._arming = True
+            try:
+                self._arm(board)
+            finally:
+                self._arming = False
 
     def stop(self, why: str, severity: Severity = "info") -> None:
         """Disarm at once, whatever was before."""
         with self._changed:
+            self._arming = False
+            self._changed.notify_all()
             # First, so that the board's own word of it is no surprise.
             self._disarmed(severity, why)
         self._line.send(Stop())
@@ -126,10 +131,25 @@ class Supervisor:
         with self._changed:
             if self.armed and not self._line.connected:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
-            elif self.armed and self._clock.now() - self._depth_time > DEPTH_STALE:
+            elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
                 self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
-            elif not self.armed and self._board_armed():
+            elif not self.armed and not self._arming and self._board_armed():
                 self._line.send(Stop())
+
+    def _arm(self, board: Hello) -> None:
+        for _ in range(self._arm_tries):
+            # Repeated because the board wants half a second of steady traffic first. It ignores what it
+            # has, and the line does not carry the same twice at a time.
+            self._line.send(Start(epoch=board.epoch))
+            self._changed.wait_for(lambda: self._board_armed() or not self._arming, _ARM_WAIT)
+            if not self._arming:
+                raise Refused("Stopped before the board was armed.")
+            if self._board_armed():
+                self.armed_since = self._clock.now()
+                self._event("armed", "info", "Armed.")
+                return
+        self._line.send(Stop())
+        raise Refused("The board did not arm; the console says why. Try again in a moment.")
 
     def _board_armed(self) -> bool:
         return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)

@@ -19,7 +19,8 @@ the timers make of it what is called go-back-n.
 Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while.
 
 The line's pace is respected: a frame is handed over when the one before it has gone, so that what is urgent
-never waits behind more than one frame.
+never waits behind more than one frame. Unreliable messages go first, but never twice while reliable ones
+wait: on a slow line they would fill it alone.
 """
 
 from collections import deque
@@ -103,11 +104,17 @@ class Channel:
         self._order = 0
         self._newest_order = -1
         self._latest: dict[int, tuple[bytes, float]] = {}
+        self._reliable_next = False
         self._number = 0
         self._expected = 0
         self._held: dict[int, Frame] = {}
         self._heard: int | None = None
         self._acknowledge_at = _NEVER
+
+    @property
+    def free_at(self) -> float:
+        """When the line will have carried what was handed to it."""
+        return self._line_free
 
     @property
     def urgent(self) -> bool:
@@ -158,7 +165,12 @@ class Channel:
         """The frame that is due, or nothing. Ask again until there is nothing."""
         if now < self._line_free:
             return b""
-        data = self._send_latest(now) or self._send_lost(now) or self._send_new(now)
+        reliable_first, self._reliable_next = self._reliable_next, False
+        data = b"" if reliable_first else self._send_latest(now)
+        if data:
+            self._reliable_next = True
+        else:
+            data = self._send_lost(now) or self._send_new(now) or self._send_latest(now)
         if not data and now >= self._acknowledge_at:
             data = self._send_unreliable(self._acknowledge())
         if data:

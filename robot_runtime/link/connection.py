@@ -4,8 +4,10 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from robot_runtime.clock import Clock
+from robot_runtime.link.frame_ring import KeptFrame
 from robot_runtime.link.port import Port, PortError
 from robot_runtime.link.session import Message, Session, Stage
 from robot_runtime.link.statistics import LinkStatistics
@@ -19,11 +21,21 @@ _RETRY = 0.25
 _PERIOD = 0.03
 
 
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What went wrong at `time` (s), in words, and the last frames each way until then."""
+
+    time: float
+    text: str
+    frames: list[KeptFrame]
+
+
 class Connection:
     """Keeps a serial connection to the board alive.
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
-    lost; both run on the connection's own thread. `text` says how things stand, in words.
+    lost; both run on the connection's own thread. `text` says how things stand, in words;
+    `fault` is the last one.
     """
 
     def __init__(
@@ -38,6 +50,7 @@ class Connection:
         self.path = path
         self.baud = baud
         self.text = "not opened yet"
+        self.fault: Fault | None = None
         self._clock = clock
         self._epoch = epoch
         self._on_messages = on_messages
@@ -90,6 +103,11 @@ class Connection:
         """What the line carried since the port was opened."""
         return self._session.statistics()
 
+    def frames(self) -> list[KeptFrame]:
+        """The last frames each way since the port was opened, in the order of time."""
+        with self._writing:
+            return self._session.ring.frames()
+
     def _run(self) -> None:
         while not self._ending.is_set():
             try:
@@ -113,7 +131,7 @@ class Connection:
                     if stage is Stage.ESTABLISHED:
                         self._dump("the connection was lost")
                     stage = self._session.stage
-                    self._tell(_words(stage, self._session))
+                self._tell(_words(stage, self._session))
                 self._poll(port)
                 self._await(port)
         except PortError:
@@ -158,8 +176,10 @@ class Connection:
 
     def _dump(self, why: str) -> None:
         with self._writing:
-            frames = self._session.ring.dump()
-        log.info("link: %s; the last frames, bytes as on the line:\n%s", why, frames)
+            ring = self._session.ring
+            self.fault = Fault(self._clock.now(), why, ring.frames())
+            dump = ring.dump()
+        log.info("link: %s; the last frames, bytes as on the line:\n%s", why, dump)
 
     def _poll(self, port: Port) -> None:
         with self._writing:
@@ -175,6 +195,11 @@ class Connection:
 
 
 def _words(stage: Stage, session: Session) -> str:
+    if stage is Stage.GREETING and session.garbled:
+        return (
+            "bytes come from the board, but no valid frame: does its firmware run at another speed than"
+            f" link.baud, {session.baud} baud? `make firmware` builds it for that; then upload it"
+        )
     if stage is not Stage.REFUSED or session.board is None:
         return stage.value
     return (

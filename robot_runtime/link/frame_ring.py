@@ -1,27 +1,42 @@
-"""The last frames each way, for the log when something has gone wrong."""
+"""The last frames each way, for whoever looks for what has gone wrong."""
 
 from collections import deque
+from typing import NamedTuple
 
 _FRAMES = 100
 
 
+class KeptFrame(NamedTuple):
+    """A frame as on the line, without its closing zero; `key` is that of its session, `time` in s."""
+
+    time: float
+    sent: bool
+    key: int
+    stuffed: bytes
+
+
 class FrameRing:
-    """Keeps the last hundred frames sent and the last hundred received, with their times (s)."""
+    """Keeps the last hundred frames sent and the last hundred received."""
 
     def __init__(self) -> None:
-        self._sent: deque[tuple[float, bytes]] = deque(maxlen=_FRAMES)
-        self._received: deque[tuple[float, bytes]] = deque(maxlen=_FRAMES)
+        self._sent: deque[KeptFrame] = deque(maxlen=_FRAMES)
+        self._received: deque[KeptFrame] = deque(maxlen=_FRAMES)
 
-    def add_sent(self, frame: bytes, now: float) -> None:
+    def add_sent(self, frame: bytes, key: int, now: float) -> None:
         """Note a frame that was handed to the line."""
-        self._sent.append((now, frame.removesuffix(b"\0")))
+        self._sent.append(KeptFrame(now, True, key, frame.removesuffix(b"\0")))
 
-    def add_received(self, frame: bytes, now: float) -> None:
+    def add_received(self, frame: bytes, key: int, now: float) -> None:
         """Note what came between two zeros, valid or not."""
-        self._received.append((now, frame))
+        self._received.append(KeptFrame(now, False, key, frame))
+
+    def frames(self) -> list[KeptFrame]:
+        """Both ways in the order of time."""
+        return sorted([*self._received, *self._sent], key=lambda frame: frame.time)
 
     def dump(self) -> str:
-        """Both ways in the order of time, a line a frame, as stuffed bytes in hexadecimal."""
-        frames = [(time, "<-", frame) for time, frame in self._received]
-        frames += [(time, "->", frame) for time, frame in self._sent]
-        return "\n".join(f"{time:.3f} {way} {frame.hex()}" for time, way, frame in sorted(frames))
+        """The same for a log, a line a frame, as stuffed bytes in hexadecimal."""
+        return "\n".join(
+            f"{frame.time:.3f} {'->' if frame.sent else '<-'} {frame.stuffed.hex()}"
+            for frame in self.frames()
+        )

@@ -26,7 +26,8 @@ from typing import NamedTuple
 from robot_runtime.link.board_time import BoardTime
 from robot_runtime.link.channel import Channel, Counters
 from robot_runtime.link.frame_ring import FrameRing
-from robot_runtime.link.framing import Decoder, Frame, build
+from robot_runtime.link.framing import OPEN, Decoder, Frame, build
+from robot_runtime.link.pace import frames_airtime
 from robot_runtime.link.statistics import LinkStatistics
 from robot_runtime.packets import (
     DEFINITIONS_HASH,
@@ -41,7 +42,7 @@ from robot_runtime.packets import (
 )
 
 SILENCE = 1.0
-"""s without a valid frame after which the board counts as lost."""
+"""s without a valid frame after which the board counts as lost; on a slow line, three frames' airtime."""
 CREDIT = 4096
 """Bytes that the operating system keeps until the next look at the port."""
 NO_BOOT = 0
@@ -49,6 +50,7 @@ NO_BOOT = 0
 _GREETING = 0.25
 _HEARTBEAT = 0.1
 _GOODPUT_OVER = 1.0
+_GARBLED_BYTES = 3 * FRAME_BYTES_MAX
 
 
 class Stage(Enum):
@@ -88,18 +90,25 @@ class Session:
         self.counters = Counters()
         self.ring = FrameRing()
         self._epoch = host_epoch
-        self._baud = baud
+        self.baud = baud
+        self._silence = max(SILENCE, frames_airtime(3, baud))
         self._now = 0.0
-        self._decoder = Decoder(seen=lambda frame: self.ring.add_received(frame, self._now))
+        self._decoder = Decoder(seen=self._see)
         self._channel = Channel(baud, FRAME_BYTES_MAX, counters=self.counters)
         self._times = BoardTime()
         self._bytes_received = 0
+        self._bytes_understood = 0
         self._heard = 0.0
         self._greeted: float | None = None
         self._greeting_took = 0.0
         self._sent = 0.0
         self._goodput = 0.0
         self._goodput_from = (0.0, 0)
+
+    @property
+    def garbled(self) -> bool:
+        """Whether bytes come, a few frames of them, and nothing that is a frame."""
+        return self._bytes_received - self._bytes_understood >= _GARBLED_BYTES
 
     @property
     def urgent(self) -> bool:
@@ -113,6 +122,7 @@ class Session:
         messages: list[Message] = []
         for frame in self._decoder.feed(data):
             self._heard = now
+            self._bytes_understood = self._bytes_received
             if frame.open:
                 passed = self._take_open(frame, now)
             elif self.stage is Stage.REFUSED:
@@ -129,7 +139,7 @@ class Session:
     def poll(self, now: float) -> bytes:
         """What is due to be sent now: a greeting, whatever waits, a heartbeat, or nothing."""
         self._measure_goodput(now)
-        if self.stage is Stage.ESTABLISHED and now - self._heard > SILENCE:
+        if self.stage is Stage.ESTABLISHED and now - self._heard > self._silence:
             self.stage = Stage.GREETING
         if self.stage is not Stage.ESTABLISHED:
             if self._greeted is not None and now - self._greeted < _GREETING:
@@ -137,7 +147,7 @@ class Session:
             self._greeted = now
             return self._send_open(Hello(definitions=DEFINITIONS_HASH, epoch=self._epoch, credit=CREDIT), now)
         data = self._poll_channel(now)
-        if now - self._sent >= _HEARTBEAT:
+        if now - self._sent >= _HEARTBEAT and now >= self._channel.free_at:
             self._channel.offer(encode(Heartbeat(time=int(now * 1000) & 0xFFFFFFFF)), now)
             data += self._poll_channel(now)
         return data
@@ -146,7 +156,8 @@ class Session:
         """When `poll` wants to be called, where nothing else happens."""
         if self.stage is not Stage.ESTABLISHED:
             return self._greeted + _GREETING if self._greeted is not None else float("-inf")
-        return min(self._heard + SILENCE, self._sent + _HEARTBEAT, self._channel.due())
+        heartbeat = max(self._sent + _HEARTBEAT, self._channel.free_at)
+        return min(self._heard + self._silence, heartbeat, self._channel.due())
 
     def send(self, packets: Iterable[Packet], now: float) -> bytes:
         """Take these packets over; the bytes that are to go out now. Without a session only STOP is taken."""
@@ -199,19 +210,22 @@ class Session:
     def _send_open(self, packet: Packet, now: float) -> bytes:
         frame = build([packet], 0, 0)
         self._channel.note_sent(len(frame), now)
-        self._note_sent(frame, now)
+        self._note_sent(frame, OPEN, now)
         return frame
 
     def _poll_channel(self, now: float) -> bytes:
         data = b""
         while frame := self._channel.poll(now):
-            self._note_sent(frame, now)
+            self._note_sent(frame, self._channel.key, now)
             data += frame
         return data
 
-    def _note_sent(self, frame: bytes, now: float) -> None:
+    def _note_sent(self, frame: bytes, key: int, now: float) -> None:
         self._sent = now
-        self.ring.add_sent(frame, now)
+        self.ring.add_sent(frame, key, now)
+
+    def _see(self, frame: bytes) -> None:
+        self.ring.add_received(frame, self._decoder.key, self._now)
 
     def _take_open(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
         self.counters.frames_received += 1
@@ -237,7 +251,7 @@ class Session:
         self.stage = Stage.GREETING
         self.counters.messages_discarded += len(self._channel.pending())
         self._decoder.key = session_key(self._epoch, hello.epoch)
-        self._channel = Channel(self._baud, hello.credit, self._decoder.key, self.counters)
+        self._channel = Channel(self.baud, hello.credit, self._decoder.key, self.counters)
         self._times = BoardTime()
         self._greeted = None
 

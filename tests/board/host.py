@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from robot_runtime.link.session import Session
 from robot_runtime.packets import (
     DEFINITIONS_HASH,
     Heartbeat,
@@ -105,3 +106,48 @@ def last(packets: list[Packet], cls: type[P]) -> P:
 def start(name: str, folder: Path, *options: str) -> Rig:
     """A board with this program of the firmware's."""
     return Rig(FIRMWARE / f"{name}.elf", folder, *options, baud=BAUD)
+
+
+class Host:
+    """The runtime's own session with a paused board; both see emulated time, tick by tick."""
+
+    def __init__(self, rig: Rig, baud: int) -> None:
+        self.rig = rig
+        self.board = rig.board
+        self.session = Session(77, baud)
+        self.command: Navigation | None = None
+        self.heard: list[tuple[float, Packet]] = []
+        self.now = 0.0
+
+    def say(self, *packets: Packet) -> None:
+        """Hand these to the session, which sends them as the line allows."""
+        self._write(self.session.send(packets, self.now))
+
+    def run(self, seconds: float) -> list[tuple[float, Packet]]:
+        """What comes in this much emulated time, and when; the command, if any, is given at 10 Hz."""
+        before = len(self.heard)
+        for _ in range(round(seconds / TICK)):
+            self.board.run(TICK)
+            self.now += TICK
+            messages = self.session.receive(self.rig.port.read(), self.now)
+            self.heard += [(self.now, decode(message.type, message.payload)) for message in messages]
+            if self.command is not None and round(self.now / TICK) % HEARTBEAT_TICKS == 0:
+                self.say(self.command)
+            self._write(self.session.poll(self.now))
+        return self.heard[before:]
+
+    def until(self, holds: Callable[[], bool], limit: float) -> float:
+        """The emulated s until this holds. Fails beyond the limit."""
+        start = self.now
+        while not holds():
+            assert self.now - start < limit, f"not within {limit:.2f} s"
+            self.run(TICK)
+        return self.now - start
+
+    def last(self, cls: type[P]) -> P:
+        """The newest packet of this kind."""
+        return last([packet for _, packet in self.heard], cls)
+
+    def _write(self, data: bytes) -> None:
+        if data:
+            self.rig.port.write(data)

@@ -32,6 +32,7 @@ def test_the_shipped_file_says_the_defaults() -> None:
         ("[robot]\nnmae = 'x'", r"robot: 'nmae' is not known here; known are name, mode"),
         ("[robot]\nmode = 'pool'", r"mode is 'pool'; it must be one of 'emulated', 'robot'"),
         ("[link]\nbaud = 300", "between 1200 and 500000"),
+        ("[link]\nbaud = 230400", r"link.baud is 230400; the chip at 16 MHz makes 222222 of it, -3.5%"),
         ("[link]\nbaud = '250000'", "must be a int"),
         ("[control]\nrate = nan", "must be a float"),
         ("[control]\nrate = true", "must be a float"),

@@ -229,6 +229,20 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     rig.close()
 
 
+def test_the_last_frames_are_told_when_asked(rig: Rig) -> None:
+    rig.ready()
+    answer = rig.messages.ask("query/frames", {})
+    assert answer["fault"] is None
+    kinds = {(frame["sent"], kind) for frame in answer["frames"] for kind in frame["kinds"]}
+    assert {(True, "Hello"), (False, "Depth"), (False, "Status")} <= kinds
+    rig.board.close()
+    rig.listener.wait(lambda: not rig.listener.newest_state()["connected"])
+    fault = rig.messages.ask("query/frames", {})["fault"]
+    assert fault["text"] == "the port went away"
+    assert any("Depth" in frame["kinds"] for frame in fault["frames"])
+    rig.board = Board(rig.board.path)
+
+
 def test_garbage_on_the_line_does_not_disturb_the_control(rig: Rig) -> None:
     rig.ready()
     rig.arm()

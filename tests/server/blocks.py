@@ -48,6 +48,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "connection": "connected",
         "port": "board.tty",
         "baud": 250_000,
+        "paces": [{"topic": "depth", "period": 0.02}],
         "epoch": 1,
         "controller": "pid",
         "controllers": [],

@@ -27,6 +27,8 @@ class RuntimeEnd:
         for name, gate in self.gates.items():
             gate.set()
             self._answer(name, gate)
+        self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
+        self._messages.answer("query/frames", lambda _: self.frames)
         # The last of all: who reaches this one reaches every other.
         self._messages.answer("command/there", lambda _: None)
 

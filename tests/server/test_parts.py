@@ -206,6 +206,11 @@ def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(set
     assert "--port" not in plan(replace(settings, mode="robot"))[0].arguments
 
 
+def test_the_board_runs_the_firmware_for_the_configured_speed(settings: Settings) -> None:
+    elf = settings.build / "firmware/9600/robot.elf"
+    assert str(elf) in plan(replace(settings, baud=9600))[0].arguments
+
+
 def alive(pid: int) -> bool:
     try:
         return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE

@@ -123,6 +123,30 @@ def test_what_is_not_valid_never_reaches_the_runtime(settings: Settings) -> None
     play(settings, scenario)
 
 
+def test_the_last_frames_are_asked_of_the_runtime(settings: Settings) -> None:
+    frame = {
+        "time": 9.5,
+        "sent": True,
+        "bytes": "0102ff00",
+        "kinds": ["Start"],
+        "reliable": True,
+        "open": False,
+        "number": 3,
+        "acknowledged": 12,
+        "problem": "",
+    }
+    fault = {"time": 8.0, "text": "the port went away", "frames": [{**frame, "number": None}]}
+
+    async def scenario(served: Served) -> None:
+        answer = await served.api.get("/link/frames")
+        assert answer.json() == {"time": 1.0, "frames": [], "fault": None}
+        served.runtime.frames = {"time": 10.0, "frames": [frame], "fault": fault}
+        answer = await served.api.get("/link/frames")
+        assert (answer.status_code, answer.json()) == (200, served.runtime.frames)
+
+    play(settings, scenario)
+
+
 def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.refusal = "There is no fresh depth. Check the pressure sensor."

@@ -1,5 +1,7 @@
 #include "link/link.h"
 
+#include "link/baud.h"
+
 namespace mucat {
 namespace {
 
@@ -7,8 +9,10 @@ constexpr uint8_t kNumberMask = 15;
 constexpr uint16_t kUnreliableMask = 4095;
 constexpr uint16_t kAcknowledgeMs = 20;
 constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
-// No more than a frame waits: what is sent now is on the line soon.
-constexpr uint8_t kCalmRoom = board::kLineCredit - kFrameBytesMax;
+// No more waits than leaves within a tick, or a frame.
+constexpr uint16_t kBytesPerTick = kBaud / 1000;
+constexpr uint8_t kCalmRoom =
+    board::kLineCredit - (kBytesPerTick < kFrameBytesMax ? kBytesPerTick : kFrameBytesMax);
 
 }  // namespace
 
@@ -129,8 +133,10 @@ void Link::say(DebugLine& line) {
   lines_.push(line.packet());
 }
 
+bool Link::calm() { return board::line_room() >= kCalmRoom; }
+
 void Link::step(uint16_t now_ms) {
-  if (board::line_room() < kCalmRoom) return;
+  if (!calm()) return;
   if (repeat(now_ms) || start_flight(now_ms)) return;
   if (acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs) {
     send(Acknowledge{0});

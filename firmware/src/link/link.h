@@ -45,6 +45,9 @@ class Link {
   // Sends a HELLO at once, in an open frame of its own.
   void send_open(const Hello& hello);
 
+  // Whether what is sent now is on the line soon.
+  static bool calm();
+
   // Queues a line of text.
   void say(DebugLine& line);
   // Sends one frame of lines, or an acknowledgement, where one is due and the line is calm.

@@ -24,6 +24,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/link/frames": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The last frames on the serial line, now and at the last fault
+         * @description Asked of the runtime at each call; it costs nothing where nobody calls.
+         */
+        get: operations["getLinkFrames"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot": {
         parameters: {
             query?: never;
@@ -331,6 +351,87 @@ export interface components {
             version: string;
         };
         /**
+         * LinkFault
+         * @description The last time that something went wrong on the line, and the frames until then.
+         */
+        LinkFault: {
+            /** Frames */
+            frames: components["schemas"]["LinkFrame"][];
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s, steady clock
+             */
+            time: number;
+        };
+        /**
+         * LinkFrame
+         * @description One frame; where `problem` is not empty it was thrown away, and what it seems to hold is a guess.
+         */
+        LinkFrame: {
+            /**
+             * Acknowledged
+             * @description the reliable frame that its sender waits for
+             */
+            acknowledged: number | null;
+            /**
+             * Bytes
+             * @description as on the line with the closing zero, hexadecimal
+             */
+            bytes: string;
+            /**
+             * Kinds
+             * @description names of its messages
+             */
+            kinds: string[];
+            /**
+             * Number
+             * @description its own, of 16 reliable or 4096 unreliable ones
+             */
+            number: number | null;
+            /**
+             * Open
+             * @description belongs to no session
+             */
+            open: boolean;
+            /**
+             * Problem
+             * @description why it was thrown away; empty where it was valid
+             */
+            problem: string;
+            /**
+             * Reliable
+             * @description repeated until it is acknowledged
+             */
+            reliable: boolean;
+            /**
+             * Sent
+             * @description to the board; else from it
+             */
+            sent: boolean;
+            /**
+             * Time
+             * @description s, steady clock: handed to the line, or taken from it
+             */
+            time: number;
+        };
+        /**
+         * LinkFrames
+         * @description The last hundred frames each way since the port was opened, in the order of time.
+         */
+        LinkFrames: {
+            /** @description null where there was none since the runtime started */
+            fault: components["schemas"]["LinkFault"] | null;
+            /** Frames */
+            frames: components["schemas"]["LinkFrame"][];
+            /**
+             * Time
+             * @description now, s, steady clock
+             */
+            time: number;
+        };
+        /**
          * NewSession
          * @description A session that is to begin; without a name it is called after its moment.
          */
@@ -345,6 +446,16 @@ export interface components {
              * @default
              */
             note: string;
+        };
+        /**
+         * Pace
+         * @description How often the board sends a topic on this line: s between two samples.
+         */
+        Pace: {
+            /** Period */
+            period: number;
+            /** Topic */
+            topic: string;
         };
         /**
          * PartHealth
@@ -469,6 +580,8 @@ export interface components {
              * @enum {string}
              */
             mode: "disarmed" | "automatic";
+            /** Paces */
+            paces: components["schemas"]["Pace"][];
             /** Port */
             port: string;
             /** Refusals */
@@ -537,6 +650,44 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+        };
+    };
+    getLinkFrames: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LinkFrames"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

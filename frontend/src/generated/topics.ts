@@ -403,6 +403,12 @@ export interface ControllerChoice {
   gains: Gain[];
 }
 
+/** How often the board sends a topic on this line: s between two samples. */
+export interface Pace {
+  topic: string;
+  period: number;
+}
+
 /** The robot as a whole; sent once a second and at every change. */
 export interface State {
   time: number;
@@ -414,6 +420,7 @@ export interface State {
   connection: string;
   port: string;
   baud: number;
+  paces: Pace[];
   epoch: number | null;
   controller: string;
   controllers: ControllerChoice[];

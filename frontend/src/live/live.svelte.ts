@@ -137,7 +137,7 @@ export class Live {
   #period(topic: Timed): number {
     if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
     if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
-    return PERIODS[topic];
+    return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
   }
 
   #opened(): void {

@@ -2,7 +2,7 @@ import type { Rows } from '../generated/topics';
 
 export type Timed = keyof Rows | 'state' | 'detection' | 'picture';
 
-/** s between two samples of each topic where it flows as it should; docs/architecture.md and the packets say so. */
+/** s between two samples of each topic on a fast line; `state.paces` says what a slow one carries. */
 export const PERIODS: Record<keyof Rows | 'state', number> = {
   imu: 0.01,
   depth: 0.02,

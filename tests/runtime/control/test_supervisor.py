@@ -1,5 +1,7 @@
 """Arming and disarming in simulated time, with a line to the board that the test holds."""
 
+from collections.abc import Callable
+
 import pytest
 
 from robot_runtime.clock import SimulatedClock
@@ -21,8 +23,9 @@ from robot_runtime.samples import Event
 class Board:
     """A board that does as it is told, unless the test says otherwise."""
 
-    def __init__(self) -> None:
+    def __init__(self, baud: int) -> None:
         self.connected = True
+        self.baud = baud
         self.text = "connected"
         self.board: Hello | None = Hello(definitions=DEFINITIONS_HASH, epoch=7, credit=64)
         self.sent: list[Packet] = []
@@ -39,9 +42,10 @@ class Board:
 class Rig:
     """A supervisor, its board and what it told."""
 
-    def __init__(self) -> None:
-        self.clock, self.board = SimulatedClock(100.0), Board()
+    def __init__(self, baud: int = 250_000) -> None:
+        self.clock, self.board = SimulatedClock(100.0), Board(baud)
         self.events: list[Event] = []
+        self.on_start: Callable[[], None] = lambda: None
         self.supervisor = Supervisor(self.clock, self.board, self.events.append)
         self.board.send = self._send  # type: ignore[method-assign]
 
@@ -53,6 +57,8 @@ class Rig:
             if isinstance(packet, Stop):
                 self.board.flags &= ~StatusFlag.ARMED
             self.report()
+            if isinstance(packet, Start):
+                self.on_start()
         return self.board.connected
 
     def report(self) -> None:
@@ -120,6 +126,34 @@ def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> N
     with pytest.raises(Refused, match="did not arm"):
         rig.supervisor.arm()
     assert isinstance(rig.board.sent[-1], Stop)
+    assert not rig.supervisor.armed
+
+
+def test_a_look_while_the_board_arms_does_not_stop_it(rig: Rig) -> None:
+    rig.on_start = rig.supervisor.tick
+    rig.supervisor.arm()
+    assert rig.supervisor.armed
+    assert rig.board.sent == [Start(epoch=7)]
+
+
+def test_a_stop_while_the_board_arms_is_the_last_word(rig: Rig) -> None:
+    rig.on_start = lambda: rig.supervisor.stop("Stopped.")
+    with pytest.raises(Refused, match="Stopped before"):
+        rig.supervisor.arm()
+    assert not rig.supervisor.armed
+    assert rig.board.sent == [Start(epoch=7), Stop()]
+
+
+@pytest.mark.parametrize(("baud", "limit"), [(250_000, 0.5), (1200, 1.5)])
+def test_a_slow_line_has_its_own_measure_of_a_fresh_depth(baud: int, limit: float) -> None:
+    rig = Rig(baud)
+    rig.ready()
+    rig.supervisor.arm()
+    rig.clock.forward(limit)
+    rig.supervisor.tick()
+    assert rig.supervisor.armed
+    rig.clock.forward(0.01)
+    rig.supervisor.tick()
     assert not rig.supervisor.armed
 
 

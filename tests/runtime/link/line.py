@@ -6,7 +6,7 @@ from math import log
 
 from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import Decoder
-from robot_runtime.packets import Acknowledge, Packet
+from robot_runtime.packets import Acknowledge, Heartbeat, Packet
 
 KEY = 0x0102_0304
 _SHORTEST_STEP = 1e-6
@@ -28,7 +28,7 @@ def packet_of(type_: int, size: int) -> type[Packet]:
 
 PAYLOADS = {size: packet_of(0x70 + place, size) for place, size in enumerate((2, 6, 18))}
 PACKETS: dict[int, type[Packet]] = {cls.type: cls for cls in PAYLOADS.values()}
-PACKETS[Acknowledge.type] = Acknowledge
+PACKETS |= {cls.type: cls for cls in (Acknowledge, Heartbeat)}
 
 
 @dataclass(frozen=True)

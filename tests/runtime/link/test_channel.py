@@ -6,6 +6,7 @@ import pytest
 
 from robot_runtime.link.channel import WINDOW, Channel
 from robot_runtime.link.framing import Decoder
+from robot_runtime.packets import Heartbeat, encode
 from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
 
 
@@ -44,6 +45,20 @@ def test_whatever_the_line_does_everything_arrives_once_and_in_order(noise: Nois
     for end, messages in zip(line.ends, reversed(given), strict=True):
         assert end.heard == [(one[0], one[1:]) for one in messages]
         assert not end.channel.urgent
+
+
+def test_on_a_full_line_what_is_reliable_gets_its_turn() -> None:
+    line = Line(1200)
+    sender, receiver = line.ends
+    given = numbered(6, 40)
+    for message in given:
+        sender.channel.queue(message)
+    for step in range(600):
+        # More of the newest than the line carries.
+        sender.channel.offer(encode(Heartbeat(time=step)), step * 0.05)
+        line.run(0.05 * (step + 1))
+    assert [one for one in receiver.heard if one[0] != Heartbeat.type] == [(one[0], one[1:]) for one in given]
+    assert sum(type_ == Heartbeat.type for type_, _ in receiver.heard) > 100
 
 
 def test_a_quiet_good_line_repeats_nothing() -> None:

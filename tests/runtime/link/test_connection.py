@@ -113,6 +113,11 @@ def test_the_last_frames_are_logged_when_the_port_vanishes(
     (dump,) = [record.getMessage() for record in caplog.records if "last frames" in record.getMessage()]
     assert b"farewell".hex() in dump
     assert " -> " in dump
+    fault = host.connection.fault
+    assert fault is not None
+    assert fault.text == "the port went away"
+    assert any(b"farewell" in frame.stuffed for frame in fault.frames)
+    assert {frame.sent for frame in fault.frames} == {True, False}
 
 
 def test_a_line_of_text_is_acknowledged_soon(host: Host, path: Path) -> None:
@@ -133,6 +138,16 @@ def test_garbage_on_the_line_is_counted_and_survived(host: Host, path: Path) -> 
     board.say(Debug(time=5, level=1, text="still here"))
     host.wait(lambda: any(message.payload.endswith(b"still here") for message in host.messages))
     assert host.connection.statistics().frames_invalid == 3
+
+
+def test_bytes_without_a_frame_make_it_ask_for_the_speed(host: Host, path: Path) -> None:
+    board = BoardEnd(path)
+    board.hear(Hello.type)
+    os.write(board.master, bytes([0x80, 0xF8, 0xE0, 0x00]) * 100)
+    host.wait(lambda: "bytes come from the board, but no valid frame" in host.connection.text)
+    assert "250000 baud" in host.connection.text
+    connect(board, host)
+    assert host.connection.text == "connected"
 
 
 def test_other_definitions_are_refused_in_words(host: Host, path: Path) -> None:

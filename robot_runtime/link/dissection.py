@@ -1,0 +1,99 @@
+"""A frame in words: what a kept frame says, or why it says nothing."""
+
+import zlib
+from dataclasses import dataclass
+from struct import Struct
+
+from cobs import cobs
+
+from robot_runtime.link.frame_ring import KeptFrame
+from robot_runtime.link.framing import OPEN
+from robot_runtime.packets import FRAME_BYTES_MAX, PACKETS
+
+_CRC = Struct("<I")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dissection:
+    """A frame's parts. Where `problem` is not empty the frame was thrown away, and the rest is a guess.
+
+    `bytes` is what was on the line, in hexadecimal, with the closing zero; `number` and `acknowledged` are
+    None where the frame is too damaged to have any.
+    """
+
+    time: float
+    sent: bool
+    bytes: str
+    kinds: list[str]
+    reliable: bool
+    open: bool
+    number: int | None
+    acknowledged: int | None
+    problem: str
+
+
+def dissect(frame: KeptFrame) -> Dissection:
+    """What is in this frame; never raises."""
+    try:
+        content = cobs.decode(frame.stuffed)
+    except cobs.DecodeError:
+        return _nothing(frame, "its stuffing (COBS) is damaged: bytes were lost or changed")
+    if not frame.stuffed or len(frame.stuffed) >= FRAME_BYTES_MAX:
+        return _nothing(frame, f"longer than {FRAME_BYTES_MAX} bytes: a closing zero was lost")
+    if len(content) < 2 + _CRC.size:
+        return _nothing(frame, "too short: its beginning or a part was lost")
+    body = content[: -_CRC.size]
+    key = _CRC.unpack_from(content, len(body))[0] ^ zlib.crc32(body)
+    first = PACKETS.get(body[1])
+    reliable = first is not None and first.reliable
+    kinds, fits = _kinds(body[1:] if reliable else body[1:-1])
+    problem = ""
+    if key not in (OPEN, frame.key):
+        problem = "wrong checksum: bytes were changed, or it belongs to another session"
+    elif not fits:
+        problem = "a message of unknown kind or wrong length: the firmware is of other definitions"
+    return Dissection(
+        time=frame.time,
+        sent=frame.sent,
+        bytes=frame.stuffed.hex() + "00",
+        kinds=kinds,
+        reliable=reliable,
+        open=key == OPEN,
+        number=body[0] >> 4 if reliable else (body[0] >> 4) << 8 | body[-1],
+        acknowledged=body[0] & 15,
+        problem=problem,
+    )
+
+
+def _kinds(messages: bytes) -> tuple[list[str], bool]:
+    """The names of these messages as far as they can be told, and whether they fill the bytes exactly."""
+    kinds: list[str] = []
+    at = 0
+    while at < len(messages):
+        packet = PACKETS.get(messages[at])
+        if packet is None:
+            return kinds, False
+        end = at + 1 + packet.layout.size
+        if packet.tail:
+            if end >= len(messages):
+                return kinds, False
+            end += 1 + messages[end]
+        if end > len(messages):
+            return kinds, False
+        kinds.append(packet.__name__)
+        at = end
+    return kinds, bool(kinds)
+
+
+def _nothing(frame: KeptFrame, problem: str) -> Dissection:
+    return Dissection(
+        time=frame.time,
+        sent=frame.sent,
+        bytes=frame.stuffed.hex() + "00",
+        kinds=[],
+        reliable=False,
+        open=False,
+        number=None,
+        acknowledged=None,
+        problem=problem,
+    )

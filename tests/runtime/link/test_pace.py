@@ -1,0 +1,24 @@
+"""How often telemetry comes; tests/board/test_speeds.py lays this beside the firmware."""
+
+import pytest
+
+from robot_runtime.link.pace import periods, stale_after
+from robot_runtime.packets import Depth, Imu, Status
+
+
+def test_a_fast_line_carries_the_full_rate() -> None:
+    assert periods(250_000) == periods(115_200)
+    assert (periods(250_000)[Imu], periods(250_000)[Depth], periods(250_000)[Status]) == (0.01, 0.02, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("baud", "depth", "status"), [(57_600, 0.04, 0.2), (9600, 0.07, 0.21), (1200, 0.5, 1.5)]
+)
+def test_a_slow_line_keeps_what_is_steered_by(baud: int, depth: float, status: float) -> None:
+    assert periods(baud)[Depth] == pytest.approx(depth)
+    assert periods(baud)[Status] == pytest.approx(status)
+
+
+def test_stale_is_what_misses_three_times_but_not_sooner_than_usual() -> None:
+    assert stale_after(0.5, Depth, 250_000) == 0.5
+    assert stale_after(0.5, Depth, 1200) == pytest.approx(1.5)

@@ -1,0 +1,48 @@
+"""The whole robot on a slow line, as `mucat run` starts it with another baud in robot.toml."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+from tests.stack import ROOT, Stack
+
+BAUD = 9600
+PATIENCE = 20.0
+
+
+def test_the_whole_robot_dives_at_9600_baud(tmp_path: Path) -> None:
+    text = (ROOT / "robot.toml").read_text()
+    assert text.count("\nbaud = 250000") == 1
+    config = tmp_path / "robot.toml"
+    config.write_text(text.replace("\nbaud = 250000", f"\nbaud = {BAUD}"))
+    with Stack(tmp_path / "data", "--config", str(config)) as stack:
+        wait_for(stack, lambda state: state["refusals"] == [])
+        stack.api.post("/robot/arm").raise_for_status()
+        frames = wait_for_navigation(stack)
+        state = stack.api.get("/robot").json()
+        assert (state["baud"], state["armed"]) == (BAUD, True)
+        assert {pace["topic"]: round(pace["period"], 2) for pace in state["paces"]}["depth"] == 0.07
+        kinds = {kind for frame in frames["frames"] if not frame["sent"] for kind in frame["kinds"]}
+        assert {"Imu", "Depth", "Motor", "Beacon", "Status"} <= kinds
+        assert frames["fault"] is None
+        stack.api.post("/robot/stop").raise_for_status()
+        wait_for(stack, lambda state: not state["armed"])
+
+
+def wait_for(stack: Stack, holds: Any) -> None:
+    end = time.monotonic() + PATIENCE
+    while not holds(stack.api.get("/robot").json()):
+        assert time.monotonic() < end, stack.api.get("/robot").json()
+        time.sleep(0.05)
+
+
+def wait_for_navigation(stack: Stack) -> Any:
+    """The last frames, once there is a navigation command among them that the board has."""
+    end = time.monotonic() + PATIENCE
+    while True:
+        frames = stack.api.get("/link/frames").json()
+        sent = [frame for frame in frames["frames"] if frame["sent"] and "Navigation" in frame["kinds"]]
+        if len(sent) > 10:
+            return frames
+        assert time.monotonic() < end
+        time.sleep(0.1)
