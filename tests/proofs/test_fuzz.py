@@ -13,7 +13,7 @@ from robot_runtime.link.session import Session, session_key
 from robot_runtime.packets import DEFINITIONS_HASH, FRAME_BYTES_MAX, PACKETS, Hello, encode
 from tests.proofs import fuzz
 
-EXECUTIONS = 15_000
+EXECUTIONS = 10_000
 HOST, BOARD = 5, 6
 KEY = session_key(HOST, BOARD)
 

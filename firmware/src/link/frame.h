@@ -22,8 +22,9 @@ constexpr uint8_t kNumberBytes = 1;
 constexpr uint8_t kMessagesBytesMax = kBlockBytesMax - kControlBytes - kNumberBytes - kCrcBytes;
 constexpr uint32_t kOpen = 0;
 
-// The key of the frames between this run of the host and this boot of the board: the CRC-32 of both epochs,
-// so that the keys of like epochs differ in many bits. Never kOpen, as no boot is numbered 0.
+// The key of the frames between this run of the host and this boot of the board: both epochs, mixed by
+// MurmurHash3's finaliser. Like epochs differ in few bits, and bit errors must not make up for it; mixing by
+// a CRC would not do, as some bit errors have the same effect. Never kOpen, as no boot is numbered 0.
 uint32_t session_key(uint16_t host_epoch, uint16_t board_epoch);
 
 struct Message {
