@@ -153,7 +153,7 @@ static_assert(sizeof(Heartbeat) == 4, "Heartbeat has another size");
 // Both ways: which reliable frames came after the first that is missing.
 struct __attribute__((packed)) Acknowledge {
   static constexpr uint8_t kType = 0x0d;
-  uint8_t held;  // bit n: frame acknowledged + 1 + n is here
+  uint8_t held;  // bit n: frame acknowledged + 1 + n is here; bit 7: no room for more, wait
 };
 static_assert(sizeof(Acknowledge) == 1, "Acknowledge has another size");
 

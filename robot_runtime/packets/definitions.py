@@ -210,7 +210,9 @@ class Heartbeat(Packet):
 class Acknowledge(Packet):
     """Both ways: which reliable frames came after the first that is missing."""
 
-    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here")]
+    held: Annotated[
+        int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room for more, wait")
+    ]
 
 
 # The communication test: the messages of the thesis's Table 4, whose numbers are taken here.

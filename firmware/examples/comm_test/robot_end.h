@@ -57,7 +57,6 @@ class RobotEnd {
  private:
   static constexpr uint8_t NUMBERS_PER_FRAME = mucat::kReliableMessagesBytesMax / (1 + sizeof(mucat::TestMsg));
   static constexpr uint8_t NUMBERS_MAX = 2 * NUMBERS_PER_FRAME;
-  // The host takes a board that is silent for 1 s for lost.
   static constexpr uint16_t SIGN_OF_LIFE_MS = 400;
 
   template <typename Packet>
@@ -75,8 +74,7 @@ class RobotEnd {
     link_.step(now);
     if (greeted_ && now - signed_ms_ >= SIGN_OF_LIFE_MS) {
       signed_ms_ = now;
-      link_.send(mucat::Acknowledge{0});
-      link_.flush();
+      link_.acknowledge();
     }
   }
 

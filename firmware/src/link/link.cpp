@@ -6,6 +6,8 @@ namespace {
 constexpr uint8_t kNumberMask = 15;
 constexpr uint16_t kUnreliableMask = 4095;
 constexpr uint16_t kAcknowledgeMs = 20;
+// The bit of Acknowledge.held that no frame of a window of seven needs.
+constexpr uint8_t kNotReady = 0x80;
 constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 // No more than a frame waits: what is sent now is on the line soon.
 constexpr uint8_t kCalmRoom = board::kLineCredit - kFrameBytesMax;
@@ -59,10 +61,19 @@ void Link::begin(uint32_t key) {
   acknowledge_ = false;
 }
 
+void Link::set_ready(bool ready) {
+  ready_ = ready;
+  if (ready && refused_) {
+    refused_ = false;
+    tell_ready_ = true;
+  }
+}
+
 void Link::take_number() {
   if (!acknowledge_) heard_ms_ = board::milliseconds();
   acknowledge_ = true;
   fresh_ = ready_ && decoder_.number() == expected_;
+  if (!ready_) refused_ = tell_ready_ = true;
   if (fresh_) expected_ = (expected_ + 1) & kNumberMask;
 }
 
@@ -137,11 +148,15 @@ void Link::say(DebugLine& line) {
 
 void Link::step(uint16_t now_ms) {
   if (board::line_room() < kCalmRoom) return;
-  if (repeat(now_ms) || start_flight(now_ms)) return;
-  if (acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs) {
-    send(Acknowledge{0});
-    flush();
-  }
+  const bool late = acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs;
+  if (!tell_ready_ && (repeat(now_ms) || start_flight(now_ms) || !late)) return;
+  acknowledge();
+}
+
+void Link::acknowledge() {
+  tell_ready_ = false;
+  send(Acknowledge{refused_ ? kNotReady : uint8_t{0}});
+  flush();
 }
 
 uint16_t Link::bytes_in_flight() const { return messages_bytes_ + in_flight_ * kFrameOverhead; }

@@ -29,9 +29,9 @@ class Link {
   // The received frame's next message that is new; false after the last. Ask until then.
   bool next(Message* message);
 
-  // Whether the host's reliable messages are taken, as they are at first. Where they are not, the host keeps
-  // them and sends them again.
-  void set_ready(bool ready) { ready_ = ready; }
+  // Whether the host's reliable messages are taken, as they are at first. Where they are not, the host is
+  // told, and sends them again when it is told otherwise.
+  void set_ready(bool ready);
 
   // Says at once who speaks, in an open frame of its own; `epoch` is this boot of the board.
   void greet(uint16_t epoch);
@@ -58,6 +58,10 @@ class Link {
   void say(DebugLine& line);
   // Sends one frame of reliable messages, or an acknowledgement, where one is due and the line is calm.
   void step(uint16_t now_ms);
+
+  // Says now what has come. To be called now and then by whoever sends nothing else: the host takes a board
+  // that is silent for 1 s for lost.
+  void acknowledge();
 
   uint16_t frames_invalid() const { return decoder_.invalid(); }
   uint16_t frames_repeated() const { return repeated_; }
@@ -101,7 +105,9 @@ class Link {
   uint8_t base_ = 0;            // number of the oldest in flight
   uint8_t expected_ = 0;        // number of the host's next reliable frame
   bool ready_ = true;
-  bool fresh_ = false;  // the received frame's reliable messages are new
+  bool refused_ = false;     // a reliable frame since it was last ready
+  bool tell_ready_ = false;  // whether it is, with the next step
+  bool fresh_ = false;       // the received frame's reliable messages are new
   bool acknowledge_ = false;
   uint16_t heard_ms_ = 0;
 };
