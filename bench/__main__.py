@@ -15,6 +15,8 @@ PARTS = (
     "physics",
     "codec",
     "link",
+    "chip",
+    "comm_test",
     "setpoint",
     "connection",
     "start",
