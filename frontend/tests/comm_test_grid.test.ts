@@ -71,7 +71,7 @@ describe('the figure', () => {
     text: '0.98',
     paint: ratePaint(0.98),
   }));
-  const look = { text: '#000000', muted: '#111111', panel: '#ffffff', line: '#222222', font: 'Inter' };
+  const look = { text: '#000000', muted: '#111111', panel: '#ffffff', line: '#222222', font: 'Inter', cellHigh: 36 };
 
   it('has a facet for each baud, and in it a bar for each cell', () => {
     const { data, layout } = drawFigure(cells, 700, '9600 0.5 0', look);

@@ -39,6 +39,13 @@ describe('the watch', () => {
     expect([watch.active, watch.run, watch.cells.length]).toEqual([null, 4, 1]);
   });
 
+  it('believes nothing from before a lost connection', () => {
+    const watch = new CommTestWatch();
+    watch.take(active(3, 1), { run: 3, ...cell(0) });
+    watch.reconnect();
+    expect([watch.active, watch.run, watch.cells]).toEqual([null, null, []]);
+  });
+
   it('takes no cell of another run', () => {
     const watch = new CommTestWatch();
     watch.take(active(4, 0), { run: 3, ...cell(74) });

@@ -12,6 +12,13 @@ export class CommTestWatch {
   cells = $state.raw<readonly Cell[]>([]);
   run = $state<number | null>(null);
 
+  /** A new connection begins; where a test runs, the server says so at once. */
+  reconnect(): void {
+    this.active = null;
+    this.run = null;
+    this.cells = [];
+  }
+
   take(active: CommTestActive | null, cell: (Cell & { run: number }) | null): void {
     this.active = active;
     this.heard = performance.now();

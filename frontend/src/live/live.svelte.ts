@@ -147,6 +147,7 @@ export class Live {
     this.serverError = '';
     this.farewell = '';
     this.#progress.reconnect();
+    this.commTest.reconnect();
     this.gaps.restart();
   }
 

@@ -21,6 +21,8 @@ export interface Look {
   readonly panel: string;
   readonly line: string;
   readonly font: string;
+  /** px: as high as a finger needs, where fingers choose */
+  readonly cellHigh: number;
 }
 
 export interface Figure {
@@ -31,7 +33,6 @@ export interface Figure {
 }
 
 const CELL_WIDE = 44;
-const CELL_HIGH = 36;
 const LEFT = 48;
 /** of a facet's baud and, below it, the Pi's delays */
 const HEAD = 46;
@@ -59,7 +60,7 @@ interface Facet {
 /** The figure of `cells` in `width` px, with the cell at `chosen` (a key) framed. */
 export function drawFigure(cells: readonly FigureCell[], width: number, chosen: string, look: Look): Figure {
   const grid = gridOf(cells.map(({ place }) => place));
-  const { facets, height } = layOut(grid, width);
+  const { facets, height } = layOut(grid, width, look.cellHigh);
   const axes = facets.flatMap((facet) => [
     [`xaxis${facet.suffix}`, acrossAxis(facet, grid)],
     [`yaxis${facet.suffix}`, downAxis(facet, grid)],
@@ -97,11 +98,11 @@ export function drawFigure(cells: readonly FigureCell[], width: number, chosen: 
   return { data, layout, height };
 }
 
-function layOut({ bauds, arduinoDelays, piDelays }: Grid, width: number): { facets: Facet[]; height: number } {
+function layOut({ bauds, arduinoDelays, piDelays }: Grid, width: number, cellHigh: number): { facets: Facet[]; height: number } {
   const inside = Math.max(1, width - LEFT);
   const columns = facetColumns(bauds.length, inside, piDelays.length * CELL_WIDE, GAP);
   const wide = (inside - (columns - 1) * GAP) / columns;
-  const high = arduinoDelays.length * CELL_HIGH;
+  const high = arduinoDelays.length * cellHigh;
   const row = HEAD + high + BELOW;
   const height = Math.ceil(bauds.length / columns) * row;
   const facets = bauds.map((baud, index): Facet => {
@@ -148,14 +149,15 @@ function downAxis({ suffix, y, leftmost }: Facet, { arduinoDelays }: Grid) {
 
 function bars(facet: Facet, grid: Grid, cells: readonly FigureCell[], chosen: string, look: Look): Data {
   const { suffix, cellWide } = facet;
+  const { cellHigh } = look;
   const framed = cells.map(({ place }) => key(place) === chosen);
   const bar: object = {
     type: 'bar',
     xaxis: `x${suffix}`,
     yaxis: `y${suffix}`,
     x: cells.map(({ place }) => grid.piDelays.indexOf(place.pi_delay)),
-    base: cells.map(({ place }) => grid.arduinoDelays.indexOf(place.arduino_delay) - 0.5 + SEAM / 2 / CELL_HIGH),
-    y: cells.map(() => 1 - SEAM / CELL_HIGH),
+    base: cells.map(({ place }) => grid.arduinoDelays.indexOf(place.arduino_delay) - 0.5 + SEAM / 2 / cellHigh),
+    y: cells.map(() => 1 - SEAM / cellHigh),
     width: cells.map(() => 1 - SEAM / cellWide),
     marker: {
       color: cells.map(({ paint }) => paint.fill),
