@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages, NoAnswer, Subscription
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets.layout import LayoutError
@@ -46,6 +47,8 @@ class Bridge:
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        self.lent: str | None = None
+        """Why nobody can be asked now, where the robot's board is lent."""
         self._settings = settings
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
@@ -83,6 +86,10 @@ class Bridge:
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
         stop = name == "stop"
+        if self.lent is not None:
+            if stop:
+                return  # it is disarmed, and stays so
+            raise Refused(self.lent)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilent(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False

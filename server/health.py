@@ -105,11 +105,16 @@ class Watch:
         part = self._parts.get("runtime")
         if part is not None and part.state == "failed":
             return PartHealth(name="runtime", state="failed", text=_say_failed(part))
+        if part is not None and part.state == "paused":
+            return PartHealth(name="runtime", state="absent", text=part.problem)
         if self._fresh("state", STATE_SECONDS):
             return PartHealth(name="runtime", state="ok", text="It runs.")
         return self._silent("runtime", part, "It runs, but says nothing.")
 
     def _link(self) -> PartHealth:
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="link", state="absent", text=runtime.problem)
         if not self._fresh("state", STATE_SECONDS):
             return self._silent("link", self._parts.get("runtime"), "Unknown: the runtime says nothing.")
         state = self.state() or {}
@@ -122,6 +127,9 @@ class Watch:
         part = self._parts.get("board")
         if part is not None and part.state == "failed":
             return PartHealth(name="board", state="failed", text=_say_failed(part))
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="board", state="absent", text=runtime.problem)
         now = self._clock.now()
         if self._bytes_grew is not None and now - self._bytes_grew < LINK_SECONDS:
             return PartHealth(name="board", state="ok", text="It sends.")
