@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from robot_runtime.config import VISION_RATE
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.robot import Robot
@@ -55,9 +54,6 @@ class Commands:
 
     def _vision(self, question: Mapping[str, Any]) -> None:
         rate = _number(question, "rate", self._robot.vision.rate)
-        low, high = VISION_RATE.minimum, VISION_RATE.maximum
-        if not low <= rate <= high:
-            raise Refused(f"a vision rate of {rate:g} Hz is not between {low:g} and {high:g} Hz")
         colour = question.get("colour") or self._robot.control.colour
         if colour not in self._robot.vision.colours:
             raise Refused(f"no colour is named {colour!r}; there are {', '.join(self._robot.vision.colours)}")

@@ -65,4 +65,4 @@ class Outbox:
     def _block(self, name: str, count: int, payload: bytes) -> bytes:
         first = self._next[name]
         self._next[name] = first + count
-        return Block(BY_NAME[name], count, first, payload).to_bytes()
+        return Block.of(BY_NAME[name], count, first, payload).data

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from enum import IntEnum
 from struct import Struct
+from typing import Self
 
 from robot_runtime import packets, samples
 from robot_runtime.link.statistics import LinkStatistics
@@ -68,24 +69,29 @@ TOPICS: tuple[Topic, ...] = (
 )
 BY_NAME = {topic.name: topic for topic in TOPICS}
 BY_ID = {topic.id: topic for topic in TOPICS}
+ROW_BYTES = {topic.id: topic.row_bytes for topic in TOPICS if topic.kind is Kind.ROWS}
+"""Of one row with its time, by the topic's number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A batch of one topic's samples."""
+    """A batch: `count` samples of one topic, numbered from `first` on; `data` is the block as it travels."""
 
     topic: Topic
     count: int
     first: int
-    payload: bytes
+    data: bytes
 
-    def to_bytes(self) -> bytes:
-        """The block as it travels."""
-        size = len(self.payload)
-        return (
-            HEADER.pack(self.topic.id, self.topic.kind, self.count, self.first & 0xFFFFFFFF, size)
-            + self.payload
-        )
+    @classmethod
+    def of(cls, topic: Topic, count: int, first: int, payload: bytes) -> Self:
+        """The block around a payload."""
+        header = HEADER.pack(topic.id, topic.kind, count, first & 0xFFFFFFFF, len(payload))
+        return cls(topic, count, first, header + payload)
+
+    @property
+    def payload(self) -> bytes:
+        """The block without its header."""
+        return self.data[HEADER.size :]
 
 
 def row(time: float, record: bytes) -> bytes:
@@ -101,25 +107,24 @@ def documents(batch: Sequence[samples.Document]) -> bytes:
 
 
 def read_blocks(data: bytes) -> list[Block]:
-    """The blocks that `data` holds, one after the other. Raises LayoutError where they do not fill it."""
+    """The blocks that `data` is. Raises LayoutError where it is not blocks from end to end."""
     blocks: list[Block] = []
     at = 0
     while at < len(data):
         if len(data) - at < HEADER.size:
             raise LayoutError(f"a block's header is cut off after {len(data) - at} bytes")
         topic_id, kind, count, first, size = HEADER.unpack_from(data, at)
-        at += HEADER.size
         topic = BY_ID.get(topic_id)
         if topic is None or topic.kind != kind:
             raise LayoutError(f"no topic {topic_id} of kind {kind}")
-        if len(data) - at < size:
-            raise LayoutError(f"a block of {topic.name} is cut off: {len(data) - at} of {size} bytes")
-        if topic.kind is Kind.ROWS and size != count * topic.row_bytes:
-            raise LayoutError(
-                f"a block of {topic.name} holds {size} bytes, not {count} rows of {topic.row_bytes}"
-            )
-        blocks.append(Block(topic, count, first, data[at : at + size]))
-        at += size
+        end = at + HEADER.size + size
+        if end > len(data):
+            there = len(data) - at - HEADER.size
+            raise LayoutError(f"a block of {topic.name} is cut off: {there} of {size} bytes")
+        if count == 0 or (topic.kind is Kind.ROWS and size != count * ROW_BYTES[topic_id]):
+            raise LayoutError(f"a block of {topic.name} holds {size} bytes, which are not {count} samples")
+        blocks.append(Block(topic, count, first, data[at:end]))
+        at = end
     return blocks
 
 
@@ -128,5 +133,5 @@ def read_rows(block: Block) -> list[tuple[float, Record]]:
     size, record = block.topic.row_bytes, block.topic.record
     assert record is not None
     assert issubclass(record, Record)
-    rows = (block.payload[at : at + size] for at in range(0, len(block.payload), size))
+    rows = (block.data[at : at + size] for at in range(HEADER.size, len(block.data), size))
     return [(TIME.unpack_from(one)[0], record.from_bytes(one[TIME.size :])) for one in rows]

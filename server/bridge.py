@@ -11,10 +11,11 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages, NoAnswer, Subscription
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets.layout import LayoutError
-from server.arrivals import Arrival, read_arrivals
+from robot_runtime.topics import Block, read_blocks
 from server.settings import Settings, SetupError
 
 log = logging.getLogger(__name__)
@@ -44,8 +45,10 @@ class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
 class Bridge:
     """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order."""
 
-    def __init__(self, settings: Settings, deliver: Callable[[list[Arrival]], None]) -> None:
+    def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        self.lent: str | None = None
+        """Why nobody can be asked now, where the robot's board is lent."""
         self._settings = settings
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
@@ -83,6 +86,10 @@ class Bridge:
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
         stop = name == "stop"
+        if self.lent is not None:
+            if stop:
+                return  # it is disarmed, and stays so
+            raise Refused(self.lent)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilent(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False
@@ -128,18 +135,18 @@ class Bridge:
         self._loop.call_later(ROUND_SECONDS, self._drain)
 
     def _empty_queue(self) -> None:
-        arrivals: list[Arrival] = []
+        blocks: list[Block] = []
         while self._queue:
             name, data = self._queue.popleft()
             try:
                 if len(data) > BLOCK_BYTES_MAX:
                     raise LayoutError(f"{len(data)} bytes are too many")
-                arrivals += read_arrivals(data)
+                blocks += read_blocks(data)
             except LayoutError as problem:
                 self.damaged += 1
                 log.warning("a message of %s was thrown away: %s", name, problem)
-        if arrivals:
-            self._deliver(arrivals)
+        if blocks:
+            self._deliver(blocks)
 
 
 def _silence(waited: bool) -> str:

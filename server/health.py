@@ -7,9 +7,8 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.link.statistics import LinkStatistics
-from robot_runtime.topics import TIME
+from robot_runtime.topics import TIME, Block
 from server import VERSION
-from server.arrivals import Arrival
 from server.parts import Part, Parts
 from server.settings import Settings
 from server.store import Store
@@ -50,16 +49,16 @@ class Watch:
         self._store = store
         self._parts = parts
         self._began = clock.now()
-        self._newest: dict[str, tuple[float, Arrival]] = {}
+        self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew: float | None = None
 
-    def see(self, arrival: Arrival) -> None:
+    def see(self, block: Block) -> None:
         """Take note of a block."""
         now = self._clock.now()
-        self._newest[arrival.topic.name] = (now, arrival)
-        if arrival.topic.name == "link":
-            self._see_link(arrival, now)
+        self._newest[block.topic.name] = (now, block)
+        if block.topic.name == "link":
+            self._see_link(block, now)
 
     def state(self) -> dict[str, Any] | None:
         """The newest `state` document; None where there has been none that can be read."""
@@ -89,8 +88,8 @@ class Watch:
             status = "starting"
         return Health(status=status, version=VERSION, robot=self._settings.robot, parts=parts)
 
-    def _see_link(self, arrival: Arrival, now: float) -> None:
-        row = arrival.data[len(arrival.data) - arrival.topic.row_bytes + TIME.size :]
+    def _see_link(self, block: Block, now: float) -> None:
+        row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
         received = LinkStatistics.from_bytes(row).bytes_received
         if received > self._bytes_received >= 0:
             self._bytes_grew = now
@@ -106,11 +105,16 @@ class Watch:
         part = self._parts.get("runtime")
         if part is not None and part.state == "failed":
             return PartHealth(name="runtime", state="failed", text=_say_failed(part))
+        if part is not None and part.state == "paused":
+            return PartHealth(name="runtime", state="absent", text=part.problem)
         if self._fresh("state", STATE_SECONDS):
             return PartHealth(name="runtime", state="ok", text="It runs.")
         return self._silent("runtime", part, "It runs, but says nothing.")
 
     def _link(self) -> PartHealth:
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="link", state="absent", text=runtime.problem)
         if not self._fresh("state", STATE_SECONDS):
             return self._silent("link", self._parts.get("runtime"), "Unknown: the runtime says nothing.")
         state = self.state() or {}
@@ -123,6 +127,9 @@ class Watch:
         part = self._parts.get("board")
         if part is not None and part.state == "failed":
             return PartHealth(name="board", state="failed", text=_say_failed(part))
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="board", state="absent", text=runtime.problem)
         now = self._clock.now()
         if self._bytes_grew is not None and now - self._bytes_grew < LINK_SECONDS:
             return PartHealth(name="board", state="ok", text="It sends.")

@@ -13,8 +13,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.topics import Kind
-from server.arrivals import Arrival
+from robot_runtime.topics import Block, Kind
 from server.lanes import History, Lane, Totals
 
 HISTORY_SECONDS = 300.0
@@ -157,19 +156,19 @@ class Hub:
         """How many sockets are open."""
         return len(self._clients)
 
-    def add(self, arrivals: list[Arrival]) -> None:
+    def add(self, blocks: list[Block]) -> None:
         """Hand these blocks to everybody, as one message each for rows and for documents."""
         self.tick += 1
         now = self._clock.now()
-        rows: list[Arrival] = []
-        documents: list[Arrival] = []
-        for arrival in arrivals:
-            if arrival.topic.kind is Kind.PICTURE:
-                self.picture = arrival.data
+        rows: list[Block] = []
+        documents: list[Block] = []
+        for block in blocks:
+            if block.topic.kind is Kind.PICTURE:
+                self.picture = block.data
                 self.picture_number += 1
                 continue
-            self.history.add(arrival, self.tick, now)
-            (rows if arrival.topic.kind is Kind.ROWS else documents).append(arrival)
+            self.history.add(block, self.tick, now)
+            (rows if block.topic.kind is Kind.ROWS else documents).append(block)
         if not self._clients:
             return
         if rows:

@@ -7,8 +7,7 @@ the last minutes of each topic for a page that connects.
 from collections import deque
 from dataclasses import dataclass
 
-from robot_runtime.topics import BY_ID, Topic
-from server.arrivals import Arrival
+from robot_runtime.topics import BY_ID, Block, Topic
 
 Totals = dict[int, int]
 """Samples of each topic, by its number, since the server started."""
@@ -39,12 +38,12 @@ class Lane:
         """The number that the next message will have."""
         return self.first + len(self._messages)
 
-    def append(self, arrivals: list[Arrival]) -> None:
+    def append(self, blocks: list[Block]) -> None:
         """Make one message of these blocks."""
         totals = dict(self.totals)
-        for arrival in arrivals:
-            totals[arrival.topic.id] = totals.get(arrival.topic.id, 0) + arrival.count
-        data = arrivals[0].data if len(arrivals) == 1 else b"".join(arrival.data for arrival in arrivals)
+        for block in blocks:
+            totals[block.topic.id] = totals.get(block.topic.id, 0) + block.count
+        data = blocks[0].data if len(blocks) == 1 else b"".join(block.data for block in blocks)
         self._messages.append(Message(data, self.totals, totals))
         self.totals = totals
         self._bytes += len(data)
@@ -83,12 +82,12 @@ class History:
         self._topics: dict[int, deque[_Kept]] = {}
         self._bytes: dict[int, int] = {}
 
-    def add(self, arrival: Arrival, tick: int, now: float) -> None:
+    def add(self, block: Block, tick: int, now: float) -> None:
         """Keep a block that goes out at `tick`, at `now` (s, steady clock)."""
-        topic = arrival.topic.id
+        topic = block.topic.id
         kept = self._topics.setdefault(topic, deque())
-        kept.append(_Kept(tick, now, arrival.data))
-        size = self._bytes.get(topic, 0) + len(arrival.data)
+        kept.append(_Kept(tick, now, block.data))
+        size = self._bytes.get(topic, 0) + len(block.data)
         while kept and (kept[0].time < now - self._seconds or size > self._bytes_max):
             size -= len(kept.popleft().data)
         self._bytes[topic] = size

@@ -5,13 +5,12 @@ from collections.abc import Callable
 from robot_runtime import samples
 from robot_runtime.clock import Clock
 from robot_runtime.topics import BY_NAME, Block, documents
-from server.arrivals import Arrival
 
 
 class Notices:
     """Writes notices and hands each over as a block."""
 
-    def __init__(self, clock: Clock, deliver: Callable[[Arrival], None]) -> None:
+    def __init__(self, clock: Clock, deliver: Callable[[Block], None]) -> None:
         self._clock = clock
         self._deliver = deliver
         self._told = 0
@@ -19,6 +18,6 @@ class Notices:
     def tell(self, kind: str, severity: samples.Severity, text: str) -> None:
         """Say something in words for a person; `kind` is one word for programs."""
         event = samples.Event(time=self._clock.now(), kind=kind, severity=severity, text=text)
-        block = Block(BY_NAME["notice"], 1, self._told, documents([event]))
+        block = Block.of(BY_NAME["notice"], 1, self._told, documents([event]))
         self._told += 1
-        self._deliver(Arrival(block.topic, block.count, block.first, block.to_bytes()))
+        self._deliver(block)

@@ -27,7 +27,7 @@ TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
 LINES_TOLD = 3
 
-State = Literal["waiting", "running", "failed", "ended"]
+State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
 
 
@@ -114,6 +114,11 @@ class Part:
                 await self._process.wait()
         self._process.close()
 
+    def pause(self, why: str) -> None:
+        """Note that the process has been ended on purpose; `why` is a sentence."""
+        self.problem = why
+        self._set("paused")
+
     def _set(self, state: State) -> None:
         self.state = state
         self.since = self._clock.now()
@@ -127,17 +132,35 @@ class Parts:
             command.name: Part(command, PartLog(logs / f"{command.name}.log"), clock, tell)
             for command in commands
         }
-        self._tasks: list[asyncio.Task[None]] = []
+        self._tasks: dict[str, asyncio.Task[None]] = {}
 
     def start(self) -> None:
-        """Start everything, each as soon as what it needs is there."""
-        self._tasks = [asyncio.create_task(part.run()) for part in self._parts.values()]
+        """Start everything, each as soon as what it needs is there; what is paused is not started."""
+        for name, part in self._parts.items():
+            if part.state != "paused":
+                self._tasks[name] = asyncio.create_task(part.run())
 
     async def stop(self) -> None:
         """End every process, and wait until they are gone."""
-        for task in self._tasks:
+        tasks = self._tasks.values()
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def pause(self, name: str, why: str) -> None:
+        """End a part, and leave it so until it is resumed; `why` is a sentence for a person."""
+        task = self._tasks.pop(name, None)
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if name in self._parts:
+            self._parts[name].pause(why)
+
+    def resume(self, name: str) -> None:
+        """Start a part that was paused."""
+        part = self._parts.get(name)
+        if part is not None and part.state == "paused":
+            self._tasks[name] = asyncio.create_task(part.run())
 
     def get(self, name: str) -> Part | None:
         """The part of this name; None where this robot has none."""
@@ -154,6 +177,7 @@ def plan(settings: Settings) -> list[Command]:
     runtime += ["--port", str(folder.board_tty), "--with-parent"]
     board = [str(build / "board"), "--elf", str(build / "firmware" / "robot.elf")]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
+    board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
     for socket in (folder.runtime_socket, folder.server_socket):

@@ -19,8 +19,7 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col
 
 from robot_runtime.clock import Clock
-from robot_runtime.topics import Kind, Topic
-from server.arrivals import Arrival
+from robot_runtime.topics import Block, Kind, Topic
 from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, encode_documents, encode_rows
 from server.models import Chunk, Gap, SessionRow
 from server.notices import Notices
@@ -140,24 +139,24 @@ class Recorder:
         self._changed()
         return done
 
-    def add(self, arrival: Arrival) -> None:
+    def add(self, block: Block) -> None:
         """Take in a block; without a session it is passed over."""
-        topic = arrival.topic
+        topic = block.topic
         if not self._accepts or topic.kind is Kind.PICTURE:
             return
         run = self._runs.get(topic.id)
-        expected = self._expected.get(topic.id, arrival.first)
-        if arrival.first != expected:
-            ahead = (arrival.first - expected) % NUMBERS
+        expected = self._expected.get(topic.id, block.first)
+        if block.first != expected:
+            ahead = (block.first - expected) % NUMBERS
             kind, missed = ("missed", ahead) if ahead < NUMBERS // 2 else ("restarted", 0)
             self._gathered.note(topic.name, kind, missed, self._clock.now())
             run = None
         if run is None:
-            run = self._runs[topic.id] = _Run(topic, arrival.first)
+            run = self._runs[topic.id] = _Run(topic, block.first)
             self._gathered.runs.append(run)
-        run.payloads.append(arrival.payload)
-        run.count += arrival.count
-        self._expected[topic.id] = (arrival.first + arrival.count) % NUMBERS
+        run.payloads.append(block.payload)
+        run.count += block.count
+        self._expected[topic.id] = (block.first + block.count) % NUMBERS
 
     async def run(self) -> None:
         """Commit every period, for ever; tell when it fails, and when it works again."""

@@ -73,6 +73,11 @@ class DataFolder:
         return self.run / "board.tty"
 
     @property
+    def firmware_away(self) -> Path:
+        """There while the robot's board may hold anything but its firmware."""
+        return self.path / "firmware-away"
+
+    @property
     def board_eeprom(self) -> Path:
         """What the emulated board remembers without power."""
         return self.path / "board.eeprom"

@@ -1,9 +1,7 @@
 """When the next picture is due."""
 
 from robot_runtime.clock import Clock
-
-RATE_MIN = 0.2
-RATE_MAX = 30.0
+from robot_runtime.config import VISION_RATE
 
 
 class Pace:
@@ -16,13 +14,14 @@ class Pace:
 
     @property
     def rate(self) -> float:
-        """Hz. Raises ValueError when it is set below 0.2 or above 30."""
+        """Hz. Raises ValueError when it is set to what is not in VISION_RATE."""
         return self._rate
 
     @rate.setter
     def rate(self, rate: float) -> None:
-        if not RATE_MIN <= rate <= RATE_MAX:
-            raise ValueError(f"a vision rate of {rate} Hz is not between {RATE_MIN:g} and {RATE_MAX:g} Hz")
+        low, high = VISION_RATE.minimum, VISION_RATE.maximum
+        if not low <= rate <= high:
+            raise ValueError(f"a vision rate of {rate} Hz is not between {low:g} and {high:g} Hz")
         self._rate = rate
 
     def remaining(self) -> float:

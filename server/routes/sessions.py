@@ -13,11 +13,10 @@ from server.export import Export
 from server.models import SessionRow
 from server.recorder import RecordingRefused
 from server.routes.problems import answers
-from server.sessions import Session, find_row, from_row, list_sessions, new_row
+from server.sessions import IDENTIFIER_MAX, Session, find_row, from_row, list_sessions, new_row
 
 UNKNOWN = answers(_404="There is no such session")
 STORING = answers(_409="Refused now", _503="The database does not work")
-IDENTIFIER_MAX = 2**63 - 1
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 

@@ -64,8 +64,8 @@ def test_a_picture_goes_out_at_once_with_its_time() -> None:
 
 
 def test_several_blocks_in_one_message() -> None:
-    one = Block(BY_NAME["depth"], 0, 5, b"").to_bytes()
-    two = Block(BY_NAME["debug"], 0, 6, b"[]").to_bytes()
+    one = Block.of(BY_NAME["depth"], 1, 5, bytes(20)).data
+    two = Block.of(BY_NAME["debug"], 1, 6, b"[{}]").data
     assert [block.first for block in read_blocks(one + two)] == [5, 6]
 
 
@@ -73,8 +73,9 @@ def test_several_blocks_in_one_message() -> None:
     ("data", "why"),
     [
         (b"\x02\x00\x01", "header is cut off"),
-        (Block(BY_NAME["depth"], 1, 0, bytes(20)).to_bytes()[:-1], "is cut off: 19 of 20"),
-        (Block(BY_NAME["depth"], 2, 0, bytes(20)).to_bytes(), "not 2 rows of 20"),
+        (Block.of(BY_NAME["depth"], 1, 0, bytes(20)).data[:-1], "is cut off: 19 of 20"),
+        (Block.of(BY_NAME["depth"], 2, 0, bytes(20)).data, "20 bytes, which are not 2 samples"),
+        (Block.of(BY_NAME["debug"], 0, 0, b"[]").data, "not 0 samples"),
         (b"\xee" + bytes(11), "no topic 238"),
         (b"\x02\x01" + bytes(10), "no topic 2 of kind 1"),
     ],

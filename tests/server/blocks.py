@@ -6,7 +6,6 @@ from typing import Any
 from robot_runtime import packets, samples
 from robot_runtime.link.statistics import LinkStatistics
 from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
-from server.arrivals import Arrival, read_arrivals
 
 
 def depth_record(number: int) -> packets.Depth:
@@ -19,23 +18,23 @@ def depth_block(first: int, count: int, start: float = 100.0, period: float = 0.
         row(start + number * period, depth_record(number).to_bytes())
         for number in range(first, first + count)
     )
-    return Block(BY_NAME["depth"], count, first, rows)
+    return Block.of(BY_NAME["depth"], count, first, rows)
 
 
 def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
     lines = [
         samples.DebugLine(time=start + first + place, level=1, text=text) for place, text in enumerate(texts)
     ]
-    return Block(BY_NAME["debug"], len(lines), first, documents(lines))
+    return Block.of(BY_NAME["debug"], len(lines), first, documents(lines))
 
 
 def picture_block(number: int, size: int = 20) -> Block:
-    return Block(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
+    return Block.of(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
 
 
 def link_block(first: int, bytes_received: int) -> Block:
     values: dict[str, Any] = dict.fromkeys(LinkStatistics.wires, 0) | {"bytes_received": bytes_received}
-    return Block(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))
+    return Block.of(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))
 
 
 def state_block(first: int, **changes: Any) -> Block:
@@ -62,15 +61,10 @@ def state_block(first: int, **changes: Any) -> Block:
         "card": None,
         "camera": "card",
     }
-    return Block(BY_NAME["state"], 1, first, json.dumps([document | changes]).encode())
-
-
-def arrive(block: Block) -> Arrival:
-    (arrival,) = read_arrivals(block.to_bytes())
-    return arrival
+    return Block.of(BY_NAME["state"], 1, first, json.dumps([document | changes]).encode())
 
 
 def truth_block(first: int) -> Block:
     topic = BY_NAME["truth"]
     assert topic.kind is Kind.ROWS
-    return Block(topic, 1, first, bytes(topic.row_bytes))
+    return Block.of(topic, 1, first, bytes(topic.row_bytes))

@@ -40,7 +40,7 @@ class RuntimeEnd:
         """Send blocks, each as one publication."""
         for block in blocks:
             name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
-            self._messages.publish(name, block.to_bytes())
+            self._messages.publish(name, block.data)
 
     def publish_bytes(self, data: bytes) -> None:
         """Send anything."""

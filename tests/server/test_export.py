@@ -20,7 +20,7 @@ from server.recorder import Recorder
 from server.sessions import find_row, new_row
 from server.settings import Settings
 from server.store import Store
-from tests.server.blocks import arrive, debug_block, depth_block, state_block
+from tests.server.blocks import debug_block, depth_block, state_block
 
 STARTED_STEADY = 99.5
 
@@ -36,7 +36,7 @@ def record(
         session = await recorder.start(new_row(settings, clock, name, "calm", '{"mode": "disarmed"}'))
         for batch in batches:
             for block in batch:
-                recorder.add(arrive(block))
+                recorder.add(block)
             await recorder.flush()
         await recorder.stop(session.id)
         return session.id
@@ -72,8 +72,8 @@ def test_numbers_are_the_very_ones_that_were_recorded(store: Store, settings: Se
         fins=(0.7, 0, 0, 0),
     )
     blocks = [
-        Block(BY_NAME["motor"], 1, 0, row(100.25, motor.to_bytes())),
-        Block(BY_NAME["truth"], 1, 0, row(100.5, truth.to_bytes())),
+        Block.of(BY_NAME["motor"], 1, 0, row(100.25, motor.to_bytes())),
+        Block.of(BY_NAME["truth"], 1, 0, row(100.5, truth.to_bytes())),
         depth_block(0, 30),
     ]
     archive = unpack(make(store, record(store, settings, blocks)))

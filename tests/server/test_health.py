@@ -4,12 +4,12 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from server.arrivals import Arrival
+from robot_runtime.topics import Block
 from server.health import GRACE_SECONDS, Watch
 from server.parts import Command, Part
 from server.settings import Settings
 from server.store import Store
-from tests.server.blocks import arrive, link_block, state_block, truth_block
+from tests.server.blocks import link_block, state_block, truth_block
 
 
 class Bench:
@@ -34,7 +34,7 @@ class Bench:
             link_block(number, 100 * number + 1),
             truth_block(number),
         ):
-            self.watch.see(arrive(block))
+            self.watch.see(block)
 
     def state(self, name: str) -> str:
         return next(part.state for part in self.watch.health().parts if part.name == name)
@@ -86,7 +86,7 @@ def test_a_board_that_sends_no_more_bytes_has_failed_though_the_link_is_reported
     bench.run_all()
     bench.clock.forward(60)
     for number in range(5):
-        bench.watch.see(arrive(link_block(number, 500 + min(number, 1))))
+        bench.watch.see(link_block(number, 500 + min(number, 1)))
         bench.clock.forward(1)
     assert bench.state("board") == "failed"
 
@@ -131,6 +131,6 @@ def test_a_database_that_fails_is_told_with_its_reason(bench: Bench, store: Stor
 def test_a_state_that_cannot_be_read_is_none(bench: Bench) -> None:
     block = state_block(0)
     for payload in (b"", b"[]", b"[3]", b"{}", b"[" * 100_000):
-        bench.watch.see(Arrival(block.topic, 1, 0, bytes(12) + payload))
+        bench.watch.see(Block(block.topic, 1, 0, bytes(12) + payload))
         assert bench.watch.state() is None
         assert bench.state("link") in ("starting", "failed")

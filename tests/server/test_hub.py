@@ -9,7 +9,7 @@ import server.hub as hub_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.topics import read_blocks
 from server.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, Evicted, Hub
-from tests.server.blocks import arrive, debug_block, depth_block, picture_block
+from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.waiting import until
 
 
@@ -64,11 +64,11 @@ def with_hub(scenario: Callable[[Hub, SimulatedClock], Awaitable[None]]) -> None
 def test_a_page_is_greeted_first_then_gets_the_past_then_the_present() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         hub.tell({"op": "health", "parts": []})
-        hub.add([arrive(depth_block(0, 3)), arrive(debug_block(0, "before"))])
+        hub.add([depth_block(0, 3), debug_block(0, "before")])
         page = Page(hub)
         await until(lambda: page.numbers("debug") == [0], "the past")
-        hub.add([arrive(depth_block(3, 2))])
-        hub.add([arrive(debug_block(1, "after"))])
+        hub.add([depth_block(3, 2)])
+        hub.add([debug_block(1, "after")])
         await until(lambda: page.numbers("depth") == [0, 1, 2, 3, 4], "the present")
         await until(lambda: page.numbers("debug") == [0, 1], "the document")
         assert [text["op"] for text in page.texts] == ["hello", "health"]
@@ -83,12 +83,12 @@ def test_no_gap_and_no_double_while_the_past_is_still_being_sent(monkeypatch: py
 
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         for number in range(300):
-            hub.add([arrive(depth_block(number, 1))])
+            hub.add([depth_block(number, 1)])
         page = Page(hub)
         page.reading.clear()
         await asyncio.sleep(0)
         for number in range(300, 300 + 3 * ROWS_MESSAGES):
-            hub.add([arrive(depth_block(number, 1)), arrive(debug_block(number, "x"))])
+            hub.add([depth_block(number, 1), debug_block(number, "x")])
             if number % 50 == 0:
                 page.reading.set()
                 await asyncio.sleep(0)
@@ -108,7 +108,7 @@ def test_all_pages_get_the_same_bytes() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         pages = [Page(hub), Page(hub)]
         await until(lambda: hub.clients == 2, "both pages")
-        hub.add([arrive(depth_block(0, 1)), arrive(depth_block(1, 1))])
+        hub.add([depth_block(0, 1), depth_block(1, 1)])
         await until(lambda: all(page.numbers("depth") for page in pages), "the rows")
         assert pages[0].received[-1] is pages[1].received[-1]
         for page in pages:
@@ -120,11 +120,11 @@ def test_all_pages_get_the_same_bytes() -> None:
 def test_who_reads_slowly_loses_the_oldest_rows_and_is_told_how_many() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         slow, quick = Page(hub), Page(hub)
-        hub.add([arrive(depth_block(0, 1))])
+        hub.add([depth_block(0, 1)])
         await until(lambda: slow.numbers("depth") == quick.numbers("depth") == [0], "the first row")
         slow.reading.clear()
         for number in range(1, 3 * ROWS_MESSAGES):
-            hub.add([arrive(depth_block(number, 1))])
+            hub.add([depth_block(number, 1)])
             await asyncio.sleep(0)
         await until(lambda: len(quick.numbers("depth")) == 3 * ROWS_MESSAGES, "the quick page")
         slow.reading.set()
@@ -147,15 +147,15 @@ def test_documents_are_never_skipped_until_the_page_is_sent_away() -> None:
         page, other = Page(hub), Page(hub)
         await until(lambda: hub.clients == 2, "both pages")
         page.reading.clear()
-        hub.add([arrive(debug_block(0, "x"))])
+        hub.add([debug_block(0, "x")])
         for number in range(1, DOCUMENTS_MESSAGES):
-            hub.add([arrive(debug_block(number, "x"))])
+            hub.add([debug_block(number, "x")])
         page.reading.set()
         await until(lambda: len(page.numbers("debug")) == DOCUMENTS_MESSAGES, "every document")
         assert page.numbers("debug") == list(range(DOCUMENTS_MESSAGES))
         page.reading.clear()
         for number in range(DOCUMENTS_MESSAGES, 2 * DOCUMENTS_MESSAGES + 2):
-            hub.add([arrive(debug_block(number, "x"))])
+            hub.add([debug_block(number, "x")])
             await asyncio.sleep(0)
         page.reading.set()
         with pytest.raises(Evicted, match="fell too far behind") as reason:
@@ -172,10 +172,10 @@ def test_of_pictures_there_is_only_the_newest() -> None:
         page = Page(hub)
         await until(lambda: page.texts, "the greeting")
         page.reading.clear()
-        hub.add([arrive(picture_block(0))])
+        hub.add([picture_block(0)])
         await until(lambda: page.client is not None and page.client.sending_since is not None, "a send")
         for number in range(1, 10):
-            hub.add([arrive(picture_block(number))])
+            hub.add([picture_block(number)])
         page.reading.set()
         await until(lambda: 9 in page.numbers("picture"), "the newest picture")
         assert page.numbers("picture") == [0, 9]
@@ -195,7 +195,7 @@ def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
         watch = asyncio.create_task(hub.watch())
         await until(lambda: stalled.texts and other.texts, "both greetings")
         stalled.reading.clear()
-        hub.add([arrive(depth_block(0, 1))])
+        hub.add([depth_block(0, 1)])
         await until(lambda: other.numbers("depth") == [0], "the other page")
         clock.forward(4.9)
         await asyncio.sleep(0.02)
@@ -203,7 +203,7 @@ def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
         clock.forward(0.2)
         with pytest.raises(Evicted, match="Nothing was read"):
             await stalled.task
-        hub.add([arrive(depth_block(1, 1))])
+        hub.add([depth_block(1, 1)])
         await until(lambda: other.numbers("depth") == [0, 1], "the other page")
         assert hub.clients == 1
         await other.leave()
@@ -250,14 +250,14 @@ def test_pictures_are_wanted_only_while_somebody_looks() -> None:
         hub = Hub(SimulatedClock(), wanted.append)
         first, second = Page(hub), Page(hub)
         await until(lambda: hub.clients == 2, "both pages")
-        hub.add([arrive(picture_block(0))])
+        hub.add([picture_block(0)])
         assert wanted == [True]
         await first.leave()
         assert wanted == [True]
         await second.leave()
         assert wanted == [True, False]
         late = Page(hub)
-        hub.add([arrive(debug_block(0, "x"))])
+        hub.add([debug_block(0, "x")])
         await until(lambda: late.numbers("debug") == [0], "the newcomer")
         assert late.numbers("picture") == []
         await late.leave()

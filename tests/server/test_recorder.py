@@ -13,8 +13,7 @@ from sqlmodel import col, select
 
 import server.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.topics import BY_NAME
-from server.arrivals import Arrival
+from robot_runtime.topics import BY_NAME, Block
 from server.chunks import decode_rows
 from server.models import Chunk, Gap
 from server.notices import Notices
@@ -22,7 +21,7 @@ from server.recorder import NUMBERS, Recorder, RecordingRefused
 from server.sessions import find_row, list_sessions, new_row
 from server.settings import Settings
 from server.store import Store, StoreError
-from tests.server.blocks import arrive, debug_block, depth_block, picture_block
+from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.waiting import until
 
 
@@ -67,7 +66,7 @@ class Deck:
 
         monkeypatch.setattr(recorder_module, "_insert", refuse)
 
-    def _hear(self, arrival: Arrival) -> None:
+    def _hear(self, arrival: Block) -> None:
         self.told.append(json.loads(arrival.payload)[0]["text"])
 
     def _count(self) -> None:
@@ -90,10 +89,10 @@ def test_what_arrives_is_stored_unchanged_and_in_order(deck: Deck) -> None:
     async def scenario() -> None:
         await deck.start()
         blocks = [depth_block(0, 5), depth_block(5, 5), depth_block(10, 5)]
-        deck.recorder.add(arrive(blocks[0]))
-        deck.recorder.add(arrive(blocks[1]))
+        deck.recorder.add(blocks[0])
+        deck.recorder.add(blocks[1])
         await deck.recorder.flush()
-        deck.recorder.add(arrive(blocks[2]))
+        deck.recorder.add(blocks[2])
         await deck.recorder.flush()
         stored = deck.chunks()
         assert [(chunk.number, chunk.first, chunk.count) for chunk in stored] == [(0, 0, 10), (1, 10, 5)]
@@ -109,11 +108,11 @@ def test_what_arrives_is_stored_unchanged_and_in_order(deck: Deck) -> None:
 
 def test_before_and_after_a_session_nothing_is_kept(deck: Deck) -> None:
     async def scenario() -> None:
-        deck.recorder.add(arrive(depth_block(0, 5)))
+        deck.recorder.add(depth_block(0, 5))
         session = await deck.start()
-        deck.recorder.add(arrive(depth_block(5, 5)))
+        deck.recorder.add(depth_block(5, 5))
         await deck.recorder.stop(session)
-        deck.recorder.add(arrive(depth_block(10, 5)))
+        deck.recorder.add(depth_block(10, 5))
         assert deck.recorder._gathered.runs == []
         second = await deck.start()
         await deck.recorder.stop(second)
@@ -125,7 +124,7 @@ def test_before_and_after_a_session_nothing_is_kept(deck: Deck) -> None:
 def test_pictures_are_not_recorded(deck: Deck) -> None:
     async def scenario() -> None:
         session = await deck.start()
-        deck.recorder.add(arrive(picture_block(0)))
+        deck.recorder.add(picture_block(0))
         assert (await deck.recorder.stop(session)).samples == 0
 
     play(scenario)
@@ -143,7 +142,7 @@ def test_holes_are_counted_and_chunks_stay_without_holes(
     for place, (hole, count) in enumerate(steps):
         missed += hole if place else 0
         first += hole
-        recorder.add(arrive(depth_block(first % NUMBERS, count)))
+        recorder.add(depth_block(first % NUMBERS, count))
         expected += [number % NUMBERS for number in range(first, first + count)]
         first += count
     runs = recorder._gathered.runs
@@ -155,9 +154,9 @@ def test_holes_are_counted_and_chunks_stay_without_holes(
 def test_a_writer_that_counts_anew_begins_a_new_chunk(deck: Deck) -> None:
     async def scenario() -> None:
         session = await deck.start()
-        deck.recorder.add(arrive(depth_block(1000, 5)))
-        deck.recorder.add(arrive(depth_block(0, 5)))
-        deck.recorder.add(arrive(depth_block(7, 1)))
+        deck.recorder.add(depth_block(1000, 5))
+        deck.recorder.add(depth_block(0, 5))
+        deck.recorder.add(depth_block(7, 1))
         await deck.recorder.stop(session)
         assert [(chunk.first, chunk.count) for chunk in deck.chunks()] == [(1000, 5), (0, 5), (7, 1)]
         assert sorted(deck.gaps()) == [("depth", "missed", 2), ("depth", "restarted", 0)]
@@ -171,14 +170,14 @@ def test_a_gap_is_noted_when_it_shows_however_late_it_is_stored(
     async def scenario() -> None:
         session = await deck.start()
         deck.clock.forward(1)
-        deck.recorder.add(arrive(depth_block(0, 1)))
-        deck.recorder.add(arrive(depth_block(3, 1)))
+        deck.recorder.add(depth_block(0, 1))
+        deck.recorder.add(depth_block(3, 1))
         deck.clock.forward(1)
         with monkeypatch.context() as broken:
             deck.fail(broken)
             with pytest.raises(StoreError):
                 await deck.recorder.flush()
-        deck.recorder.add(arrive(depth_block(5, 1)))
+        deck.recorder.add(depth_block(5, 1))
         await deck.recorder.stop(session)
         assert deck.gaps() == [("depth", "missed", 3)]
         with deck.store.read() as database:
@@ -190,8 +189,8 @@ def test_a_gap_is_noted_when_it_shows_however_late_it_is_stored(
 def test_numbers_run_through_their_end_without_a_hole(deck: Deck) -> None:
     async def scenario() -> None:
         session = await deck.start()
-        deck.recorder.add(arrive(depth_block(NUMBERS - 2, 2)))
-        deck.recorder.add(arrive(depth_block(0, 2)))
+        deck.recorder.add(depth_block(NUMBERS - 2, 2))
+        deck.recorder.add(depth_block(0, 2))
         await deck.recorder.stop(session)
         assert deck.numbers() == [NUMBERS - 2, NUMBERS - 1, 0, 1]
         assert deck.gaps() == []
@@ -202,8 +201,8 @@ def test_numbers_run_through_their_end_without_a_hole(deck: Deck) -> None:
 def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
     async def scenario() -> None:
         session = await deck.start("first")
-        deck.recorder.add(arrive(depth_block(0, 5)))
-        deck.recorder.add(arrive(debug_block(0, "a", "b")))
+        deck.recorder.add(depth_block(0, 5))
+        deck.recorder.add(debug_block(0, "a", "b"))
         deck.clock.forward(2.5)
         await deck.recorder.flush()
         (shown,) = list_sessions(deck.store)
@@ -246,14 +245,14 @@ def test_what_cannot_be_written_waits_and_is_written_later(
         with monkeypatch.context() as broken:
             deck.fail(broken)
             for number in range(3):
-                deck.recorder.add(arrive(depth_block(5 * number, 5)))
+                deck.recorder.add(depth_block(5 * number, 5))
                 with pytest.raises(StoreError, match="disk is full"):
                     await deck.recorder.flush()
             assert deck.numbers() == []
             with pytest.raises(StoreError):
                 await deck.recorder.stop(session)
         assert deck.recorder.session is not None
-        deck.recorder.add(arrive(depth_block(15, 5)))
+        deck.recorder.add(depth_block(15, 5))
         done = await deck.recorder.stop(session)
         assert deck.numbers() == list(range(20))
         assert (deck.gaps(), done.samples) == ([], 20)
@@ -271,7 +270,7 @@ def test_what_does_not_fit_into_memory_while_it_waits_is_counted(
         with monkeypatch.context() as broken:
             deck.fail(broken)
             for number in range(50):
-                deck.recorder.add(arrive(depth_block(5 * number, 5)))
+                deck.recorder.add(depth_block(5 * number, 5))
                 with pytest.raises(StoreError):
                     await deck.recorder.flush()
         await deck.recorder.stop(session)
@@ -292,7 +291,7 @@ def test_failing_and_recovering_are_told_once_each(deck: Deck, monkeypatch: pyte
         with monkeypatch.context() as broken:
             deck.fail(broken)
             await until(lambda: deck.store.failing, "the failure")
-            deck.recorder.add(arrive(depth_block(0, 5)))
+            deck.recorder.add(depth_block(0, 5))
             await until(lambda: len(deck.told) == 2, "the alarm")
             await asyncio.sleep(0.05)
         await until(lambda: len(deck.told) == 3, "the all-clear")
@@ -331,8 +330,8 @@ def test_samples_that_cannot_be_read_are_counted_and_harm_no_others(deck: Deck) 
     async def scenario() -> None:
         session = await deck.start()
         bad = debug_block(0, "x")
-        deck.recorder.add(Arrival(bad.topic, 2, 0, b"\0" * 12 + b"no JSON"))
-        deck.recorder.add(arrive(depth_block(0, 5)))
+        deck.recorder.add(Block(bad.topic, 2, 0, b"\0" * 12 + b"no JSON"))
+        deck.recorder.add(depth_block(0, 5))
         done = await deck.recorder.stop(session)
         assert (deck.numbers(), done.samples) == (list(range(5)), 5)
         assert deck.gaps() == [("debug", "damaged", 2)]
@@ -353,11 +352,11 @@ def test_a_cancelled_flush_stores_everything_once(deck: Deck, monkeypatch: pytes
 
     async def scenario() -> None:
         session = await deck.start()
-        deck.recorder.add(arrive(depth_block(0, 5)))
+        deck.recorder.add(depth_block(0, 5))
         flush = asyncio.create_task(deck.recorder.flush())
         await until(writing.is_set, "the writer")
         flush.cancel()
-        deck.recorder.add(arrive(depth_block(5, 5)))
+        deck.recorder.add(depth_block(5, 5))
         gate.set()
         await deck.recorder.stop(session)
         assert deck.numbers() == list(range(10))
@@ -368,7 +367,7 @@ def test_a_cancelled_flush_stores_everything_once(deck: Deck, monkeypatch: pytes
 def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) -> None:
     async def scenario() -> None:
         await deck.start()
-        deck.recorder.add(arrive(depth_block(0, 5)))
+        deck.recorder.add(depth_block(0, 5))
         deck.clock.forward(4)
         await deck.recorder.flush()
         after = Deck(deck.store, deck.settings)

@@ -298,7 +298,7 @@ def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) ->
 
 def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        good = depth_block(0, 2).to_bytes()
+        good = depth_block(0, 2).data
         for bad in (good[:11], good[:-1], good + b"x", b"\xff" + good[1:], good[:1] + b"\x01" + good[2:]):
             served.runtime.publish_bytes(bad)
         served.runtime.publish(depth_block(0, 2))

@@ -20,7 +20,7 @@ def count(pace: Pace, clock: SimulatedClock, seconds: float, step: float = 0.001
     return done
 
 
-@pytest.mark.parametrize("rate", [0.2, 1.0, 4.0, 30.0])
+@pytest.mark.parametrize("rate", [2.0, 4.0, 30.0])
 def test_rate_is_kept(rate: float) -> None:
     clock = SimulatedClock(9.0)
     assert count(Pace(clock, rate), clock, 60) == pytest.approx(60 * rate, abs=1)
@@ -41,22 +41,22 @@ def test_pictures_that_take_longer_than_the_period_are_not_made_up_for() -> None
 
 
 def test_first_is_due_at_once() -> None:
-    assert Pace(SimulatedClock(3.0), 0.2).remaining() <= 0
+    assert Pace(SimulatedClock(3.0), 2.0).remaining() <= 0
 
 
 def test_new_rate_holds_at_once() -> None:
     clock = SimulatedClock()
-    pace = Pace(clock, 0.2)
+    pace = Pace(clock, 2.0)
     pace.begin()
     clock.forward(0.1)
-    assert pace.remaining() == pytest.approx(4.9)
+    assert pace.remaining() == pytest.approx(0.4)
     pace.rate = 10.0
     assert pace.remaining() == pytest.approx(0, abs=1e-9)
 
 
-@pytest.mark.parametrize("rate", [0.0, 0.19, 30.1, -4.0, math.nan, math.inf])
+@pytest.mark.parametrize("rate", [0.0, 1.9, 30.1, -4.0, math.nan, math.inf])
 def test_impossible_rates_are_refused(rate: float) -> None:
     pace = Pace(SimulatedClock(), 4.0)
-    with pytest.raises(ValueError, match=r"not between 0.2 and 30 Hz"):
+    with pytest.raises(ValueError, match=r"not between 2 and 30 Hz"):
         pace.rate = rate
     assert pace.rate == 4.0
