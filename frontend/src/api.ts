@@ -4,18 +4,20 @@ import type { components } from './generated/api';
 type Schemas = components['schemas'];
 export type Part = Schemas['PartHealth'];
 export type Session = Schemas['Session'];
-export interface CommTestDocument { name: string; title: string; text: string }
-export interface CommTestCheck { problems: string[]; tests: { id: number; name: string; framing: string; direction: string; cells: number; bauds: number[]; arduino_delays: number[]; pi_delays: number[]; seconds: number }[] }
-export type CommTestPlace = 'emulated' | 'robot';
-export interface CommTestSummary { id: number; name: string; framing: string; direction: string; place: string; sample: string; state: 'running' | 'complete' | 'cancelled' | 'failed' | 'interrupted'; problem: string; started: string; ended: string | null; cells: number; cells_done: number; rate_mean: number | null; rate_min: number | null }
-export interface Cell { number: number; baud: number; arduino_delay: number; pi_delay: number; rate: number; answered: boolean; right: number; out_of_sequence: number; checksum_errors: number; framing_errors: number; ring_full: number; bytes_read: number; bytes_lost: number; line_errors: number; uart_overruns: number; repeated: number; seconds: number; causes: string[]; explanation: string }
-export interface CommTestRun extends CommTestSummary { document: Record<string, unknown>; firmware: string; tools: Record<string, string>; host: string; results: Cell[] }
-export interface ThesisTable { name: string; title: string; framing: string; cells: { baud: number; arduino_delay: number; pi_delay: number; rate: number }[] }
+export type CommTestDocument = Schemas['ShippedDocument'];
+export type CommTestCheck = Schemas['Checked'];
+export type CommTestPlace = Schemas['NewRun']['place'];
+export type CommTestSummary = Schemas['RunSummary'];
+export type CommTestRun = Schemas['Run'];
+export type Cell = Schemas['CellShape'];
+export type ThesisTable = Schemas['Table'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
 const TIMEOUT = 5000;
 const TIMEOUT_STOP = 2000;
+/** ms; a board may have to be handed over first, or to get its firmware back */
+const TIMEOUT_COMM_TEST = 120_000;
 
 async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
   try {
@@ -64,8 +66,8 @@ export const api = {
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
   startCommTest: (text: string, place: CommTestPlace) =>
-    request<CommTestSummary>('POST', '/comm-tests/runs', { text, place }),
-  cancelCommTest: () => command('POST', '/comm-tests/cancel'),
+    request<Schemas['Started']>('POST', '/comm-tests/runs', { text, place }, TIMEOUT_COMM_TEST),
+  cancelCommTest: () => command('POST', '/comm-tests/cancel', undefined, TIMEOUT_COMM_TEST),
   commTestRuns: () => request<CommTestSummary[]>('GET', '/comm-tests/runs'),
   commTestRun: (id: CommTestRun['id']) => request<CommTestRun>('GET', `/comm-tests/runs/${id}`),
   commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') => `/api/comm-tests/runs/${id}/${format}`,
