@@ -89,7 +89,7 @@ class Assembly:
 
     def _board_occupied(self) -> str | None:
         session = self.recorder.session
-        return session and f"“{session.name}” is being recorded. Stop the recording first."
+        return None if session is None else f"“{session.name}” is being recorded. Stop the recording first."
 
     def _tell_session(self) -> None:
         session = self.recorder.session

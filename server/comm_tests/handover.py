@@ -1,8 +1,8 @@
 """Lends the robot's board to a communication test, and takes it back with the robot's firmware on it.
 
-While a board may hold anything but the robot's firmware, a file in the data folder says so: written before the
-first upload, taken away after the firmware is back. So a server that was killed in between brings it back at
-its next start.
+While a board may hold anything but the robot's firmware, a file in the data folder says so: written before
+the first upload, taken away after the firmware is back. So a server that was killed in between brings it back
+at its next start.
 """
 
 import asyncio
@@ -70,8 +70,8 @@ class Board:
             self._tell(
                 "firmware",
                 "alarm",
-                f"The robot's firmware is not back on its board: {problem}. Check that the board is powered and "
-                "its reset line connected, then start the server again.",
+                f"The robot's firmware is not back on its board: {problem}. Check that the board is powered "
+                "and its reset line connected, then start the server again.",
             )
             return False
         await asyncio.to_thread(_unmark, self._settings.data.firmware_away)
@@ -108,9 +108,9 @@ class Handover:
         if reason := self._occupied():
             raise Refused(reason)
         await self._disarm()
-        async with self._without_runtime(f"The robot's board runs the communication test “{name}”."):
-            async with self._board.lend(name) as arguments:
-                yield arguments
+        why = f"The robot's board runs the communication test “{name}”."
+        async with self._without_runtime(why), self._board.lend(name) as arguments:
+            yield arguments
 
     async def start_parts(self) -> None:
         """Start every part; where an earlier server could not bring the firmware back, that comes first."""

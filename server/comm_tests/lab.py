@@ -1,7 +1,7 @@
-"""Runs communication tests, one document at a time, in a process of its own; what it tells is kept and passed on.
+"""Runs communication tests, one document at a time, in a process of its own; keeps and passes on what it tells.
 
-The process (`python -m robot_runtime.comm_test`) compiles, uploads and runs; it tells what it does in lines of
-JSON. Here they become rows of the database and progress for the pages.
+The process (`python -m robot_runtime.comm_test`) compiles, uploads and runs, and tells what it does in lines
+of JSON. Here they become rows of the database and progress for the pages.
 """
 
 import asyncio
@@ -72,7 +72,7 @@ class Progress:
 
 
 class Lab:
-    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the robot's board away."""
+    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
 
     def __init__(self, settings: Settings, runs: Runs, clock: Clock, tell: Tell, lend: Lend) -> None:
         self.runs = runs
