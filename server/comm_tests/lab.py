@@ -20,7 +20,7 @@ from robot_runtime.comm_test.document import CommTest, read_document
 from robot_runtime.comm_test.runner import estimate_seconds
 from robot_runtime.errors import Refused
 from server.comm_tests.runs import End, Runs
-from server.comm_tests.shapes import CellShape, Phase, Place
+from server.comm_tests.shapes import Cell, Phase, Place
 from server.process import Process
 from server.settings import Settings
 from server.store import StoreError
@@ -192,7 +192,7 @@ class Lab:
             words.append(line.decode(errors="replace").strip())
             log.info("comm_test: %s", words[-1])
             return
-        cell: CellShape | None = None
+        cell: Cell | None = None
         match event.get("event"):
             case "started":
                 progress.test = int(event["test"])
