@@ -49,7 +49,7 @@ class Runs:
 
     def add(self, run: int, number: int, result: CellResult) -> None:
         """One cell that has been run."""
-        values = _cell_values(result) | {"run_id": run, "number": number}
+        values = _columns(result.values) | {"run_id": run, "number": number}
         self._write(lambda connection: connection.execute(insert(CommTestCell).values(values)))
 
     def end(self, run: int, state: End, problem: str = "") -> None:
@@ -89,16 +89,5 @@ def _insert_run(connection: Connection, values: dict[str, Any]) -> int:
     return int(key[0])
 
 
-def _cell_values(result: CellResult) -> dict[str, Any]:
-    return {
-        **asdict(result.cell),
-        **asdict(result.counts),
-        "rate": result.rate,
-        "answered": result.board is not None,
-        "bytes_lost": result.lost_to_board + result.lost_to_host,
-        "line_errors": result.line.framing_board + result.line.framing_host,
-        "uart_overruns": result.line.overruns,
-        "seconds": result.seconds,
-        "causes": ", ".join(result.causes),
-        "explanation": result.explanation,
-    }
+def _columns(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name in CommTestCell.model_fields}
