@@ -16,6 +16,10 @@ has nothing better to do.
 A receiver may have no room to hold frames out of order. It then drops them and says ACKNOWLEDGE never, and
 the timers make of it what is called go-back-n.
 
+A receiver that has no room even for the next frame drops it and says so (Receive Not Ready, as in HDLC).
+Nothing more is sent then until it says otherwise, but for the oldest frame now and then, in case that was
+not heard.
+
 Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while.
 
 The line's pace is respected: a frame is handed over when the one before it has gone, so that what is urgent
@@ -42,6 +46,9 @@ WINDOW = 7
 EXPIRY = 0.3
 """s that an unreliable message may wait for the line."""
 _ACKNOWLEDGE_DELAY = 0.005
+_NOT_READY = 0x80
+_PROBE = 1.0
+"""s between two tries at a receiver that has no room."""
 _STALLED_WAIT = 1.25
 """Mean round trips."""
 _FRAME_OVERHEAD = 7
@@ -102,6 +109,7 @@ class Channel:
         self._base = 0
         self._order = 0
         self._newest_order = -1
+        self._ready = True
         self._latest: dict[int, tuple[bytes, float]] = {}
         self._number = 0
         self._expected = 0
@@ -138,7 +146,9 @@ class Channel:
 
     def due(self) -> float:
         """When `poll` has something to do, where nothing else happens; never is infinite."""
-        if self._latest or any(flight.lost for flight in self._flights) or self._may_send_new():
+        if self._latest or self._may_send_new():
+            return self._line_free
+        if self._ready and any(flight.lost for flight in self._flights):
             return self._line_free
         wait = self._patience()
         timers = (flight.sent + wait for flight in self._flights if not flight.held)
@@ -147,8 +157,10 @@ class Channel:
     def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
         """The messages that this frame of the session lets through, in order."""
         self.counters.frames_received += 1
-        held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), 0)
-        self._take_acknowledgement(frame.acknowledged, held, now)
+        held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), None)
+        self._take_acknowledgement(frame.acknowledged, held or 0, now)
+        if held is not None:
+            self._take_readiness(held & _NOT_READY == 0)
         let_through = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
         messages = [one for each in let_through for one in each.messages if one[0] != Acknowledge.type]
         self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
@@ -176,6 +188,8 @@ class Channel:
 
     def _patience(self) -> float:
         """s to wait for news of a frame: the timeout, or a mean round trip where the line would idle."""
+        if not self._ready:
+            return _PROBE
         if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():
             return min(_STALLED_WAIT * self.round_trip.mean, self.timeout())
         return self.timeout()
@@ -184,7 +198,7 @@ class Channel:
         return sum(flight.size for flight in self._flights if not flight.held)
 
     def _may_send_new(self) -> bool:
-        if not self._waiting or len(self._flights) >= WINDOW:
+        if not self._waiting or not self._ready or len(self._flights) >= WINDOW:
             return False
         size = sum(map(len, self._gather(take=False))) + _FRAME_OVERHEAD
         in_flight = self._in_flight()
@@ -227,7 +241,9 @@ class Channel:
     def _send_lost(self, now: float) -> bytes:
         wait = self._patience()
         for place, flight in enumerate(self._flights):
-            if flight.held or not (flight.lost or now >= flight.sent + wait):
+            if not self._ready and place > 0:
+                break
+            if flight.held or not (flight.lost and self._ready or now >= flight.sent + wait):
                 continue
             flight.sent, flight.order, flight.lost = now, self._next_order(), False
             self.counters.frames_repeated += 1
@@ -275,6 +291,13 @@ class Channel:
                 flight.held = True
         for flight in self._flights:
             flight.lost |= not flight.held and flight.order < self._newest_order
+
+    def _take_readiness(self, ready: bool) -> None:
+        if ready and not self._ready:
+            # What was sent meanwhile was dropped.
+            for flight in self._flights:
+                flight.lost = not flight.held
+        self._ready = ready
 
     def _note_arrival(self, flight: _Flight, now: float) -> None:
         if flight.held:

@@ -210,7 +210,35 @@ class Heartbeat(Packet):
 class Acknowledge(Packet):
     """Both ways: which reliable frames came after the first that is missing."""
 
-    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here")]
+    held: Annotated[
+        int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room for more, wait")
+    ]
+
+
+# The communication test: the messages of the thesis's Table 4, whose numbers are taken here.
+
+
+@_packet(0x0E, reliable=True)
+class TestMsg(Packet):
+    """Both ways, in the communication test alone: a number."""
+
+    number: Annotated[int, Wire("H")]
+
+
+@_packet(0x0F, reliable=True)
+class RequestResult(Packet):
+    """Host to board, in the communication test alone: asks what has come."""
+
+
+@_packet(0x10, reliable=True)
+class TestResult(Packet):
+    """Board to host, in the communication test alone: what has come."""
+
+    right: Annotated[int, Wire("H", meaning="numbers of the test, each above all right ones before it")]
+    out_of_sequence: Annotated[int, Wire("H", meaning="other numbers")]
+    frames_invalid: Annotated[int, Wire("H", meaning="frames thrown away")]
+    frames_repeated: Annotated[int, Wire("H", meaning="reliable frames sent again")]
+    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost for want of room")]
 
 
 def encode(packet: Packet) -> bytes:
