@@ -64,7 +64,8 @@ class Runs:
 
     async def mark_interrupted(self) -> None:
         """Runs that still say that they run were left by a program that was killed."""
-        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(state="interrupted")
+        changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
+        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(changes)
         await self._store.write(lambda connection: connection.execute(change))
 
     async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:

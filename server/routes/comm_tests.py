@@ -9,7 +9,6 @@ from robot_runtime.comm_test.document import CommTest, DocumentError, read_docum
 from robot_runtime.comm_test.runner import estimate_seconds
 from server.assembly import Assembly
 from server.comm_tests import tables
-from server.comm_tests.documents import shipped_documents
 from server.comm_tests.reference import TABLES, TITLES, read_table
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import (
@@ -24,6 +23,7 @@ from server.comm_tests.shapes import (
     TestDocument,
     ThesisTable,
 )
+from server.comm_tests.shipped import shipped_documents
 from server.models import CommTestRun
 from server.routes.problems import answers
 from server.sessions import IDENTIFIER_MAX
