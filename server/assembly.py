@@ -13,7 +13,7 @@ from server.bridge import Bridge
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
-from server.comm_tests.samples import import_samples
+from server.comm_tests.shipped import import_samples
 from server.health import Watch
 from server.hub import Hub
 from server.notices import Notices
@@ -41,7 +41,7 @@ class Assembly:
         self.parts = Parts(commands, settings.data.logs, self.clock, self.notices.tell)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         board = Board(settings, self.notices.tell)
-        self.handover = Handover(board, self.bridge, self.watch, self.parts, self._board_occupied)
+        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
     @staticmethod
@@ -89,7 +89,7 @@ class Assembly:
 
     def _board_occupied(self) -> str | None:
         session = self.recorder.session
-        return session and f"“{session.name}” is being recorded. Stop the recording first."
+        return None if session is None else f"“{session.name}” is being recorded. Stop the recording first."
 
     def _tell_session(self) -> None:
         session = self.recorder.session

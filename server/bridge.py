@@ -48,7 +48,9 @@ class Bridge:
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
         self.lent: str | None = None
-        """Why nobody can be asked now, where the robot's board is lent."""
+        """Why nobody commands the robot now, on purpose; None where it is as always."""
+        self.stopped = False
+        """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
         self._settings = settings
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
@@ -86,9 +88,7 @@ class Bridge:
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
         stop = name == "stop"
-        if self.lent is not None:
-            if stop:
-                return  # it is disarmed, and stays so
+        if self.lent is not None and not stop:
             raise Refused(self.lent)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilent(
@@ -102,6 +102,8 @@ class Bridge:
                 lambda: self._messages.ask(f"command/{name}", payload, ANSWER_SECONDS),
             )
         except NoAnswer as problem:
+            if stop and self.stopped:
+                return
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
             raise RuntimeSilent(_silence(waited), waited) from problem
         finally:

@@ -65,9 +65,9 @@ class CommTestRun(SQLModel, table=True):
     """One run of a communication test. Times are UTC (s since 1970); `document` is the test, `tools` the
     versions of what made and ran the sketch, both as JSON; `firmware` is the hash of sketch, core and flags.
 
-    States: "running", "complete", "cancelled", "failed", "interrupted". `place` is "emulated" (boards of its own,
-    in emulated time) or "robot" (the robot's board, in real time); `sample` names a run that came with the
-    program.
+    States: "running", "complete", "cancelled", "failed", "interrupted". `place` is "emulated" (boards of its
+    own, in emulated time) or "robot" (the robot's board, in real time); `sample` names a run that came with
+    the program.
     """
 
     __tablename__ = "comm_test_run"
@@ -91,8 +91,8 @@ class CommTestRun(SQLModel, table=True):
 
 class CommTestCell(SQLModel, table=True):
     """One cell of a run. Delays and `seconds` (the test's time) in s; rate from 0 to 1; `answered` is false
-    where the chip's own counts never came; `repeated` are frames that were sent again. Both directions' counts
-    are added up.
+    where the chip's own counts never came; `repeated` are frames that were sent again. Both directions'
+    counts are added up.
     """
 
     __tablename__ = "comm_test_cell"

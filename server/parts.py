@@ -62,6 +62,7 @@ class Part:
 
     async def run(self) -> None:
         """Keep the process running until this is cancelled; then end it."""
+        self._set("waiting")
         try:
             while True:
                 await self._wait_for_needs()
@@ -94,7 +95,7 @@ class Part:
         status = await self._process.wait()
         self._process.close()
         last = self._log.last(LINES_TOLD)
-        return _describe_status(status) + (f". Its last words: {last}" if last else "")
+        return describe_status(status) + (f". Its last words: {last}" if last else "")
 
     def _fail(self, problem: str) -> None:
         self.problem = problem
@@ -177,6 +178,7 @@ def plan(settings: Settings) -> list[Command]:
     runtime += ["--port", str(folder.board_tty), "--with-parent"]
     board = [str(build / "board"), "--elf", str(build / "firmware" / "robot.elf")]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
+    # The communication test uploads its sketches to this board, as to a real one.
     board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
@@ -190,7 +192,8 @@ def plan(settings: Settings) -> list[Command]:
     ]
 
 
-def _describe_status(status: int) -> str:
+def describe_status(status: int) -> str:
+    """How a process ended, in words that go on after its name."""
     if status >= 0:
         return f"has ended with exit status {status}"
     try:

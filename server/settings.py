@@ -3,11 +3,11 @@
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, load
+from robot_runtime.config import ConfigError, LinkConfig, load
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -91,6 +91,7 @@ class Settings:
     config: Path
     robot: str = "turtle"
     mode: Mode = "emulated"
+    link: LinkConfig = field(default_factory=LinkConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
@@ -119,6 +120,7 @@ def read_settings(
         config=config.absolute(),
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
+        link=loaded.link,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

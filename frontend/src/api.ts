@@ -4,13 +4,13 @@ import type { components } from './generated/api';
 type Schemas = components['schemas'];
 export type Part = Schemas['PartHealth'];
 export type Session = Schemas['Session'];
-export type CommTestDocument = Schemas['ShippedDocument'];
-export type CommTestCheck = Schemas['Checked'];
-export type CommTestPlace = Schemas['NewRun']['place'];
+export type CommTestDocument = Schemas['TestDocument'];
+export type CommTestCheck = Schemas['Check'];
+export type CommTestPlace = Schemas['Start']['place'];
 export type CommTestSummary = Schemas['RunSummary'];
 export type CommTestRun = Schemas['Run'];
-export type Cell = Schemas['CellShape'];
-export type ThesisTable = Schemas['Table'];
+export type Cell = Schemas['Cell'];
+export type ThesisTable = Schemas['ThesisTable'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 

@@ -92,8 +92,8 @@ def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
     text, tests = _read(file)
     if place == "robot" and settings.mode == "emulated":
         raise SetupError(
-            "The emulated robot's board runs only while the server does. Start the test from the page, or leave "
-            "--place out."
+            "The emulated robot's board runs only while the server does. Start the test from the page, or "
+            "leave --place out."
         )
     with claim(settings.data):
         prepare(settings.data)

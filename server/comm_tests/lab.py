@@ -1,13 +1,14 @@
-"""Runs communication tests, one document at a time, in a process of its own; what it tells is kept and passed on.
+"""Runs communication tests, one document at a time, in a process of its own.
 
-The process (`python -m robot_runtime.comm_test`) compiles, uploads and runs; it tells what it does in lines of
-JSON. Here they become rows of the database and progress for the pages.
+The process (`python -m robot_runtime.comm_test`) compiles, uploads and runs, and tells what it does in lines
+of JSON. Here they become rows of the database and progress for the pages.
 """
 
 import asyncio
 import json
 import logging
 import sys
+import tempfile
 from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager, suppress
@@ -20,7 +21,8 @@ from robot_runtime.comm_test.document import CommTest, read_document
 from robot_runtime.comm_test.runner import estimate_seconds
 from robot_runtime.errors import Refused
 from server.comm_tests.runs import End, Runs
-from server.comm_tests.shapes import CellShape, Phase, Place
+from server.comm_tests.shapes import Cell, Phase, Place
+from server.parts import describe_status
 from server.process import Process
 from server.settings import Settings
 from server.store import StoreError
@@ -32,6 +34,11 @@ WORDS_KEPT = 5
 """Lines that are no JSON are the last words of a process that fails."""
 CANCEL_SECONDS = 90.0
 """After which a cancelled process is killed; it may have to bring the robot's firmware back."""
+
+
+class LabError(Exception):
+    """The test cannot go on; the text says why."""
+
 
 Tell = Callable[[dict[str, Any]], None]
 Lend = Callable[[str], AbstractAsyncContextManager[list[str]]]
@@ -72,7 +79,7 @@ class Progress:
 
 
 class Lab:
-    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the robot's board away."""
+    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
 
     def __init__(self, settings: Settings, runs: Runs, clock: Clock, tell: Tell, lend: Lend) -> None:
         self.runs = runs
@@ -120,25 +127,23 @@ class Lab:
                 await self.wait()
 
     async def _run(self, tests: list[CommTest], text: str, place: Place, began: asyncio.Future[int]) -> None:
-        progress = Progress(
-            tests,
-            place,
-            self._clock.now(),
-            [[estimate_seconds(one, cell) for cell in one.cells] for one in tests],
-        )
+        weights = [[estimate_seconds(test, cell) for cell in test.cells] for test in tests]
+        progress = Progress(tests, place, self._clock.now(), weights)
         try:
             if place == "robot":
                 async with self._lend(tests[0].name) as arguments:
                     await self._perform(progress, text, arguments, began)
             else:
                 await self._perform(progress, text, [], began)
-        except (Refused, StoreError, OSError) as problem:
+        except (Refused, StoreError, LabError, OSError) as problem:
             log.warning("the communication test ended: %s", problem)
             if progress.run is not None:
+                # Where even that cannot be stored, the next start marks it as interrupted.
                 with suppress(StoreError):
                     await self.runs.end(progress.run, "failed", str(problem))
             if not began.done():
-                began.set_exception(problem if not isinstance(problem, OSError) else Refused(str(problem)))
+                told = problem if isinstance(problem, Refused | StoreError) else Refused(str(problem))
+                began.set_exception(told)
         finally:
             self._tell({"op": "comm_test", "active": None, "cell": None})
             if not began.done():
@@ -147,39 +152,33 @@ class Lab:
     async def _perform(
         self, progress: Progress, text: str, arguments: list[str], began: asyncio.Future[int]
     ) -> None:
-        document = self._settings.data.run / "comm_test.json"
-        await asyncio.to_thread(document.write_text, text, encoding="utf-8")
-        lines: asyncio.Queue[bytes | None] = asyncio.Queue()
-        output = _Lines(lines)
-        command = [sys.executable, "-m", "robot_runtime.comm_test", "--document", str(document)]
-        command += [
-            "--build",
-            str(self._settings.build),
-            "--where",
-            progress.place,
-            "--with-parent",
-            *arguments,
-        ]
-        self._process = Process(command, output.feed)
-        if self._cancelled:
-            self._process.signal(SIGTERM)
-        waiting = asyncio.create_task(self._end_of(self._process, output))
-        words: deque[str] = deque(maxlen=WORDS_KEPT)
+        command = [sys.executable, "-m", "robot_runtime.comm_test", "--build", str(self._settings.build)]
+        command += ["--where", progress.place, "--with-parent", *arguments]
+        output = _Lines()
+        with tempfile.TemporaryFile() as document:
+            document.write(text.encode())
+            document.seek(0)
+            if self._cancelled:
+                raise Refused("The communication test was cancelled before it began.")
+            self._process = Process(command, output.feed, document)
+        ending = asyncio.create_task(self._wait_for(self._process, output))
         try:
-            while (line := await lines.get()) is not None:
-                await self._take(progress, line, words, began)
-            status = await waiting
+            while (line := await output.next()) is not None:
+                await self._take(progress, line, output.words, began)
+            status = await ending
         finally:
+            ending.cancel()
             self._process.close()
             self._process = None
-            waiting.cancel()
+        said = " / ".join(output.words)
         if progress.run is not None:
-            said = " / ".join(words) or f"exit status {status}"
-            await self._end(progress, "cancelled" if self._cancelled else "failed", f"The lab ended: {said}")
-        if not began.done():
-            began.set_exception(Refused(f"The communication test could not begin: {' / '.join(words)}"))
+            state: End = "cancelled" if self._cancelled else "failed"
+            await self._end(progress, state, f"It broke off ({describe_status(status)}). {said}".strip())
+        elif not began.done():
+            why = "It was cancelled." if self._cancelled else said or f"It {describe_status(status)}."
+            raise LabError(f"The communication test could not begin. {why}")
 
-    async def _end_of(self, process: Process, output: "_Lines") -> int:
+    async def _wait_for(self, process: Process, output: "_Lines") -> int:
         status = await process.wait()
         output.end()
         return status
@@ -190,16 +189,26 @@ class Lab:
         event = _read_event(line)
         if event is None:
             words.append(line.decode(errors="replace").strip())
-            log.info("comm_test: %s", words[-1])
             return
-        cell: CellShape | None = None
+        try:
+            cell = await self._apply(progress, event, words, began)
+        except (LookupError, TypeError, ValueError) as problem:
+            raise LabError(f"What the test told cannot be understood: {problem!r}") from problem
+        active = progress.describe(self._clock.now()) if progress.run is not None else None
+        shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
+        self._tell({"op": "comm_test", "active": active, "cell": shown})
+
+    async def _apply(
+        self, progress: Progress, event: dict[str, Any], words: deque[str], began: asyncio.Future[int]
+    ) -> Cell | None:
+        """Keep what has happened; the cell where one is finished."""
         match event.get("event"):
             case "started":
                 progress.test = int(event["test"])
                 progress.done, progress.phases = 0, {}
-                test = progress.tests[progress.test]
+                test, place, host = progress.tests[progress.test], progress.place, str(event["host"])
                 progress.run = await self.runs.start(
-                    test, progress.place, str(event["firmware"]), event["tools"], str(event["host"])
+                    test, place, str(event["firmware"]), event["tools"], host
                 )
                 if not began.done():
                     began.set_result(progress.run)
@@ -211,13 +220,12 @@ class Lab:
                 progress.done += 1
                 progress.done_weight += progress.weights[progress.test][number]
                 progress.phases.pop(number, None)
+                return cell
             case "ended" if progress.run is not None:
                 await self._end(progress, event["state"], str(event["problem"]))
             case "refused":
                 words.extend(map(str, event["problems"]))
-        active = progress.describe(self._clock.now()) if progress.run is not None else None
-        shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
-        self._tell({"op": "comm_test", "active": active, "cell": shown})
+        return None
 
     async def _end(self, progress: Progress, state: End, problem: str) -> None:
         assert progress.run is not None
@@ -227,23 +235,29 @@ class Lab:
 
 
 class _Lines:
-    """Cuts what a process prints into lines; None is the end."""
+    """Cuts what a process prints into lines; `words` are the last that are no events, for when it fails."""
 
-    def __init__(self, lines: asyncio.Queue[bytes | None]) -> None:
-        self._lines = lines
+    def __init__(self) -> None:
+        self.words: deque[str] = deque(maxlen=WORDS_KEPT)
+        self._lines: asyncio.Queue[bytes | None] = asyncio.Queue()
         self._partial = b""
 
     def feed(self, data: bytes) -> None:
+        """What it has printed."""
         *whole, self._partial = (self._partial + data).split(b"\n")
         self._partial = self._partial[-LINE_BYTES_MAX:]
         for line in whole:
             if line.strip():
-                self._lines.put_nowait(line)
+                self._lines.put_nowait(line[-LINE_BYTES_MAX:])
 
     def end(self) -> None:
-        if self._partial.strip():
-            self._lines.put_nowait(self._partial)
+        """It prints no more."""
+        self.feed(b"\n")
         self._lines.put_nowait(None)
+
+    async def next(self) -> bytes | None:
+        """The next line; None after the last."""
+        return await self._lines.get()
 
 
 def _read_event(line: bytes) -> dict[str, Any] | None:

@@ -13,7 +13,7 @@ from sqlmodel import col, desc, func, select
 
 from robot_runtime.comm_test.document import CommTest
 from server import VERSION
-from server.comm_tests.shapes import CellShape, Place, Run, RunSummary
+from server.comm_tests.shapes import Cell, Place, Run, RunSummary
 from server.models import CommTestCell, CommTestRun
 from server.store import Store
 
@@ -49,12 +49,12 @@ class Runs:
         }
         return await self._store.write(lambda connection: _insert_run(connection, values))
 
-    async def add(self, run: int, number: int, values: Mapping[str, Any]) -> CellShape:
+    async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
         """One cell that has been run, as the lab tells of it. Raises ValueError where it is none."""
         cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
         row = cell.model_dump(exclude={"id"})
         await self._store.write(lambda connection: connection.execute(insert(CommTestCell).values(row)))
-        return _cell_shape(cell)
+        return _cell(cell)
 
     async def end(self, run: int, state: End, problem: str = "") -> None:
         """The run is over."""
@@ -64,7 +64,8 @@ class Runs:
 
     async def mark_interrupted(self) -> None:
         """Runs that still say that they run were left by a program that was killed."""
-        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(state="interrupted")
+        changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
+        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(changes)
         await self._store.write(lambda connection: connection.execute(change))
 
     async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:
@@ -108,7 +109,7 @@ class Runs:
 
     def whole(self, run: CommTestRun) -> Run:
         """A run with everything that is known of it."""
-        cells = [_cell_shape(cell) for cell in self.cells(run.id or 0)]
+        cells = [_cell(cell) for cell in self.cells(run.id or 0)]
         rates = [cell.rate for cell in cells]
         mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
         return Run(
@@ -133,9 +134,9 @@ def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None)
     }
 
 
-def _cell_shape(cell: CommTestCell) -> CellShape:
-    values = cell.model_dump(include=set(CellShape.model_fields) - {"causes"})
-    return CellShape(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
+def _cell(cell: CommTestCell) -> Cell:
+    values = cell.model_dump(include=set(Cell.model_fields) - {"causes"})
+    return Cell(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
 
 
 def _insert_run(connection: Connection, values: dict[str, Any]) -> int:

@@ -17,7 +17,7 @@ TEXT_MAX = 60_000
 """Characters of a test document; the server takes no longer requests."""
 
 
-class ShippedDocument(BaseModel):
+class TestDocument(BaseModel):
     """A test document that came with the program."""
 
     name: str
@@ -32,7 +32,7 @@ class DocumentText(BaseModel):
     text: Annotated[str, Field(max_length=TEXT_MAX)]
 
 
-class NewRun(DocumentText):
+class Start(DocumentText):
     """A document to run, and where."""
 
     place: Place
@@ -58,7 +58,7 @@ class CheckedTest(BaseModel):
     seconds: float
 
 
-class Checked(BaseModel):
+class Check(BaseModel):
     """What is wrong with a document, field by field; or its tests."""
 
     problems: list[str]
@@ -84,7 +84,7 @@ class RunSummary(BaseModel):
     rate_min: Rate | None
 
 
-class CellShape(BaseModel):
+class Cell(BaseModel):
     """One cell; delays and `seconds` (the test's time) in s, the counts of both ends together."""
 
     number: int
@@ -115,7 +115,7 @@ class Run(RunSummary):
     firmware: str = Field(description="hash of the sketch, the core and the compiler's flags")
     tools: dict[str, str]
     host: str
-    results: list[CellShape]
+    results: list[Cell]
 
 
 class TableCell(BaseModel):
@@ -127,7 +127,7 @@ class TableCell(BaseModel):
     rate: Rate
 
 
-class Table(BaseModel):
+class ThesisTable(BaseModel):
     """One of the thesis's tables."""
 
     name: TableName

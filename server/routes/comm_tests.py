@@ -9,21 +9,21 @@ from robot_runtime.comm_test.document import CommTest, DocumentError, read_docum
 from robot_runtime.comm_test.runner import estimate_seconds
 from server.assembly import Assembly
 from server.comm_tests import tables
-from server.comm_tests.documents import shipped_documents
 from server.comm_tests.reference import TABLES, TITLES, read_table
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import (
-    Checked,
+    Check,
     CheckedTest,
     DocumentText,
-    NewRun,
     Run,
     RunSummary,
-    ShippedDocument,
+    Start,
     Started,
-    Table,
     TableCell,
+    TestDocument,
+    ThesisTable,
 )
+from server.comm_tests.shipped import shipped_documents
 from server.models import CommTestRun
 from server.routes.problems import answers
 from server.sessions import IDENTIFIER_MAX
@@ -38,18 +38,18 @@ Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 @router.get(
     "/documents", summary="The documents that come with the program", operation_id="listTestDocuments"
 )
-def get_documents() -> list[ShippedDocument]:
+def get_documents() -> list[TestDocument]:
     """The thesis's own example (Figure 10) first."""
     return shipped_documents()
 
 
 @router.post("/check", summary="What is wrong with a document", operation_id="checkTestDocument")
-def check(document: DocumentText) -> Checked:
+def check(document: DocumentText) -> Check:
     """Its problems, field by field; or its tests, with about how long they take."""
     try:
-        return Checked(problems=[], tests=[_describe(test) for test in read_document(document.text)])
+        return Check(problems=[], tests=[_describe(test) for test in read_document(document.text)])
     except DocumentError as problem:
-        return Checked(problems=problem.problems, tests=[])
+        return Check(problems=problem.problems, tests=[])
 
 
 @router.post(
@@ -61,7 +61,7 @@ def check(document: DocumentText) -> Checked:
         _409="Refused now", _422="The document cannot be run", _503="The database does not work"
     ),
 )
-async def start(request: Request, wanted: NewRun) -> Started:
+async def start(request: Request, wanted: Start) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
     try:
         return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
@@ -118,10 +118,10 @@ def get_json(request: Request, run: Identifier) -> Response:
 
 
 @router.get("/tables", summary="The thesis's own results", operation_id="listTestTables")
-def get_tables() -> list[Table]:
+def get_tables() -> list[ThesisTable]:
     """Table 5 (plain numbers) and Table 6 (packets)."""
     return [
-        Table(
+        ThesisTable(
             name=name,
             title=TITLES[name],
             framing="plain" if name == "table5" else "thesis",

@@ -39,8 +39,10 @@ def get_sessions(request: Request) -> list[Session]:
 
 @router.post("", status_code=201, summary="Start recording", operation_id="startSession", responses=STORING)
 async def start_session(request: Request, wanted: NewSession) -> Session:
-    """Record everything from now on; refused while another session records."""
+    """Record everything from now on; refused while another records, or the board is lent to a test."""
     assembly = Assembly.of(request)
+    if assembly.bridge.lent is not None:
+        raise RecordingRefused(assembly.bridge.lent)
     state = json.dumps(assembly.watch.state())
     try:
         row = new_row(assembly.settings, assembly.clock, wanted.name.strip(), wanted.note.strip(), state)

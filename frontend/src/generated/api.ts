@@ -343,7 +343,7 @@ export interface paths {
         put?: never;
         /**
          * Start recording
-         * @description Record everything from now on; refused while another session records.
+         * @description Record everything from now on; refused while another records, or the board is lent to a test.
          */
         post: operations["startSession"];
         delete?: never;
@@ -425,10 +425,10 @@ export interface components {
             colour: string | null;
         };
         /**
-         * CellShape
+         * Cell
          * @description One cell; delays and `seconds` (the test's time) in s, the counts of both ends together.
          */
-        CellShape: {
+        Cell: {
             /** Answered */
             answered: boolean;
             /** Arduino Delay */
@@ -472,10 +472,10 @@ export interface components {
             uart_overruns: number;
         };
         /**
-         * Checked
+         * Check
          * @description What is wrong with a document, field by field; or its tests.
          */
-        Checked: {
+        Check: {
             /** Problems */
             problems: string[];
             /** Tests */
@@ -596,19 +596,6 @@ export interface components {
             version: string;
         };
         /**
-         * NewRun
-         * @description A document to run, and where.
-         */
-        NewRun: {
-            /**
-             * Place
-             * @enum {string}
-             */
-            place: "emulated" | "robot";
-            /** Text */
-            text: string;
-        };
-        /**
          * NewSession
          * @description A session that is to begin; without a name it is called after its moment.
          */
@@ -704,7 +691,7 @@ export interface components {
             /** Rate Min */
             rate_min: number | null;
             /** Results */
-            results: components["schemas"]["CellShape"][];
+            results: components["schemas"]["Cell"][];
             /** Sample */
             sample: string;
             /**
@@ -843,16 +830,17 @@ export interface components {
             detected?: number | null;
         };
         /**
-         * ShippedDocument
-         * @description A test document that came with the program.
+         * Start
+         * @description A document to run, and where.
          */
-        ShippedDocument: {
-            /** Name */
-            name: string;
+        Start: {
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
             /** Text */
             text: string;
-            /** Title */
-            title: string;
         };
         /**
          * Started
@@ -914,23 +902,6 @@ export interface components {
             vision_rate: number;
         };
         /**
-         * Table
-         * @description One of the thesis's tables.
-         */
-        Table: {
-            /** Cells */
-            cells: components["schemas"]["TableCell"][];
-            /** Framing */
-            framing: string;
-            /**
-             * Name
-             * @enum {string}
-             */
-            name: "table5" | "table6";
-            /** Title */
-            title: string;
-        };
-        /**
          * TableCell
          * @description One entry of the thesis's tables.
          */
@@ -946,6 +917,35 @@ export interface components {
              * @description share of the numbers that arrived right
              */
             rate: number;
+        };
+        /**
+         * TestDocument
+         * @description A test document that came with the program.
+         */
+        TestDocument: {
+            /** Name */
+            name: string;
+            /** Text */
+            text: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * ThesisTable
+         * @description One of the thesis's tables.
+         */
+        ThesisTable: {
+            /** Cells */
+            cells: components["schemas"]["TableCell"][];
+            /** Framing */
+            framing: string;
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "table5" | "table6";
+            /** Title */
+            title: string;
         };
         /** ValidationError */
         ValidationError: {
@@ -1019,7 +1019,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Checked"];
+                    "application/json": components["schemas"]["Check"];
                 };
             };
             /** @description Validation Error */
@@ -1048,7 +1048,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["ShippedDocument"][];
+                    "application/json": components["schemas"]["TestDocument"][];
                 };
             };
         };
@@ -1082,7 +1082,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NewRun"];
+                "application/json": components["schemas"]["Start"];
             };
         };
         responses: {
@@ -1259,7 +1259,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Table"][];
+                    "application/json": components["schemas"]["ThesisTable"][];
                 };
             };
         };
