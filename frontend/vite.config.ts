@@ -10,6 +10,8 @@ export default defineConfig({
     target: 'es2022',
     // The page's content security policy has no room for data: addresses.
     assetsInlineLimit: 0,
+    // Plotly, which only the comm tests fetch.
+    chunkSizeWarningLimit: 1200,
     modulePreload: { polyfill: false },
   },
   server: { proxy: { '/api': { target: 'http://127.0.0.1:8000', ws: true } } },

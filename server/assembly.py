@@ -10,6 +10,10 @@ from starlette.requests import HTTPConnection
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
 from server.bridge import Bridge
+from server.comm_tests.handover import Board, Handover
+from server.comm_tests.lab import Lab
+from server.comm_tests.runs import Runs
+from server.comm_tests.shipped import import_samples
 from server.health import Watch
 from server.hub import Hub
 from server.notices import Notices
@@ -36,6 +40,9 @@ class Assembly:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.parts = Parts(commands, settings.data.logs, self.clock, self.notices.tell)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
+        board = Board(settings, self.notices.tell)
+        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
+        self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
     @staticmethod
     def of(connection: HTTPConnection) -> "Assembly":
@@ -50,18 +57,25 @@ class Assembly:
         tasks: list[asyncio.Task[None]] = []
         try:
             await self.recorder.recover()
+            await self.lab.runs.mark_interrupted()
+            await import_samples(self.lab.runs)
             await self.bridge.open()
-            self.parts.start()
             self._tell_session()
             tasks = [
                 asyncio.create_task(work)
-                for work in (self.recorder.run(), self.hub.watch(), self._tell_health())
+                for work in (
+                    self.handover.start_parts(),
+                    self.recorder.run(),
+                    self.hub.watch(),
+                    self._tell_health(),
+                )
             ]
             yield
         finally:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self.lab.cancel()
             await self.parts.stop()
             await self._end_session()
             await self.bridge.close()
@@ -72,6 +86,10 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
+
+    def _board_occupied(self) -> str | None:
+        session = self.recorder.session
+        return None if session is None else f"“{session.name}” is being recorded. Stop the recording first."
 
     def _tell_session(self) -> None:
         session = self.recorder.session

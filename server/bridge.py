@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages, NoAnswer, Subscription
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets.layout import LayoutError
@@ -46,6 +47,10 @@ class Bridge:
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        self.lent: str | None = None
+        """Why nobody commands the robot now, on purpose; None where it is as always."""
+        self.stopped = False
+        """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
         self._settings = settings
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
@@ -95,6 +100,8 @@ class Bridge:
         await asyncio.to_thread(self._messages.close)
 
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
+        if self.lent is not None and not stop:
+            raise Refused(self.lent)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilent(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False
@@ -107,6 +114,8 @@ class Bridge:
                 lambda: self._messages.ask(name, payload, ANSWER_SECONDS),
             )
         except NoAnswer as problem:
+            if stop and self.stopped:
+                return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
             raise RuntimeSilent(_silence(waited), waited) from problem
         finally:

@@ -52,6 +52,11 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
 def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
     run = actions.add_parser("run", parents=[kept], help="run the tests of a document")
     run.add_argument("file", type=Path, help="the test document, JSON")
+    run.add_argument(
+        "--place",
+        choices=("emulated", "robot"),
+        help="boards of its own in emulated time, or the robot's board in real time; default as robot.mode",
+    )
     actions.add_parser("list", parents=[kept], help="list the runs that are kept")
     show = actions.add_parser("show", parents=[kept], help="show a run: configuration, rates, reasons")
     show.add_argument("run", type=int, help="its number")
@@ -97,7 +102,7 @@ def _run(settings: Settings) -> int:
 
     if settings.mode == "emulated":
         try:
-            build_firmware(settings.build, settings.baud)
+            build_firmware(settings.build, settings.link.baud)
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:

@@ -52,6 +52,8 @@ class Watch:
         self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew: float | None = None
+        self.firmware_away: str | None = None
+        """Why the board does not run the robot's firmware, and what to do; None where it does."""
 
     def see(self, block: Block) -> None:
         """Take note of a block."""
@@ -105,27 +107,37 @@ class Watch:
         part = self._parts.get("runtime")
         if part is not None and part.state == "failed":
             return PartHealth(name="runtime", state="failed", text=_say_failed(part))
+        if part is not None and part.state == "paused":
+            return PartHealth(name="runtime", state="absent", text=part.problem)
         if self._fresh("state", STATE_SECONDS):
             return PartHealth(name="runtime", state="ok", text="It runs.")
         return self._silent("runtime", part, "It runs, but says nothing.")
 
     def _link(self) -> PartHealth:
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="link", state="absent", text=runtime.problem)
         if not self._fresh("state", STATE_SECONDS):
-            return self._silent("link", self._parts.get("runtime"), "Unknown: the runtime says nothing.")
+            return self._silent("link", runtime, "Unknown: the runtime says nothing.")
         state = self.state() or {}
         text = str(state.get("connection", ""))
         if state.get("connected") is True:
             return PartHealth(name="link", state="ok", text=text)
-        return self._silent("link", self._parts.get("runtime"), text)
+        if self.firmware_away is not None:
+            return PartHealth(name="link", state="failed", text=self.firmware_away)
+        return self._silent("link", runtime, text)
 
     def _board(self) -> PartHealth:
         part = self._parts.get("board")
         if part is not None and part.state == "failed":
             return PartHealth(name="board", state="failed", text=_say_failed(part))
+        runtime = self._parts.get("runtime")
+        if runtime is not None and runtime.state == "paused":
+            return PartHealth(name="board", state="absent", text=runtime.problem)
         now = self._clock.now()
         if self._bytes_grew is not None and now - self._bytes_grew < LINK_SECONDS:
             return PartHealth(name="board", state="ok", text="It sends.")
-        return self._silent("board", part or self._parts.get("runtime"), "Nothing arrives from it.")
+        return self._silent("board", part or runtime, "Nothing arrives from it.")
 
     def _simulator(self) -> PartHealth:
         if self._settings.mode == "robot":

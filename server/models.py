@@ -65,7 +65,9 @@ class CommTestRun(SQLModel, table=True):
     """One run of a communication test. Times are UTC (s since 1970); `document` is the test, `tools` the
     versions of what made and ran the sketch, both as JSON; `firmware` is the hash of sketch, core and flags.
 
-    States: "running", "complete", "cancelled", "failed", "interrupted".
+    States: "running", "complete", "cancelled", "failed", "interrupted". `place` is "emulated" (boards of its
+    own, in emulated time) or "robot" (the robot's board, in real time); `sample` names a run that came with
+    the program.
     """
 
     __tablename__ = "comm_test_run"
@@ -83,11 +85,14 @@ class CommTestRun(SQLModel, table=True):
     ended: float | None = None
     state: str
     problem: str = ""
+    place: str = "emulated"
+    sample: str = ""
 
 
 class CommTestCell(SQLModel, table=True):
-    """One cell of a run. Delays and `seconds` (emulated time) in s; rate from 0 to 1; `answered` is false
-    where the chip's own counts never came. Both directions' counts are added up.
+    """One cell of a run. Delays and `seconds` (the test's time) in s; rate from 0 to 1; `answered` is false
+    where the chip's own counts never came; `repeated` are frames that were sent again. Both directions'
+    counts are added up.
     """
 
     __tablename__ = "comm_test_cell"
@@ -110,6 +115,7 @@ class CommTestCell(SQLModel, table=True):
     bytes_lost: int
     line_errors: int
     uart_overruns: int
+    repeated: int = 0
     seconds: float
     causes: str
     explanation: str

@@ -28,7 +28,7 @@ TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
 LINES_TOLD = 3
 
-State = Literal["waiting", "running", "failed", "ended"]
+State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
 
 
@@ -63,6 +63,7 @@ class Part:
 
     async def run(self) -> None:
         """Keep the process running until this is cancelled; then end it."""
+        self._set("waiting")
         try:
             while True:
                 await self._wait_for_needs()
@@ -95,7 +96,7 @@ class Part:
         status = await self._process.wait()
         self._process.close()
         last = self._log.last(LINES_TOLD)
-        return _describe_status(status) + (f". Its last words: {last}" if last else "")
+        return describe_status(status) + (f". Its last words: {last}" if last else "")
 
     def _fail(self, problem: str) -> None:
         self.problem = problem
@@ -115,6 +116,11 @@ class Part:
                 await self._process.wait()
         self._process.close()
 
+    def pause(self, why: str) -> None:
+        """Note that the process has been ended on purpose; `why` is a sentence."""
+        self.problem = why
+        self._set("paused")
+
     def _set(self, state: State) -> None:
         self.state = state
         self.since = self._clock.now()
@@ -128,17 +134,35 @@ class Parts:
             command.name: Part(command, PartLog(logs / f"{command.name}.log"), clock, tell)
             for command in commands
         }
-        self._tasks: list[asyncio.Task[None]] = []
+        self._tasks: dict[str, asyncio.Task[None]] = {}
 
     def start(self) -> None:
-        """Start everything, each as soon as what it needs is there."""
-        self._tasks = [asyncio.create_task(part.run()) for part in self._parts.values()]
+        """Start everything, each as soon as what it needs is there; what is paused is not started."""
+        for name, part in self._parts.items():
+            if part.state != "paused":
+                self._tasks[name] = asyncio.create_task(part.run())
 
     async def stop(self) -> None:
         """End every process, and wait until they are gone."""
-        for task in self._tasks:
+        tasks = self._tasks.values()
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def pause(self, name: str, why: str) -> None:
+        """End a part, and leave it so until it is resumed; `why` is a sentence for a person."""
+        task = self._tasks.pop(name, None)
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if name in self._parts:
+            self._parts[name].pause(why)
+
+    def resume(self, name: str) -> None:
+        """Start a part that was paused."""
+        part = self._parts.get(name)
+        if part is not None and part.state == "paused":
+            self._tasks[name] = asyncio.create_task(part.run())
 
     def get(self, name: str) -> Part | None:
         """The part of this name; None where this robot has none."""
@@ -153,8 +177,10 @@ def plan(settings: Settings) -> list[Command]:
     if settings.mode == "robot":
         return [Command("runtime", "robot's runtime", (*runtime, "--with-parent"))]
     runtime += ["--port", str(folder.board_tty), "--with-parent"]
-    board = [str(build / "board"), "--elf", str(firmware_path(build, settings.baud, ".elf"))]
+    board = [str(build / "board"), "--elf", str(firmware_path(build, settings.link.baud, ".elf"))]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
+    # The communication test uploads its sketches to this board, as to a real one.
+    board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
     for socket in (folder.runtime_socket, folder.server_socket):
@@ -167,7 +193,8 @@ def plan(settings: Settings) -> list[Command]:
     ]
 
 
-def _describe_status(status: int) -> str:
+def describe_status(status: int) -> str:
+    """How a process ended, in words that go on after its name."""
     if status >= 0:
         return f"has ended with exit status {status}"
     try:

@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from signal import SIGKILL, Signals
+from typing import IO
 
 READ_BYTES = 65_536
 
@@ -16,15 +17,18 @@ READ_BYTES = 65_536
 class Process:
     """Started at once, in a group of its own; `output` is called with what it and its children print.
 
-    Raises OSError where it cannot be started. Call it in the event loop's thread, and `close` in the end.
+    It reads `given` on its standard input, and nothing without. Raises OSError where it cannot be started.
+    Call it in the event loop's thread, and `close` in the end.
     """
 
-    def __init__(self, arguments: Sequence[str], output: Callable[[bytes], None]) -> None:
+    def __init__(
+        self, arguments: Sequence[str], output: Callable[[bytes], None], given: IO[bytes] | None = None
+    ) -> None:
         self._output = output
         self._loop = asyncio.get_running_loop()
         self._popen = subprocess.Popen(
             arguments,
-            stdin=subprocess.DEVNULL,
+            stdin=given or subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,

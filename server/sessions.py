@@ -15,6 +15,9 @@ from server.models import SessionRow
 from server.settings import Settings
 from server.store import Store
 
+IDENTIFIER_MAX = 2**63 - 1
+"""SQLite's largest number."""
+
 State = Literal["recording", "complete", "interrupted"]
 
 

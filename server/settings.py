@@ -3,11 +3,11 @@
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, load
+from robot_runtime.config import ConfigError, LinkConfig, load
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -73,6 +73,11 @@ class DataFolder:
         return self.run / "board.tty"
 
     @property
+    def firmware_away(self) -> Path:
+        """There while the robot's board may hold anything but its firmware."""
+        return self.path / "firmware-away"
+
+    @property
     def board_eeprom(self) -> Path:
         """What the emulated board remembers without power."""
         return self.path / "board.eeprom"
@@ -86,7 +91,7 @@ class Settings:
     config: Path
     robot: str = "turtle"
     mode: Mode = "emulated"
-    baud: int = 250_000
+    link: LinkConfig = field(default_factory=LinkConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
@@ -115,7 +120,7 @@ def read_settings(
         config=config.absolute(),
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
-        baud=loaded.link.baud,
+        link=loaded.link,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

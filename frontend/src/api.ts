@@ -6,11 +6,20 @@ export type Part = Schemas['PartHealth'];
 export type LinkFrame = Schemas['LinkFrame'];
 export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
+export type CommTestDocument = Schemas['TestDocument'];
+export type CommTestCheck = Schemas['Check'];
+export type CommTestPlace = Schemas['Start']['place'];
+export type CommTestSummary = Schemas['RunSummary'];
+export type CommTestRun = Schemas['Run'];
+export type Cell = Schemas['Cell'];
+export type ThesisTable = Schemas['ThesisTable'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
 const TIMEOUT = 5000;
 const TIMEOUT_STOP = 2000;
+/** ms; a board may have to be handed over first, or to get its firmware back */
+const TIMEOUT_COMM_TEST = 120_000;
 
 async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
   try {
@@ -57,4 +66,13 @@ export const api = {
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
+  commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
+  checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
+  startCommTest: (text: string, place: CommTestPlace) =>
+    request<Schemas['Started']>('POST', '/comm-tests/runs', { text, place }, TIMEOUT_COMM_TEST),
+  cancelCommTest: () => command('POST', '/comm-tests/cancel', undefined, TIMEOUT_COMM_TEST),
+  commTestRuns: () => request<CommTestSummary[]>('GET', '/comm-tests/runs'),
+  commTestRun: (id: CommTestRun['id']) => request<CommTestRun>('GET', `/comm-tests/runs/${id}`),
+  commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') => `/api/comm-tests/runs/${id}/${format}`,
+  thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

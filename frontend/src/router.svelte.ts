@@ -2,6 +2,7 @@ import { createContext } from 'svelte';
 
 export const PAGES = [
   { name: 'operate', title: 'Operate' },
+  { name: 'comm-tests', title: 'Comm tests' },
   { name: 'sessions', title: 'Sessions' },
   { name: 'system', title: 'System' },
 ] as const;
@@ -11,11 +12,14 @@ export type PageName = (typeof PAGES)[number]['name'];
 /** The page that the address names after its hash; Operate where it names none. */
 export class Router {
   current = $state<PageName>('operate');
+  /** what the address names within the page: #/comm-tests/runs/3 is ['runs', '3'] */
+  within = $state.raw<readonly string[]>([]);
 
   constructor() {
     const read = () => {
-      const name = location.hash.replace(/^#\/?/, '');
+      const [name, ...within] = location.hash.replace(/^#\/?/, '').split('/');
       this.current = PAGES.find((page) => page.name === name)?.name ?? 'operate';
+      this.within = within;
     };
     window.addEventListener('hashchange', read);
     read();

@@ -7,8 +7,10 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
+from threading import Event
 from typing import Self
 
+from robot_runtime.comm_test.line import check
 from robot_runtime.comm_test.results import LineErrors
 from robot_runtime.link.port import Port
 from robot_runtime.simulation.board import BoardError, BoardProcess
@@ -33,8 +35,9 @@ class EmulatedLine:
     Raises BoardError and PortError.
     """
 
-    def __init__(self, program: Path, elf: Path, folder: Path, baud: int) -> None:
+    def __init__(self, program: Path, elf: Path, folder: Path, baud: int, stop: Event | None = None) -> None:
         self.byte_time = BITS_PER_BYTE / baud
+        self._stop = stop or Event()
         self._process = BoardProcess(
             program, elf, folder / "tty", folder / "socket", "--paused", "--with-parent"
         )
@@ -75,10 +78,14 @@ class EmulatedLine:
         self._wait_for(lambda: self._count("bytes_from_host") == self.written)
 
     def wait(self, seconds: float) -> None:
-        """Let emulated time pass, and read what comes meanwhile into `heard`. Raises BoardError."""
+        """Let emulated time pass, and read what comes meanwhile into `heard`.
+
+        Raises BoardError, and StoppedError once `stop` is set.
+        """
         end = self.now + seconds
         step = READ_STEP_BYTES * self.byte_time
         while (left := end - self.now) > RUN_MIN:
+            check(self._stop)
             self.now = self._board.run(min(left, step))
             self._read()
 

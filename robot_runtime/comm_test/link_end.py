@@ -7,8 +7,9 @@ the board sends numbers too, once all of those are there.
 """
 
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME, EmulatedLine
+from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME
 from robot_runtime.comm_test.framings import Sequence
+from robot_runtime.comm_test.line import Line
 from robot_runtime.comm_test.results import Cell, CellResult, Counts, Finding, LinkCellResult
 from robot_runtime.link.session import Session, Stage
 from robot_runtime.packets import Packet, RequestResult, TestMsg, TestResult
@@ -29,7 +30,7 @@ PATIENCE_FACTOR = 5
 """A cell is given up after so many times what it should take, and PATIENCE s."""
 
 
-def run_link_cell(test: CommTest, cell: Cell, line: EmulatedLine) -> CellResult:
+def run_link_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
     """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
     return _LinkCell(test, cell, line).run()
 
@@ -44,7 +45,7 @@ def estimate_link_seconds(test: CommTest, cell: Cell) -> float:
 
 
 class _LinkCell:
-    def __init__(self, test: CommTest, cell: Cell, line: EmulatedLine) -> None:
+    def __init__(self, test: CommTest, cell: Cell, line: Line) -> None:
         self._test, self._cell, self._line = test, cell, line
         self._patience = PATIENCE_FACTOR * estimate_link_seconds(test, cell) + PATIENCE
         self._session = Session(HOST_EPOCH, cell.baud)

@@ -1,7 +1,7 @@
 """What a cell of a communication test counted, and what that means in words."""
 
 from dataclasses import asdict, dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 Direction = Literal["to_board", "to_host", "both"]
 Finding = tuple[str, str]
@@ -94,6 +94,23 @@ class CellResult:
         """Why the rate is what it is, for a person."""
         findings = [f"{cause}: {words}" for cause, words in self._findings()]
         return "; ".join([*(findings or ["every number arrived"]), *self._remarks()])
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """All of it as plain values by name, as it is stored and handed on; both directions added up."""
+        return {
+            **asdict(self.cell),
+            **asdict(self.counts),
+            "rate": self.rate,
+            "answered": self.board is not None,
+            "bytes_lost": self.lost_to_board + self.lost_to_host,
+            "line_errors": self.line.framing_board + self.line.framing_host,
+            "uart_overruns": self.line.overruns,
+            "repeated": self.repeated,
+            "seconds": self.seconds,
+            "causes": ", ".join(self.causes),
+            "explanation": self.explanation,
+        }
 
     def _remarks(self) -> list[str]:
         return []

@@ -6,19 +6,23 @@ full ring, so that the answer tells of the numbers and not of itself.
 """
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
 from pathlib import Path
-from threading import Lock
+from threading import Event, Lock
+from typing import Literal
 
 from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.document import CommTest
 from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME, EmulatedLine
 from robot_runtime.comm_test.framings import ANSWER_BYTES, STREAM_FRAMINGS, find_answer
+from robot_runtime.comm_test.line import Line, check
 from robot_runtime.comm_test.link_end import estimate_link_seconds, run_link_cell
 from robot_runtime.comm_test.results import RING_BYTES, Cell, CellResult, Counts
 
+Phase = Literal["compile", "upload", "run"]
+Tell = Callable[[int, Phase], None]
 LOOP_TIME = 0.003
 """s that a message costs the sketch beyond its delay and the line; `delay` is up to 1 ms late."""
 PATIENCE = 0.05
@@ -29,39 +33,47 @@ QUESTIONS = 3
 class Runner:
     """Runs tests on `program`, the emulated board, with sketches that `builder` makes.
 
-    `at_once` cells run at the same time, each on a board of its own.
+    `at_once` cells run at the same time, each on a board of its own, until `stop` is set.
     """
 
-    def __init__(self, builder: Builder, program: Path, at_once: int) -> None:
+    def __init__(self, builder: Builder, program: Path, at_once: int, stop: Event | None = None) -> None:
         self._builder = builder
         self._program = program
         self._at_once = at_once
+        self._stop = stop or Event()
         self._building = Lock()
 
-    def run(self, test: CommTest) -> Iterator[CellResult]:
-        """The cells of the grid, in its order; whoever stops asking has cancelled.
+    def run(self, test: CommTest, tell: Tell = lambda _number, _phase: None) -> Iterator[CellResult]:
+        """The cells of the grid, in its order; `tell` is called by several threads.
 
-        Raises BuildError, BoardError and PortError.
+        Whoever stops asking has cancelled. Raises BuildError, BoardError, PortError, and StoppedError.
         """
+
+        def run_one(number: int, cell: Cell) -> CellResult:
+            return self._run_cell(test, cell, lambda phase: tell(number, phase))
+
         pool = ThreadPoolExecutor(self._at_once, "cell")
         try:
-            cells = [pool.submit(self._run_cell, test, cell) for cell in test.cells]
+            cells = [pool.submit(run_one, number, cell) for number, cell in enumerate(test.cells)]
             for cell in cells:
                 yield cell.result()
         finally:
             pool.shutdown(cancel_futures=True)
 
-    def _run_cell(self, test: CommTest, cell: Cell) -> CellResult:
+    def _run_cell(self, test: CommTest, cell: Cell, tell: Callable[[Phase], None]) -> CellResult:
         with self._building:
+            check(self._stop)
+            tell("compile")
             product = self._builder.build(test, cell.baud, cell.arduino_delay)
         with (
             tempfile.TemporaryDirectory(prefix="mucat-") as folder,
-            EmulatedLine(self._program, product.elf, Path(folder), cell.baud) as line,
+            EmulatedLine(self._program, product.elf, Path(folder), cell.baud, self._stop) as line,
         ):
+            tell("run")
             return run_cell(test, cell, line)
 
 
-def run_cell(test: CommTest, cell: Cell, line: EmulatedLine) -> CellResult:
+def run_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
     """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
     if test.framing not in STREAM_FRAMINGS:
         return run_link_cell(test, cell, line)
@@ -102,7 +114,7 @@ def estimate_seconds(test: CommTest, cell: Cell) -> float:
     return max(airtime, sending, answering) + emptying
 
 
-def _let_the_board_finish(test: CommTest, cell: Cell, line: EmulatedLine, message_bytes: int) -> None:
+def _let_the_board_finish(test: CommTest, cell: Cell, line: Line, message_bytes: int) -> None:
     line.wait(line.busy)
     each = cell.arduino_delay + LOOP_TIME
     to_read = ceil(RING_BYTES / message_bytes)
@@ -113,7 +125,7 @@ def _let_the_board_finish(test: CommTest, cell: Cell, line: EmulatedLine, messag
     line.wait((max(to_read, to_send) + 1) * each)
 
 
-def _ask(request: bytes, cell: Cell, line: EmulatedLine) -> tuple[Counts | None, int]:
+def _ask(request: bytes, cell: Cell, line: Line) -> tuple[Counts | None, int]:
     for _ in range(QUESTIONS):
         line.write(request)
         line.wait(line.busy + cell.arduino_delay + ANSWER_BYTES * line.byte_time + PATIENCE)

@@ -1,25 +1,26 @@
 """`mucat commtest`: run, list, show, compare and export communication tests from a shell."""
 
 import argparse
-import os
+import asyncio
 import signal
 import sqlite3
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
+from typing import Any
 
 from migrations import HEAD
-from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
+from robot_runtime.clock import SteadyClock
 from robot_runtime.comm_test.document import CommTest, DocumentError, read_document
-from robot_runtime.comm_test.results import CellResult
-from robot_runtime.comm_test.runner import Runner, estimate_seconds
-from robot_runtime.link.port import PortError
-from robot_runtime.simulation.board import BoardError
+from robot_runtime.errors import Refused
 from server.comm_tests import tables
-from server.comm_tests.reference import TABLES, Place, read_table
+from server.comm_tests.handover import Board
+from server.comm_tests.lab import Lab
+from server.comm_tests.reference import TABLES, read_table
+from server.comm_tests.reference import Place as Cell
 from server.comm_tests.runs import Runs
+from server.comm_tests.shapes import Place
 from server.models import CommTestRun
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
@@ -35,7 +36,7 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
     """
     try:
         if options.action == "run":
-            return _run(options.file, settings, claim)
+            return _run(options.file, options.place or settings.mode, settings, claim)
         with _open(settings.data, claim) as runs:
             print(_look(options, runs), end="")  # noqa: T201 - a command line speaks
     except StoreError as problem:
@@ -54,7 +55,7 @@ def _look(options: argparse.Namespace, runs: Runs) -> str:
     return (tables.write_csv if options.format == "csv" else tables.write_json)(run, cells)
 
 
-def _rates(runs: Runs, name: str) -> dict[Place, float]:
+def _rates(runs: Runs, name: str) -> dict[Cell, float]:
     if name in TABLES:
         return read_table(name)
     if not name.isdecimal():
@@ -87,101 +88,80 @@ def _is_current(folder: DataFolder) -> bool:
         return False  # `prepare` says what is the matter
 
 
-def _run(file: Path, settings: Settings, claim: Claim) -> int:
-    tests = _read(file)
-    program = settings.build / "board"
-    if not program.exists():
-        raise SetupError(f"There is no emulated board at {program}; `make firmware` builds it.")
-    try:
-        builder = Builder(settings.build / "comm_test")
-    except BuildError as problem:
-        raise SetupError(str(problem)) from problem
+def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
+    text, tests = _read(file)
+    if place == "robot" and settings.mode == "emulated":
+        raise SetupError(
+            "The emulated robot's board runs only while the server does. Start the test from the page, or "
+            "leave --place out."
+        )
     with claim(settings.data):
         prepare(settings.data)
-        with closing(Store(settings.data.database)) as store, _interruptions() as interrupted:
-            runs = Runs(store)
-            runs.mark_interrupted()
-            tools = {"compiler": builder.compiler, "emulated board": hash_file(program)}
-            for test in tests:
-                number = runs.start(test, builder.firmware_hash, tools)
-                runner = Runner(builder, program, os.cpu_count() or 1)
-                complete = _run_one(runs, number, test, runner, interrupted)
-                print(f"\n{tables.show_cells(runs.cells(number))}")  # noqa: T201
-                if not complete:
-                    return 1
-    return 0
+        with closing(Store(settings.data.database)) as store:
+            return asyncio.run(_perform(text, tests, place, settings, Runs(store)))
 
 
-def _read(file: Path) -> list[CommTest]:
+def _read(file: Path) -> tuple[str, list[CommTest]]:
     try:
-        return read_document(file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
+        return text, read_document(text)
     except (OSError, UnicodeDecodeError) as problem:
         raise SetupError(f"{file} cannot be read: {problem}") from problem
     except DocumentError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
 
 
-def _run_one(
-    runs: Runs, number: int, test: CommTest, runner: Runner, interrupted: Callable[[], bool]
-) -> bool:
-    """Whether it came to its end."""
-    progress = _Progress(test)
-    progress.begin(number)
+async def _perform(text: str, tests: list[CommTest], place: Place, settings: Settings, runs: Runs) -> int:
+    await runs.mark_interrupted()
+    progress = _Progress(tests)
+    board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
+    lab = Lab(settings, runs, SteadyClock(), progress.tell, board.lend)
+    loop = asyncio.get_running_loop()
+    cancelling: list[asyncio.Task[None]] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, lambda: cancelling.append(loop.create_task(lab.cancel())))
     try:
-        for place, result in enumerate(runner.run(test)):
-            runs.add(number, place, result)
-            progress.tell(place, result)
-            if interrupted():
-                break
-        else:
-            runs.end(number, "complete")
-            return True
-    except (BuildError, BoardError, PortError) as problem:
-        if not interrupted():
-            runs.end(number, "failed", str(problem))
-            print(f"mucat: run {number} failed: {problem}", file=sys.stderr)  # noqa: T201
-            return False
-    runs.end(number, "cancelled")
-    print(f"mucat: run {number} was cancelled; what it has measured is kept", file=sys.stderr)  # noqa: T201
-    return False
+        first = await lab.start(text, place)
+    except Refused as problem:
+        raise SetupError(str(problem)) from problem
+    await lab.wait()
+    await asyncio.gather(*cancelling)
+    return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
 
-@contextmanager
-def _interruptions() -> Iterator[Callable[[], bool]]:
-    # The terminal interrupts the emulated board as well, so its end is no failure then.
-    noticed: list[int] = []
-    before = {
-        number: signal.signal(number, lambda got, _: noticed.append(got))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield lambda: bool(noticed)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+def _conclude(done: Sequence[CommTestRun], wanted: int, runs: Runs) -> int:
+    for run in done:
+        print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
+        if run.state == "cancelled":
+            words = f"run {run.id} was cancelled; what it has measured is kept"
+            print(f"mucat: {words}", file=sys.stderr)  # noqa: T201
+        elif run.state != "complete":
+            print(f"mucat: run {run.id} failed: {run.problem}", file=sys.stderr)  # noqa: T201
+    return 0 if len(done) == wanted and all(run.state == "complete" for run in done) else 1
 
 
 class _Progress:
-    def __init__(self, test: CommTest) -> None:
-        self._test = test
-        self._weights = [estimate_seconds(test, cell) for cell in test.cells]
-        self._started = time.monotonic()
+    """Writes what the lab tells."""
 
-    def begin(self, number: int) -> None:
-        words = f"run {number}: {self._test.name}, framing {self._test.framing}, {self._test.direction}"
-        print(f"{words}, {len(self._weights)} cells", flush=True)  # noqa: T201
+    def __init__(self, tests: list[CommTest]) -> None:
+        self._tests = tests
+        self._run: int | None = None
 
-    def tell(self, place: int, result: CellResult) -> None:
-        elapsed = time.monotonic() - self._started
-        done = sum(self._weights[: place + 1])
-        remaining = elapsed * (sum(self._weights) - done) / done
-        cell = result.cell
-        where = f"{cell.baud:>6} baud, Arduino {cell.arduino_delay:g} s, Pi {cell.pi_delay:g} s"
-        print(  # noqa: T201
-            f"[{place + 1:>3}/{len(self._weights)}] {where:<42} {result.rate:.2f}  "
-            f"{_clock(elapsed)} elapsed, {_clock(remaining)} remaining  {', '.join(result.causes)}".rstrip(),
-            flush=True,
-        )
+    def tell(self, message: dict[str, Any]) -> None:
+        active, cell = message["active"], message["cell"]
+        if active and active["run"] != self._run:
+            self._run = active["run"]
+            test = self._tests[active["test"]]
+            words = f"run {self._run}: {test.name}, framing {test.framing}, {test.direction}"
+            print(f"{words}, {active['cells']} cells", flush=True)  # noqa: T201
+        if active and cell:
+            where = f"{cell['baud']:>6} baud, Arduino {cell['arduino_delay']:g} s, Pi {cell['pi_delay']:g} s"
+            times = f"{_clock(active['elapsed'])} elapsed, {_clock(active['remaining'] or 0)} remaining"
+            causes = ", ".join(cell["causes"])
+            line = (
+                f"[{active['done']:>3}/{active['cells']}] {where:<42} {cell['rate']:.2f}  {times}  {causes}"
+            )
+            print(line.rstrip(), flush=True)  # noqa: T201
 
 
 def _clock(seconds: float) -> str:

@@ -1,33 +1,34 @@
 """Runs of the communication test in the database."""
 
-import asyncio
 import json
 import platform
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any, Literal, TypeVar
+from datetime import UTC, datetime
+from typing import Any, Literal
 
 from sqlalchemy import Connection, insert, update
-from sqlmodel import col, desc, select
+from sqlmodel import col, desc, func, select
 
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.results import CellResult
 from server import VERSION
+from server.comm_tests.shapes import Cell, Place, Run, RunSummary
 from server.models import CommTestCell, CommTestRun
 from server.store import Store
 
-T = TypeVar("T")
 End = Literal["complete", "cancelled", "failed"]
 
 
 class Runs:
-    """The runs in `store`. All methods raise StoreError and block until what they write is on the disk."""
+    """The runs in `store`. All methods raise StoreError; what is awaited is on the disk when it returns."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
 
-    def start(self, test: CommTest, firmware: str, tools: dict[str, str]) -> int:
+    async def start(
+        self, test: CommTest, place: Place, firmware: str, tools: Mapping[str, str], host: str
+    ) -> int:
         """A run that begins now; its number."""
         values = {
             "name": test.name,
@@ -37,31 +38,45 @@ class Runs:
             "cells": len(test.cells),
             "firmware": firmware,
             "tools": json.dumps(
-                tools | {"mucat": VERSION, "python": platform.python_version()},
-                ensure_ascii=False,
+                {**tools, "mucat": VERSION, "python": platform.python_version()}, ensure_ascii=False
             ),
-            "host": f"{platform.node()} {platform.system()} {platform.machine()}, emulated board",
+            "host": host,
             "started": time.time(),
             "state": "running",
             "problem": "",
+            "place": place,
+            "sample": "",
         }
-        return self._write(lambda connection: _insert_run(connection, values))
+        return await self._store.write(lambda connection: _insert_run(connection, values))
 
-    def add(self, run: int, number: int, result: CellResult) -> None:
-        """One cell that has been run."""
-        values = _cell_values(result) | {"run_id": run, "number": number}
-        self._write(lambda connection: connection.execute(insert(CommTestCell).values(values)))
+    async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
+        """One cell that has been run, as the lab tells of it. Raises ValueError where it is none."""
+        cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
+        row = cell.model_dump(exclude={"id"})
+        await self._store.write(lambda connection: connection.execute(insert(CommTestCell).values(row)))
+        return _cell(cell)
 
-    def end(self, run: int, state: End, problem: str = "") -> None:
+    async def end(self, run: int, state: End, problem: str = "") -> None:
         """The run is over."""
         changes = {"ended": time.time(), "state": state, "problem": problem}
         change = update(CommTestRun).where(col(CommTestRun.id) == run).values(changes)
-        self._write(lambda connection: connection.execute(change))
+        await self._store.write(lambda connection: connection.execute(change))
 
-    def mark_interrupted(self) -> None:
+    async def mark_interrupted(self) -> None:
         """Runs that still say that they run were left by a program that was killed."""
-        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(state="interrupted")
-        self._write(lambda connection: connection.execute(change))
+        changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
+        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(changes)
+        await self._store.write(lambda connection: connection.execute(change))
+
+    async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:
+        """A run that comes with the program, with its cells, all or nothing; columns by name."""
+
+        def change(connection: Connection) -> None:
+            number = _insert_run(connection, dict(run))
+            for cell in cells:
+                connection.execute(insert(CommTestCell).values({**cell, "run_id": number}))
+
+        await self._store.write(change)
 
     def list(self) -> Sequence[CommTestRun]:
         """All runs, newest first."""
@@ -79,26 +94,52 @@ class Runs:
             wanted = select(CommTestCell).where(col(CommTestCell.run_id) == run)
             return database.exec(wanted.order_by(col(CommTestCell.number))).all()
 
-    def _write(self, change: Callable[[Connection], T]) -> T:
-        return asyncio.run(self._store.write(change))
+    def summaries(self) -> Sequence[RunSummary]:
+        """All runs with their figures, newest first."""
+        figures = select(
+            col(CommTestCell.run_id),
+            func.count(),
+            func.avg(col(CommTestCell.rate)),
+            func.min(col(CommTestCell.rate)),
+        ).group_by(col(CommTestCell.run_id))
+        with self._store.read() as database:
+            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures)}
+            runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+            return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
+
+    def whole(self, run: CommTestRun) -> Run:
+        """A run with everything that is known of it."""
+        cells = [_cell(cell) for cell in self.cells(run.id or 0)]
+        rates = [cell.rate for cell in cells]
+        mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
+        return Run(
+            **_summary(run, len(cells), mean, low),
+            document=json.loads(run.document),
+            firmware=run.firmware,
+            tools=json.loads(run.tools),
+            host=run.host,
+            results=cells,
+        )
+
+
+def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None) -> dict[str, Any]:
+    values = run.model_dump(include=set(RunSummary.model_fields) - {"started", "ended"})
+    return {
+        **values,
+        "started": datetime.fromtimestamp(run.started, UTC),
+        "ended": None if run.ended is None else datetime.fromtimestamp(run.ended, UTC),
+        "cells_done": done,
+        "rate_mean": mean,
+        "rate_min": low,
+    }
+
+
+def _cell(cell: CommTestCell) -> Cell:
+    values = cell.model_dump(include=set(Cell.model_fields) - {"causes"})
+    return Cell(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
 
 
 def _insert_run(connection: Connection, values: dict[str, Any]) -> int:
     key = connection.execute(insert(CommTestRun).values(values)).inserted_primary_key
     assert key is not None
     return int(key[0])
-
-
-def _cell_values(result: CellResult) -> dict[str, Any]:
-    return {
-        **asdict(result.cell),
-        **asdict(result.counts),
-        "rate": result.rate,
-        "answered": result.board is not None,
-        "bytes_lost": result.lost_to_board + result.lost_to_host,
-        "line_errors": result.line.framing_board + result.line.framing_host,
-        "uart_overruns": result.line.overruns,
-        "seconds": result.seconds,
-        "causes": ", ".join(result.causes),
-        "explanation": result.explanation,
-    }

@@ -13,11 +13,10 @@ from server.export import Export
 from server.models import SessionRow
 from server.recorder import RecordingRefused
 from server.routes.problems import answers
-from server.sessions import Session, find_row, from_row, list_sessions, new_row
+from server.sessions import IDENTIFIER_MAX, Session, find_row, from_row, list_sessions, new_row
 
 UNKNOWN = answers(_404="There is no such session")
 STORING = answers(_409="Refused now", _503="The database does not work")
-IDENTIFIER_MAX = 2**63 - 1
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
@@ -40,8 +39,10 @@ def get_sessions(request: Request) -> list[Session]:
 
 @router.post("", status_code=201, summary="Start recording", operation_id="startSession", responses=STORING)
 async def start_session(request: Request, wanted: NewSession) -> Session:
-    """Record everything from now on; refused while another session records."""
+    """Record everything from now on; refused while another records, or the board is lent to a test."""
     assembly = Assembly.of(request)
+    if assembly.bridge.lent is not None:
+        raise RecordingRefused(assembly.bridge.lent)
     state = json.dumps(assembly.watch.state())
     try:
         row = new_row(assembly.settings, assembly.clock, wanted.name.strip(), wanted.note.strip(), state)

@@ -50,6 +50,7 @@ def _open(browser: Browser, stack: Stack, size: dict[str, int]) -> Iterator[Page
     yield page
     context.close()
     # The next test finds the robot as this one did.
+    stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.put("/robot/card", json={"colour": None}).raise_for_status()
     assert complaints == []

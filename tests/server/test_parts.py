@@ -11,6 +11,7 @@ import pytest
 
 import server.parts as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
+from robot_runtime.config import LinkConfig
 from server.parts import Command, Part, Parts, plan
 from server.settings import Settings
 from tests.server.waiting import until
@@ -208,7 +209,7 @@ def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(set
 
 def test_the_board_runs_the_firmware_for_the_configured_speed(settings: Settings) -> None:
     elf = settings.build / "firmware/9600/robot.elf"
-    assert str(elf) in plan(replace(settings, baud=9600))[0].arguments
+    assert str(elf) in plan(replace(settings, link=LinkConfig(baud=9600)))[0].arguments
 
 
 def alive(pid: int) -> bool:

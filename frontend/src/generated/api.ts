@@ -4,6 +4,170 @@
  */
 
 export interface paths {
+    "/api/comm-tests/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel what runs
+         * @description The cells that are finished are kept; answers once everything has ended.
+         */
+        post: operations["cancelTestRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * What is wrong with a document
+         * @description Its problems, field by field; or its tests, with about how long they take.
+         */
+        post: operations["checkTestDocument"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/documents": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The documents that come with the program
+         * @description The thesis's own example (Figure 10) first.
+         */
+        get: operations["listTestDocuments"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All runs, newest first
+         * @description One's own and those that come with the program.
+         */
+        get: operations["listTestRuns"];
+        put?: never;
+        /**
+         * Run a document
+         * @description Each test of the document becomes a run, one after the other; this answers when the first has begun.
+         */
+        post: operations["startTestRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/runs/{run}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One run
+         * @description With its configuration and its cells.
+         */
+        get: operations["getTestRun"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/runs/{run}/csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download a run's cells
+         * @description A line for each cell.
+         */
+        get: operations["downloadTestRunCsv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/runs/{run}/json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download a run
+         * @description Everything that is known of it, and its cells.
+         */
+        get: operations["downloadTestRunJson"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/comm-tests/tables": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The thesis's own results
+         * @description Table 5 (plain numbers) and Table 6 (packets).
+         */
+        get: operations["listTestTables"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -199,7 +363,7 @@ export interface paths {
         put?: never;
         /**
          * Start recording
-         * @description Record everything from now on; refused while another session records.
+         * @description Record everything from now on; refused while another records, or the board is lent to a test.
          */
         post: operations["startSession"];
         delete?: never;
@@ -281,6 +445,99 @@ export interface components {
             colour: string | null;
         };
         /**
+         * Cell
+         * @description One cell; delays and `seconds` (the test's time) in s, the counts of both ends together.
+         */
+        Cell: {
+            /** Answered */
+            answered: boolean;
+            /** Arduino Delay */
+            arduino_delay: number;
+            /** Baud */
+            baud: number;
+            /** Bytes Lost */
+            bytes_lost: number;
+            /** Bytes Read */
+            bytes_read: number;
+            /** Causes */
+            causes: string[];
+            /** Checksum Errors */
+            checksum_errors: number;
+            /** Explanation */
+            explanation: string;
+            /** Framing Errors */
+            framing_errors: number;
+            /** Line Errors */
+            line_errors: number;
+            /** Number */
+            number: number;
+            /** Out Of Sequence */
+            out_of_sequence: number;
+            /** Pi Delay */
+            pi_delay: number;
+            /**
+             * Rate
+             * @description share of the numbers that arrived right
+             */
+            rate: number;
+            /** Repeated */
+            repeated: number;
+            /** Right */
+            right: number;
+            /** Ring Full */
+            ring_full: number;
+            /** Seconds */
+            seconds: number;
+            /** Uart Overruns */
+            uart_overruns: number;
+        };
+        /**
+         * Check
+         * @description What is wrong with a document, field by field; or its tests.
+         */
+        Check: {
+            /** Problems */
+            problems: string[];
+            /** Tests */
+            tests: components["schemas"]["CheckedTest"][];
+        };
+        /**
+         * CheckedTest
+         * @description A test of a document that can be run; `seconds` is about how long its cells take in the test's time.
+         */
+        CheckedTest: {
+            /**
+             * Arduino Delays
+             * @description s
+             */
+            arduino_delays: number[];
+            /**
+             * Bauds
+             * @description bit/s
+             */
+            bauds: number[];
+            /** Cells */
+            cells: number;
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "to_board" | "to_host" | "both";
+            /** Framing */
+            framing: string;
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Pi Delays
+             * @description s
+             */
+            pi_delays: number[];
+            /** Seconds */
+            seconds: number;
+        };
+        /**
          * Controller
          * @description A controller, and the gains that are to change.
          */
@@ -306,6 +563,14 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+        };
+        /**
+         * DocumentText
+         * @description A test document as it was written.
+         */
+        DocumentText: {
+            /** Text */
+            text: string;
         };
         /**
          * Gain
@@ -484,6 +749,135 @@ export interface components {
             detail: string;
         };
         /**
+         * Run
+         * @description A run with its configuration and its cells.
+         */
+        Run: {
+            /**
+             * Cells
+             * @description as the document has them
+             */
+            cells: number;
+            /** Cells Done */
+            cells_done: number;
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "to_board" | "to_host" | "both";
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
+            /**
+             * Ended
+             * @description UTC; null while it runs
+             */
+            ended: string | null;
+            /**
+             * Firmware
+             * @description hash of the sketch, the core and the compiler's flags
+             */
+            firmware: string;
+            /** Framing */
+            framing: string;
+            /** Host */
+            host: string;
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
+            /** Problem */
+            problem: string;
+            /**
+             * Rate Mean
+             * @description null as long as there is no cell
+             */
+            rate_mean: number | null;
+            /** Rate Min */
+            rate_min: number | null;
+            /** Results */
+            results: components["schemas"]["Cell"][];
+            /** Sample */
+            sample: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
+            /** Tools */
+            tools: {
+                [key: string]: string;
+            };
+        };
+        /**
+         * RunSummary
+         * @description A run; `sample` names one that came with the program, and is empty for one's own.
+         */
+        RunSummary: {
+            /**
+             * Cells
+             * @description as the document has them
+             */
+            cells: number;
+            /** Cells Done */
+            cells_done: number;
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "to_board" | "to_host" | "both";
+            /**
+             * Ended
+             * @description UTC; null while it runs
+             */
+            ended: string | null;
+            /** Framing */
+            framing: string;
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
+            /** Problem */
+            problem: string;
+            /**
+             * Rate Mean
+             * @description null as long as there is no cell
+             */
+            rate_mean: number | null;
+            /** Rate Min */
+            rate_min: number | null;
+            /** Sample */
+            sample: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
+        };
+        /**
          * Session
          * @description One recording; "interrupted" where the server ended without closing it: what was stored is kept.
          */
@@ -547,6 +941,27 @@ export interface components {
             detected?: number | null;
         };
         /**
+         * Start
+         * @description A document to run, and where.
+         */
+        Start: {
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
+            /** Text */
+            text: string;
+        };
+        /**
+         * Started
+         * @description The first run of the document.
+         */
+        Started: {
+            /** Run */
+            run: number;
+        };
+        /**
          * State
          * @description The robot as a whole; sent once a second and at every change.
          */
@@ -599,6 +1014,52 @@ export interface components {
             /** Vision Rate */
             vision_rate: number;
         };
+        /**
+         * TableCell
+         * @description One entry of the thesis's tables.
+         */
+        TableCell: {
+            /** Arduino Delay */
+            arduino_delay: number;
+            /** Baud */
+            baud: number;
+            /** Pi Delay */
+            pi_delay: number;
+            /**
+             * Rate
+             * @description share of the numbers that arrived right
+             */
+            rate: number;
+        };
+        /**
+         * TestDocument
+         * @description A test document that came with the program.
+         */
+        TestDocument: {
+            /** Name */
+            name: string;
+            /** Text */
+            text: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * ThesisTable
+         * @description One of the thesis's tables.
+         */
+        ThesisTable: {
+            /** Cells */
+            cells: components["schemas"]["TableCell"][];
+            /** Framing */
+            framing: string;
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "table5" | "table6";
+            /** Title */
+            title: string;
+        };
         /** ValidationError */
         ValidationError: {
             /** Context */
@@ -634,6 +1095,288 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    cancelTestRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    checkTestDocument: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DocumentText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Check"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    listTestDocuments: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TestDocument"][];
+                };
+            };
+        };
+    };
+    listTestRuns: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunSummary"][];
+                };
+            };
+        };
+    };
+    startTestRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Start"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Started"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The document cannot be run */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTestRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    downloadTestRunCsv: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A line for each cell */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": unknown;
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    downloadTestRunJson: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Everything known of it */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    listTestTables: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThesisTable"][];
+                };
+            };
+        };
+    };
     getHealth: {
         parameters: {
             query?: never;

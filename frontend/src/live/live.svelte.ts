@@ -11,6 +11,7 @@ import {
 } from '../generated/topics';
 import { readBlocks, readDocuments, readPicture, type Block } from './blocks';
 import { calendar, SteadyClock } from './clock';
+import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
 import type { Part, Session } from '../api';
@@ -58,6 +59,7 @@ export class Live {
   readonly dropped = new SvelteMap<string, number>();
   readonly gaps = new Gaps();
   readonly stop: Stop;
+  readonly commTest = new CommTestWatch();
 
   /** counts frames in which something new is to be drawn, and the slower beat at which digits are read */
   #detected: number[] = [];
@@ -145,6 +147,7 @@ export class Live {
     this.serverError = '';
     this.farewell = '';
     this.#progress.reconnect();
+    this.commTest.reconnect();
     this.gaps.restart();
   }
 
@@ -160,6 +163,7 @@ export class Live {
     if (message.op === 'hello') this.#greet(message);
     else if (message.op === 'health') this.parts = message.parts;
     else if (message.op === 'session') this.recording = message.recording;
+    else if (message.op === 'comm_test') this.commTest.take(message.active, message.cell);
     else if (message.op === 'error') this.serverError = message.text;
     else if (message.op === 'pong') this.#socket.answered(message.id);
     else this.dropped.set(message.topic, (this.dropped.get(message.topic) ?? 0) + message.count);

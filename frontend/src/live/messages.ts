@@ -1,5 +1,5 @@
 /** The text messages of the live socket. */
-import type { Part, Session } from '../api';
+import type { Cell, Part, Session } from '../api';
 
 export interface Hello {
   op: 'hello';
@@ -12,15 +12,34 @@ export interface Hello {
   page_version: string;
 }
 
+/** The communication test that runs. */
+export interface CommTestActive {
+  run: number;
+  name: string;
+  place: 'emulated' | 'robot';
+  /** which of the document's tests this is, from 0 on, and how many there are */
+  test: number;
+  tests: number;
+  cells: number;
+  done: number;
+  /** s */
+  elapsed: number;
+  /** s; null while unknown */
+  remaining: number | null;
+  /** by number of cell, of those under way */
+  phase: Readonly<Record<string, 'compile' | 'upload' | 'run'>>;
+}
+
 export type ServerMessage =
   | Hello
   | { op: 'health'; parts: Part[] }
   | { op: 'session'; recording: Session | null }
+  | { op: 'comm_test'; active: CommTestActive | null; cell: (Cell & { run: number }) | null }
   | { op: 'error'; text: string }
   | { op: 'dropped'; topic: string; count: number }
   | { op: 'pong'; id: number };
 
-const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'error', 'dropped', 'pong']);
+const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'comm_test', 'error', 'dropped', 'pong']);
 
 /** The message in `text`; null where this page does not know its operation. */
 export function readMessage(text: string): ServerMessage | null {

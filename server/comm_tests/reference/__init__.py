@@ -7,10 +7,13 @@ they are taken in the order of the others: 0, 0.5 and 1 s. It has no Arduino del
 import csv
 from collections.abc import Iterator
 from importlib.resources import files
+from typing import Literal, get_args
 
 Place = tuple[int, float, float]
 """Baud (bit/s), Arduino delay (s), Pi delay (s)."""
-TABLES = ("table5", "table6")
+TableName = Literal["table5", "table6"]
+TABLES: tuple[TableName, ...] = get_args(TableName)
+TITLES = {"table5": "Thesis, Table 5: plain numbers", "table6": "Thesis, Table 6: packets"}
 TABLE5_DELAYS = (0.0, 0.5, 1.0)
 
 

@@ -1,0 +1,127 @@
+/** The test document as text and as tests: what the form shows and changes is the text, and nothing beside it. */
+
+/** One test with its fields as they stand, also those that the server will refuse. */
+export type Fields = Readonly<Record<string, unknown>>;
+
+export type Reading = { readonly tests: readonly Fields[] } | { readonly problem: string };
+
+/** How a document is looked at: all views are of the one text. */
+export type View = 'summary' | 'form' | 'json';
+
+/** The tests in `text`, or why the form cannot show them. */
+export function readDocument(text: string): Reading {
+  let document: unknown;
+  try {
+    document = JSON.parse(text);
+  } catch (problem) {
+    return { problem: `The text is not JSON: ${problem instanceof Error ? problem.message : String(problem)}` };
+  }
+  if (!Array.isArray(document) || document.length === 0) {
+    return { problem: 'The document must be a list, in brackets, of one or more tests.' };
+  }
+  const entries: readonly unknown[] = document;
+  if (!entries.every(isFields)) return { problem: 'Each test of the document must be an object in braces.' };
+  return { tests: entries };
+}
+
+function isFields(value: unknown): value is Fields {
+  return typeof value === 'object' && value !== null && !Array.isArray(value);
+}
+
+/** The document's text as the thesis's Figure 10 is written: a field to a line, and lists of numbers on one. */
+export function writeDocument(tests: readonly Fields[]): string {
+  return `${write(tests, '')}\n`;
+}
+
+function write(value: unknown, indent: string): string {
+  const inner = `${indent}  `;
+  if (Array.isArray(value)) {
+    if (value.every((one) => typeof one !== 'object')) return `[${value.map((one) => write(one, '')).join(', ')}]`;
+    return `[\n${value.map((one) => inner + write(one, inner)).join(',\n')}\n${indent}]`;
+  }
+  if (isFields(value)) {
+    const fields = Object.entries(value).map(([name, one]) => `${inner}${JSON.stringify(name)}: ${write(one, inner)}`);
+    return fields.length === 0 ? '{}' : `{\n${fields.join(',\n')}\n${indent}}`;
+  }
+  return JSON.stringify(value);
+}
+
+/** `tests` with some fields of one of them changed; a field that becomes undefined is left out. */
+export function change(tests: readonly Fields[], index: number, changes: Fields): Fields[] {
+  return tests.map((test, at) => (at === index ? without(Object.entries({ ...test, ...changes })) : test));
+}
+
+function without(entries: readonly [string, unknown][]): Fields {
+  return Object.fromEntries(entries.filter(([, value]) => value !== undefined));
+}
+
+/** A list as it is typed: 0, 0.5, 1. */
+export function listText(value: unknown): string {
+  if (value === undefined) return '';
+  return Array.isArray(value) ? value.map((one) => entryText(one)).join(', ') : entryText(value);
+}
+
+function entryText(value: unknown): string {
+  return typeof value === 'string' ? value : JSON.stringify(value);
+}
+
+/** What was typed as a list; what is no number stays as it is, for the server to name it. */
+export function readList(text: string): (number | string)[] {
+  return text
+    .split(/[\s,;]+/)
+    .filter((word) => word !== '')
+    .map(readEntry);
+}
+
+/** What was typed as one number; undefined where nothing was. */
+export function readNumber(text: string): number | string | undefined {
+  return text.trim() === '' ? undefined : readEntry(text.trim());
+}
+
+function readEntry(word: string): number | string {
+  const number = Number(word);
+  return Number.isFinite(number) ? number : word;
+}
+
+/** The first and the last number of a test; `to_val` is the first that is not sent. */
+export function numbersOf(test: Fields): { first: unknown; last: unknown } {
+  return { first: test.from_val, last: typeof test.to_val === 'number' ? test.to_val - 1 : test.to_val };
+}
+
+/** The thesis's three fields that say which numbers are sent. */
+export function numberFields(first: unknown, last: unknown): Fields {
+  const to = typeof last === 'number' ? last + 1 : last;
+  const expected = typeof first === 'number' && typeof to === 'number' ? to - first : undefined;
+  return { from_val: first, to_val: to, ...(expected === undefined ? {} : { expected }) };
+}
+
+/** `test.faults` with one entry changed; undefined where none is left, so that the field goes. */
+export function changeFault(test: Fields, name: string, value: unknown): Fields | undefined {
+  const before = isFields(test.faults) ? test.faults : {};
+  const faults = without(Object.entries({ ...before, [name]: value }));
+  return Object.keys(faults).some((one) => one !== 'seed') ? faults : undefined;
+}
+
+/** One entry of `test.faults`, as it is typed. */
+export function faultText(test: Fields, name: string, place?: number): string {
+  const value = isFields(test.faults) ? test.faults[name] : undefined;
+  const one: unknown = place === undefined ? value : Array.isArray(value) ? value[place] : undefined;
+  return one === undefined || one === null ? '' : entryText(one);
+}
+
+/** `words` with what their field's name goes on with: [1] is the second entry of a list, .drop a field within. */
+function placed(rest: string, words: string): string {
+  const [, entry] = /^\[(\d+)\]$/.exec(rest) ?? [];
+  if (entry !== undefined) return `entry ${Number(entry) + 1}: ${words}`;
+  return rest === '' ? words : `${rest.replace(/^\./, '')}: ${words}`;
+}
+
+/** Problems of the test at `index`, without its number, by the field that they name; '' where they name none. */
+export function problemsByField(problems: readonly string[], index: number): ReadonlyMap<string, readonly string[]> {
+  const found = new Map<string, string[]>();
+  for (const problem of problems) {
+    const [, test, field = '', rest = '', words = ''] = /^test (\d+): (?:(\w+)([\w.[\]]*): )?(.*)$/s.exec(problem) ?? [];
+    if (Number(test) === index + 1) found.set(field, [...(found.get(field) ?? []), placed(rest, words)]);
+  }
+  return found;
+}

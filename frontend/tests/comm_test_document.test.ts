@@ -1,0 +1,114 @@
+import { readFileSync } from 'node:fs';
+import { describe, expect, it } from 'vitest';
+import {
+  change,
+  changeFault,
+  faultText,
+  listText,
+  numberFields,
+  numbersOf,
+  problemsByField,
+  readDocument,
+  readList,
+  readNumber,
+  writeDocument,
+  type Fields,
+} from '../src/pages/comm_tests/document';
+
+const FIGURE_10 = readFileSync(new URL('../../firmware/examples/comm_test/figure10.json', import.meta.url), 'utf8');
+
+function read(text: string): readonly Fields[] {
+  const reading = readDocument(text);
+  if ('problem' in reading) throw new Error(reading.problem);
+  return reading.tests;
+}
+
+describe('the text', () => {
+  it('becomes tests and text again without a change', () => {
+    const written = writeDocument(read(FIGURE_10));
+    expect(JSON.parse(written)).toEqual(JSON.parse(FIGURE_10));
+    expect(writeDocument(read(written))).toBe(written);
+    expect(written).toContain('\n    "baud_rate": [1200, 2400, 4800, 9600, 115200],\n');
+  });
+
+  it('keeps what the form does not know', () => {
+    const tests = read('[{"name": "a", "colour": {"of": ["deep", 1]}, "none": null, "faults": {}}]');
+    const [test] = read(writeDocument(change(tests, 0, { name: 'b' })));
+    expect(test).toEqual({ name: 'b', colour: { of: ['deep', 1] }, none: null, faults: {} });
+  });
+
+  it.each([
+    ['{', /not JSON/],
+    ['{}', /a list/],
+    ['[]', /one or more/],
+    ['[1]', /an object/],
+    ['[null]', /an object/],
+    ['[[]]', /an object/],
+  ])('is refused by the form where it is %s', (text, why) => {
+    const reading = readDocument(text);
+    expect('problem' in reading && reading.problem).toMatch(why);
+  });
+});
+
+describe('the form', () => {
+  it('changes one test of several, and leaves a field out that becomes undefined', () => {
+    const tests = read('[{"name": "a", "faults": {"drop": 0.1}}, {"name": "b"}]');
+    expect(change(tests, 0, { faults: undefined })).toEqual([{ name: 'a' }, { name: 'b' }]);
+    expect(change(tests, 1, { name: 'c' })).toEqual([{ name: 'a', faults: { drop: 0.1 } }, { name: 'c' }]);
+  });
+
+  it('reads lists as they are typed', () => {
+    expect(readList('0, 0.5 ;1\n2')).toEqual([0, 0.5, 1, 2]);
+    expect(readList('0, ')).toEqual([0]);
+    expect(readList('')).toEqual([]);
+    expect(readList('1e3')).toEqual([1000]);
+    expect(listText([0, 0.5, 1])).toBe('0, 0.5, 1');
+  });
+
+  it('leaves what is no number to the server, which names it', () => {
+    expect(readList('9600, fast')).toEqual([9600, 'fast']);
+    expect(readList('Infinity')).toEqual(['Infinity']);
+    expect(listText([9600, 'fast'])).toBe('9600, fast');
+    expect(readNumber('ten')).toBe('ten');
+    expect(readNumber('  ')).toBeUndefined();
+  });
+
+  it('says the last number where the thesis says the first that is not sent', () => {
+    const [test = {}] = read(FIGURE_10);
+    expect(numbersOf(test)).toEqual({ first: 1, last: 100 });
+    expect(numberFields(1, 50)).toEqual({ from_val: 1, to_val: 51, expected: 50 });
+    expect(numberFields('x', 50)).toEqual({ from_val: 'x', to_val: 51 });
+    expect(numbersOf(numberFields(5, 'y'))).toEqual({ first: 5, last: 'y' });
+  });
+
+  it('has no faults where none is left', () => {
+    const faults = changeFault({}, 'drop', 0.01);
+    expect(faults).toEqual({ drop: 0.01 });
+    expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'drop', undefined)).toBeUndefined();
+    expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'insert', 0.1)).toEqual({ drop: 0.01, seed: 3, insert: 0.1 });
+    expect(faultText({ faults: { burst: [0.001, 8] } }, 'burst', 1)).toBe('8');
+    expect(faultText({ faults: { drop: 0.01 } }, 'drop')).toBe('0.01');
+    expect(faultText({}, 'drop')).toBe('');
+    expect(faultText({ faults: 'none' }, 'stall', 0)).toBe('');
+  });
+});
+
+describe('problems', () => {
+  it('stand with their fields', () => {
+    const problems = [
+      'test 1: delay[1]: -1 is not a delay from 0 to 10 seconds',
+      'test 1: expected: 5 numbers, but from_val 1 up to, and without, to_val 3 are 2',
+      'test 1: faults.bit_errors: 2 is above 0.1',
+      'test 1: it must be an object in braces',
+      'test 12: name: it is missing',
+      'the document has 600 cells; at most 500 can be run at once',
+    ];
+    const first = problemsByField(problems, 0);
+    expect([...first.keys()]).toEqual(['delay', 'expected', 'faults', '']);
+    expect(first.get('faults')).toEqual(['bit_errors: 2 is above 0.1']);
+    expect(first.get('delay')).toEqual(['entry 2: -1 is not a delay from 0 to 10 seconds']);
+    expect(first.get('expected')?.[0]).toContain('but from_val 1');
+    expect([...problemsByField(problems, 11).keys()]).toEqual(['name']);
+    expect(problemsByField(problems, 1).size).toBe(0);
+  });
+});

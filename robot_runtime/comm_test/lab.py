@@ -1,0 +1,103 @@
+"""Runs the tests of a document in the place they are meant for, and tells of every step."""
+
+import json
+import os
+import platform
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from threading import Event, Lock
+from typing import Any, Protocol, TextIO
+
+from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
+from robot_runtime.comm_test.document import CommTest
+from robot_runtime.comm_test.line import StoppedError
+from robot_runtime.comm_test.results import CellResult
+from robot_runtime.comm_test.runner import Phase, Runner
+from robot_runtime.link.port import PortError
+from robot_runtime.simulation.board import BoardError
+
+TROUBLE = (BuildError, BoardError, PortError)
+"""What may end a test before it is complete; the texts say why."""
+
+
+class Teller:
+    """Writes events, one JSON object to a line, at once. May be used by several threads."""
+
+    def __init__(self, output: TextIO) -> None:
+        self._output = output
+        self._lock = Lock()
+
+    def tell(self, event: str, **values: Any) -> None:
+        """One event."""
+        line = json.dumps({"event": event, **values}, ensure_ascii=False)
+        with self._lock:
+            self._output.write(line + "\n")
+            self._output.flush()
+
+
+class Lab(Protocol):
+    """A place for tests, which `close` leaves as it was. All methods raise the errors in TROUBLE."""
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """The cells of a test, in order. Raises StoppedError too."""
+
+    def close(self) -> None:
+        """Leave the place as it was."""
+
+
+class EmulatedLab:
+    """Boards of the lab's own, in emulated time, as many at once as there are cores."""
+
+    def __init__(self, build: Path, stop: Event) -> None:
+        self._build = build
+        self._stop = stop
+        self._runner: Runner | None = None
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """See Lab."""
+        program = self._build / "board"
+        if not program.exists():
+            raise BoardError(f"there is no emulated board at {program}; `make firmware` builds it")
+        builder = Builder(self._build / "comm_test")
+        self._runner = Runner(builder, program, os.cpu_count() or 1, self._stop)
+        tools = {"compiler": builder.compiler, "emulated board": hash_file(program)}
+        return builder.firmware_hash, tools, f"{_host()}, emulated board"
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """See Lab."""
+        assert self._runner
+        return self._runner.run(test, tell)
+
+    def close(self) -> None:
+        """Every board has ended with its cell."""
+
+
+def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Event) -> bool:
+    """Run tests one after the other up to the first that does not come to its end; whether all did."""
+    return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
+
+
+def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Event) -> bool:
+    state, problem = "complete", ""
+    try:
+        firmware, tools, host = lab.prepare()
+        teller.tell("started", test=number, firmware=firmware, tools=tools, host=host)
+        results = lab.run(
+            test, lambda cell, phase: teller.tell("phase", test=number, number=cell, phase=phase)
+        )
+        for cell, result in enumerate(results):
+            teller.tell("cell", test=number, number=cell, values=result.values)
+    except StoppedError:
+        state = "cancelled"
+    except TROUBLE as trouble:
+        # A terminal interrupts the boards and tools of the lab as well, so their end is no failure then.
+        state, problem = ("cancelled", "") if stop.is_set() else ("failed", str(trouble))
+    teller.tell("ended", test=number, state=state, problem=problem)
+    return state == "complete"
+
+
+def _host() -> str:
+    return f"{platform.node()} {platform.system()} {platform.machine()}"

@@ -1,0 +1,178 @@
+"""The communication test from the page: the thesis's example run, watched, compared and exported."""
+
+import csv
+import json
+import re
+from itertools import product
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from server.comm_tests.reference import read_table
+from tests.stack import Stack
+
+SWEEP_MS = 600_000
+"""75 cells take about a hundred seconds on two free cores; other work may make it several times as long."""
+STEP_MS = 20_000
+BAUDS = (1200, 2400, 4800, 9600, 115200)
+ARDUINO_DELAYS = (0.0, 0.1, 0.5, 0.75, 1.0)
+PI_DELAYS = (0.0, 0.5, 1.0)
+
+Place = tuple[int, float, float]
+
+
+def open_comm_tests(page: Page) -> None:
+    page.get_by_role("link", name="Comm tests", exact=True).click()
+    expect(page.get_by_role("button", name="Start the test")).to_be_enabled(timeout=STEP_MS)
+
+
+def rows_of(page: Page, region: str) -> list[list[str]]:
+    """The texts of the table in the panel `region`, without units."""
+    rows: list[list[str]] = page.get_by_role("region", name=region, exact=True).evaluate(
+        """(panel) => {
+            const bare = (text) => text.trim().replace(/\\s*s$/, '').replace('\u2212', '-');
+            const rows = [...panel.querySelectorAll('tbody tr')];
+            return rows.map((row) => [...row.cells].map((cell) => bare(cell.textContent)));
+        }"""
+    )
+    return rows
+
+
+def place_of(row: list[str]) -> Place:
+    return int(row[0]), float(row[1]), float(row[2])
+
+
+def test_the_thesis_example(page: Page, tmp_path: Path) -> None:
+    fetched: list[str] = []
+    page.on("request", lambda request: fetched.append(request.url))
+    open_comm_tests(page)
+    expect(page.get_by_role("radio", name=re.compile("Figure 10"))).to_be_checked()
+    expect(page.get_by_text("75 cells", exact=False)).to_be_visible()
+    page.get_by_role("button", name="Start the test").click()
+
+    bar = page.get_by_role("progressbar", name="Cells done")
+    expect(bar).to_have_attribute("aria-valuemax", "75", timeout=STEP_MS)
+    done = page.get_by_role("button", name=re.compile("^1200 baud, .*: rate "))
+    expect(done.first).to_be_visible(timeout=SWEEP_MS)
+    page.reload()
+    expect(done.first).to_be_visible(timeout=STEP_MS)
+    assert not any("plotly" in url for url in fetched)
+
+    figure = page.get_by_role("img", name=re.compile("^Rates of all cells"))
+    expect(figure).to_be_visible(timeout=SWEEP_MS)
+    expect(page.get_by_text("complete", exact=True)).to_be_visible()
+    expect(figure.locator(".point")).to_have_count(75, timeout=STEP_MS)
+    assert any("plotly" in url for url in fetched)
+    shown = {place_of(row): (row[3], row[4]) for row in rows_of(page, "Every cell")}
+    assert set(shown) == set(product(BAUDS, ARDUINO_DELAYS, PI_DELAYS))
+
+    check_explanation(page, shown[1200, 0.5, 0.0][1])
+    check_csv(page, tmp_path, shown)
+    check_json(page, tmp_path)
+    check_comparison(page, {place: rate for place, (rate, _) in shown.items()})
+
+
+def check_explanation(page: Page, causes: str) -> None:
+    """A click on a cell of the figure says why."""
+    cell = page.locator(".point path").nth(6)
+    box = cell.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    words = page.get_by_role("status").filter(has_text="1200 baud, Arduino 0.5 s, Pi 0 s")
+    expect(words).to_be_visible()
+    for cause in causes.split(", "):
+        expect(words).to_contain_text(cause, ignore_case=True)
+
+
+def check_csv(page: Page, tmp_path: Path, shown: dict[Place, tuple[str, str]]) -> None:
+    """The file has the cells that the page shows."""
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Export CSV").click()
+    path = tmp_path / "run.csv"
+    download.value.save_as(path)
+    rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == 75
+    for row in rows:
+        place = int(row["baud"]), float(row["arduino_delay"]), float(row["pi_delay"])
+        rate, causes = shown[place]
+        assert f"{float(row['rate']):.2f}" == rate, place
+        assert (row["causes"] or "nothing") == causes, place
+
+
+def check_json(page: Page, tmp_path: Path) -> None:
+    """The file has the test as it was run, and where."""
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Export JSON").click()
+    path = tmp_path / "run.json"
+    download.value.save_as(path)
+    run = json.loads(path.read_text(encoding="utf-8"))
+    assert run["document"]["baud_rate"] == list(BAUDS)
+    assert (run["state"], run["place"], len(run["cells"])) == ("complete", "emulated", 75)
+    assert run["firmware"]
+    assert run["tools"]
+
+
+def check_comparison(page: Page, shown: dict[Place, str]) -> None:
+    """Beside Table 6 stand the same rates, and what they differ by."""
+    page.get_by_role("link", name="Compare with Table 6").click()
+    expect(page.get_by_role("heading", name="Side by side")).to_be_visible()
+    expect(page.locator(".point")).to_have_count(3 * 75, timeout=STEP_MS)
+    thesis = read_table("table6")
+    rows = rows_of(page, "Every cell")
+    assert len(rows) == 75
+    for row in rows:
+        place = place_of(row)
+        assert row[3] == f"{thesis[place]:.2f}", place
+        assert row[4] == shown[place], place
+        difference = float(shown[place]) - thesis[place]
+        assert float(row[5].replace("±", "")) == pytest.approx(difference, abs=1e-9), place
+
+
+def test_a_bad_document_is_told_field_by_field(page: Page) -> None:
+    open_comm_tests(page)
+    page.get_by_role("button", name="Edit", exact=True).click()
+    page.get_by_label("Bauds, bit/s").fill("9600, 300000")
+    expect(page.get_by_role("textbox", name="Bauds, bit/s")).to_have_attribute("aria-invalid", "true")
+    expect(page.get_by_text("entry 2:")).to_be_visible()
+    expect(page.get_by_role("button", name="Start the test")).to_be_disabled()
+    page.get_by_label("Bauds, bit/s").fill("9600, 250000")
+    expect(page.get_by_role("button", name="Start the test")).to_be_enabled()
+    page.get_by_role("button", name="JSON").click()
+    document = page.get_by_role("textbox", name="The document as JSON")
+    assert json.loads(document.input_value())[0]["baud_rate"] == [9600, 250000]
+    document.fill("[")
+    expect(page.get_by_text("not JSON")).to_be_visible()
+    expect(page.get_by_role("button", name="Start the test")).to_be_disabled()
+
+
+def test_what_is_cancelled_is_kept(page: Page) -> None:
+    open_comm_tests(page)
+    page.get_by_role("button", name="Start the test").click()
+    expect(page.get_by_role("button", name=re.compile(": rate ")).first).to_be_visible(timeout=SWEEP_MS)
+    page.get_by_role("button", name="Cancel…").click()
+    page.get_by_role("button", name="Cancel the test").click()
+    expect(page.get_by_text("cancelled", exact=True)).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_role("link", name="Export CSV")).to_be_visible()
+    page.get_by_role("link", name="All comm tests").click()
+    expect(page.get_by_role("row").filter(has_text="cancelled").first).to_contain_text("/ 75")
+
+
+def test_a_newcomer_sees_the_samples_beside_the_thesis(any_page: Page) -> None:
+    any_page.get_by_role("link", name="Comm tests", exact=True).click()
+    any_page.get_by_role("link", name="Compare with the thesis").click()
+    compared = any_page.get_by_role("region", name="What is compared")
+    expect(compared.get_by_role("row").filter(has_text="robot's own link")).to_contain_text("1.00")
+    expect(any_page.locator(".point").first).to_be_visible(timeout=STEP_MS)
+    wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
+    assert any_page.evaluate(wider) == 0
+
+
+def test_the_page_keeps_to_its_content_policy(page: Page, stack: Stack) -> None:
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    page.goto(f"{stack.url}/#/comm-tests/compare/table5/table6")
+    expect(page.locator(".point").first).to_be_visible(timeout=STEP_MS)
+    page.locator(".point path").first.hover(force=True)
+    expect(page.locator(".hoverlayer .hovertext")).to_be_visible()
+    assert complaints == []
