@@ -35,9 +35,10 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 bench: setup-test ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
 
-firmware: ## compile the firmware and the emulated board
+firmware: ## compile the firmware, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
+	@$(MAKE) --silent -C firmware/bootloader
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 

@@ -12,6 +12,7 @@ from robot_runtime.comm_test.results import CellResult
 from robot_runtime.comm_test.runner import Runner
 from tests.board.rig import PROGRAM, ROOT, build
 
+BOOTLOADER = ROOT / "build/firmware/optiboot.hex"
 Run = Callable[..., list[CellResult]]
 
 
@@ -39,10 +40,11 @@ def builder() -> Builder:
 @pytest.fixture(scope="session")
 def program() -> Path:
     build(ROOT / "firmware/emulator")
+    build(ROOT / "firmware/bootloader")
     return PROGRAM
 
 
 @pytest.fixture
 def run(builder: Builder, program: Path) -> Run:
     """Runs the cells of a test that differs in this from one cell of the thesis's grid."""
-    return lambda **changes: list(Runner(builder, program, 2).run(make_test(**changes)))
+    return lambda **changes: list(Runner(builder, program, BOOTLOADER, 2).run(make_test(**changes)))
