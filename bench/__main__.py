@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-PARTS = ("firmware", "emulator", "physics", "codec", "link", "start", "stack", "latency")
+PARTS = ("firmware", "emulator", "physics", "codec", "link", "comm_test", "start", "stack", "latency")
 RESULT = Path("build/bench.json")
 
 

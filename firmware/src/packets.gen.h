@@ -4,9 +4,10 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0x57b26a91UL;
+constexpr uint32_t kDefinitionsHash = 0x7089247cUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
+constexpr uint8_t kNotReady = 128;
 
 enum class DebugLevel : uint8_t {
   kDebug = 0,
@@ -153,7 +154,7 @@ static_assert(sizeof(Heartbeat) == 4, "Heartbeat has another size");
 // Both ways: which reliable frames came after the first that is missing.
 struct __attribute__((packed)) Acknowledge {
   static constexpr uint8_t kType = 0x0d;
-  uint8_t held;  // bit n: frame acknowledged + 1 + n is here; bit 7: no room for more, wait
+  uint8_t held;  // bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait
 };
 static_assert(sizeof(Acknowledge) == 1, "Acknowledge has another size");
 

@@ -74,7 +74,8 @@ class Builder:
             raise BuildError(f"the Arduino core is not in {ARDUINO}; install the package arduino-core-avr")
         self._sketch = SKETCHES / SKETCH
         self._core_hash = self._hash(self._core_files(), [*COMMON, *CXX])
-        self._library_hash = self._hash(_library_files(), [*CXX, *OWN])
+        library_files = [*_library_sources(), *sorted(LIBRARY.rglob("*.h"))]
+        self._library_hash = self._hash(library_files, [*CXX, *OWN])
         words = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
         self.firmware_hash = self._hash(self._sketch_files(), words)
         """Of everything but the parameters."""
@@ -85,16 +86,16 @@ class Builder:
         inputs = self._hash([], [self.firmware_hash, *parameters])
         place = self._folder / inputs
         if not place.exists():
-            library = self._library(baud) if FRAMINGS[test.framing].library else None
+            library = baud if FRAMINGS[test.framing].library else None
             self._make(place, lambda unfinished: self._compile_sketch(unfinished, parameters, library))
         return Product(place / "comm_test.elf", place / "comm_test.hex", inputs)
 
-    def _compile_sketch(self, folder: Path, parameters: Sequence[str], library: Path | None) -> None:
+    def _compile_sketch(self, folder: Path, parameters: Sequence[str], library: int | None) -> None:
         objects, elf = folder / "comm_test.o", folder / "comm_test.elf"
         include = (f"-I{LIBRARY}", "-x", "c++", "-include", "Arduino.h")
-        archives = [str(library), str(self._core())] if library else [str(self._core())]
         _run(["avr-g++", *CXX, *OWN, *parameters, *include, "-c", str(self._sketch), "-o", str(objects)])
-        _run(["avr-gcc", *LINK, str(objects), *archives, "-o", str(elf), "-lm"])
+        archives = [self._library(library), self._core()] if library else [self._core()]
+        _run(["avr-gcc", *LINK, str(objects), *map(str, archives), "-o", str(elf), "-lm"])
         _run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", str(elf), str(folder / "comm_test.hex")])
         objects.unlink()
 
@@ -106,8 +107,7 @@ class Builder:
 
     def _compile_library(self, folder: Path, baud: int) -> None:
         command = ["avr-g++", *CXX, *OWN, f"-I{LIBRARY}", f"-DMUCAT_BAUD={baud}"]
-        sources = sorted(path for part in LINK_PARTS for path in (LIBRARY / part).glob("*.cpp"))
-        _archive(folder / "library.a", {source: command for source in sources})
+        _archive(folder / "library.a", dict.fromkeys(_library_sources(), command))
 
     def _core(self) -> Path:
         place = self._folder / f"core-{self._core_hash}"
@@ -153,8 +153,8 @@ class Builder:
         return made.hexdigest()[:HASH_CHARACTERS]
 
 
-def _library_files() -> list[Path]:
-    return sorted(path for path in LIBRARY.rglob("*") if path.is_file())
+def _library_sources() -> list[Path]:
+    return sorted(path for part in LINK_PARTS for path in (LIBRARY / part).glob("*.cpp"))
 
 
 def _archive(archive: Path, commands: Mapping[Path, Sequence[str]]) -> None:

@@ -12,7 +12,7 @@ from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
 from robot_runtime.comm_test.document import CommTest
 from robot_runtime.comm_test.line import StoppedError
 from robot_runtime.comm_test.results import CellResult
-from robot_runtime.comm_test.runner import Phase, Runner
+from robot_runtime.comm_test.runner import BOOTLOADER, Phase, Runner
 from robot_runtime.comm_test.upload import UploadError, avrdude_version
 from robot_runtime.link.port import PortError
 from robot_runtime.simulation.board import BoardError
@@ -62,11 +62,11 @@ class EmulatedLab:
         program = self._build / "board"
         if not program.exists():
             raise BoardError(f"there is no emulated board at {program}; `make firmware` builds it")
-        bootloader = self._build / "firmware/optiboot.hex"
+        bootloader = self._build / BOOTLOADER
         if not bootloader.exists():
             raise BoardError(f"there is no boot loader at {bootloader}; `make firmware` builds it")
         builder = Builder(self._build / "comm_test")
-        self._runner = Runner(builder, program, bootloader, os.cpu_count() or 1, self._stop)
+        self._runner = Runner(builder, program, os.cpu_count() or 1, self._stop)
         tools = {
             "compiler": builder.compiler,
             "avrdude": avrdude_version(),

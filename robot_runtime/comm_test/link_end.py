@@ -16,7 +16,7 @@ from robot_runtime.packets import Packet, RequestResult, TestMsg, TestResult
 HOST_EPOCH = 1
 """The board's epoch differs in every cell, so this one need not."""
 REACTION_BYTES = 16
-REACTION_MIN, REACTION_MAX = 0.002, 0.02
+REACTION_MIN, REACTION_MAX = 0.005, 0.02
 """s between two looks at the line while something is awaited: about as long as so many bytes take."""
 NUMBER_BYTES, NUMBER_BYTES_ALONE = 4, 20
 """What a number costs on the line with others in a frame, and in a frame of its own; about."""

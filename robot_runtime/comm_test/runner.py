@@ -26,6 +26,8 @@ from robot_runtime.simulation.board import BoardProcess
 
 Phase = Literal["compile", "upload", "run"]
 Tell = Callable[[int, Phase], None]
+BOOTLOADER = "firmware/optiboot.hex"
+"""In the folder of all that is built."""
 UPLOADS_AT_ONCE = 2
 """For every cell that is computed; an upload waits about 1 s for avrdude, a cell computes 1 to 10 s."""
 LOOP_TIME = 0.003
@@ -36,18 +38,17 @@ QUESTIONS = 3
 
 
 class Runner:
-    """Runs tests on `program`, the emulated board, with sketches that `builder` makes, until `stop` is set.
+    """Runs tests on `program`, the emulated board in the folder of all that is built, with sketches that
+    `builder` makes, until `stop` is set.
 
     `computing` cells are computed at the same time, each on a board of its own; others upload meanwhile,
     which is mostly waiting.
     """
 
-    def __init__(
-        self, builder: Builder, program: Path, bootloader: Path, computing: int, stop: Event | None = None
-    ) -> None:
+    def __init__(self, builder: Builder, program: Path, computing: int, stop: Event | None = None) -> None:
         self._builder = builder
         self._program = program
-        self._options = ("--bootloader", str(bootloader), "--paused", "--with-parent")
+        self._options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused", "--with-parent")
         self._at_once = computing + UPLOADS_AT_ONCE * computing
         self._stop = stop or Event()
         self._building = Lock()

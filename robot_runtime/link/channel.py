@@ -27,8 +27,9 @@ never waits behind more than one frame.
 """
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from robot_runtime.link.framing import (
     MESSAGES_BYTES_MAX,
@@ -39,14 +40,13 @@ from robot_runtime.link.framing import (
     assemble,
 )
 from robot_runtime.link.round_trip import RoundTrip
-from robot_runtime.packets import PACKETS, Acknowledge, Packet
+from robot_runtime.packets import NOT_READY, PACKETS, Acknowledge, Packet
 
 WINDOW = 7
 """Reliable frames in flight, at most."""
 EXPIRY = 0.3
 """s that an unreliable message may wait for the line."""
 _ACKNOWLEDGE_DELAY = 0.005
-_NOT_READY = 0x80
 _PROBE = 1.0
 """s between two tries at a receiver that has no room."""
 _STALLED_WAIT = 1.25
@@ -151,7 +151,7 @@ class Channel:
         if self._ready and any(flight.lost for flight in self._flights):
             return self._line_free
         wait = self._patience()
-        timers = (flight.sent + wait for flight in self._flights if not flight.held)
+        timers = (flight.sent + wait for flight in self._repeatable() if not flight.held)
         return max(min(self._acknowledge_at, *timers, _NEVER), self._line_free)
 
     def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
@@ -160,7 +160,7 @@ class Channel:
         held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), None)
         self._take_acknowledgement(frame.acknowledged, held or 0, now)
         if held is not None:
-            self._take_readiness(held & _NOT_READY == 0)
+            self._take_readiness(held & NOT_READY == 0)
         let_through = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
         messages = [one for each in let_through for one in each.messages if one[0] != Acknowledge.type]
         self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
@@ -193,6 +193,9 @@ class Channel:
         if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():
             return min(_STALLED_WAIT * self.round_trip.mean, self.timeout())
         return self.timeout()
+
+    def _repeatable(self) -> Iterable[_Flight]:
+        return self._flights if self._ready else islice(self._flights, 1)
 
     def _in_flight(self) -> int:
         return sum(flight.size for flight in self._flights if not flight.held)
@@ -240,10 +243,8 @@ class Channel:
 
     def _send_lost(self, now: float) -> bytes:
         wait = self._patience()
-        for place, flight in enumerate(self._flights):
-            if not self._ready and place > 0:
-                break
-            if flight.held or not (flight.lost and self._ready or now >= flight.sent + wait):
+        for place, flight in enumerate(self._repeatable()):
+            if flight.held or not ((flight.lost and self._ready) or now >= flight.sent + wait):
                 continue
             flight.sent, flight.order, flight.lost = now, self._next_order(), False
             self.counters.frames_repeated += 1

@@ -17,6 +17,9 @@ FIN_COUNT = 4
 FRAME_BYTES_MAX = 64
 """Bytes of a whole frame on the line: its overhead, its messages and the closing zero."""
 
+NOT_READY = 0x80
+"""In ACKNOWLEDGE, beside the bits of what is held: the sender has no room for the next reliable frame."""
+
 Micros = Annotated[int, Wire("I", unit="µs", meaning="the board's own clock, which wraps after 71 minutes")]
 Fins = tuple[float, float, float, float]
 
@@ -210,9 +213,7 @@ class Heartbeat(Packet):
 class Acknowledge(Packet):
     """Both ways: which reliable frames came after the first that is missing."""
 
-    held: Annotated[
-        int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room for more, wait")
-    ]
+    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait")]
 
 
 # The communication test: the messages of the thesis's Table 4, whose numbers are taken here.
@@ -256,7 +257,7 @@ def decode(type_: int, payload: bytes | memoryview) -> Packet:
 
 def canonical() -> str:
     """Everything that both sides must agree on, as text; its hash is what they compare."""
-    lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX}"]
+    lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX} not_ready {NOT_READY}"]
     for type_, cls in sorted(PACKETS.items()):
         fields = [
             f"{name}:{wire.count}{wire.code}*{wire.scale!r}{wire.unit}" for name, wire in cls.wires.items()

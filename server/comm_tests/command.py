@@ -104,9 +104,7 @@ def _run(file: Path, settings: Settings, claim: Claim) -> int:
             tools = {"compiler": builder.compiler, "emulated board": hash_file(program)}
             for test in tests:
                 number = runs.start(test, builder.firmware_hash, tools)
-                runner = Runner(
-                    builder, program, settings.build / "firmware/optiboot.hex", os.cpu_count() or 1
-                )
+                runner = Runner(builder, program, os.cpu_count() or 1)
                 complete = _run_one(runs, number, test, runner, interrupted)
                 print(f"\n{tables.show_cells(runs.cells(number))}")  # noqa: T201
                 if not complete:

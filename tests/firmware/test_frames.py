@@ -278,13 +278,13 @@ def pushed(firmware: ctypes.CDLL, queue: int, packet: Packet) -> bool:
     return bool(firmware.queue_push(queue, data[0], data[1:], len(data) - 1))
 
 
-reliable: st.SearchStrategy[Packet] = st.one_of(
+queueable: st.SearchStrategy[Packet] = st.one_of(
     st.builds(Debug, time=st.integers(0, 0xFFFFFFFF), level=st.integers(0, 3), text=st.text(max_size=20)),
     st.builds(packets.TestMsg, number=st.integers(0, 0xFFFF)),
 )
 
 
-@given(some=st.lists(reliable, max_size=60), takes=st.lists(st.integers(0, 4), max_size=60))
+@given(some=st.lists(queueable, max_size=60), takes=st.lists(st.integers(0, 4), max_size=60))
 def test_what_is_queued_comes_in_order(firmware: ctypes.CDLL, some: list[Packet], takes: list[int]) -> None:
     queue = firmware.queue_create()
     came: list[bytes] = []

@@ -55,7 +55,8 @@ class RobotEnd {
   }
 
  private:
-  static constexpr uint8_t NUMBERS_PER_FRAME = mucat::kReliableMessagesBytesMax / (1 + sizeof(mucat::TestMsg));
+  static constexpr uint8_t NUMBERS_PER_FRAME =
+      mucat::kReliableMessagesBytesMax / (1 + sizeof(mucat::TestMsg));
   static constexpr uint8_t NUMBERS_MAX = 2 * NUMBERS_PER_FRAME;
   static constexpr uint16_t SIGN_OF_LIFE_MS = 400;
 

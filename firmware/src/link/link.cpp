@@ -6,8 +6,6 @@ namespace {
 constexpr uint8_t kNumberMask = 15;
 constexpr uint16_t kUnreliableMask = 4095;
 constexpr uint16_t kAcknowledgeMs = 20;
-// The bit of Acknowledge.held that no frame of a window of seven needs.
-constexpr uint8_t kNotReady = 0x80;
 constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 // No more than a frame waits: what is sent now is on the line soon.
 constexpr uint8_t kCalmRoom = board::kLineCredit - kFrameBytesMax;
@@ -59,6 +57,8 @@ void Link::begin(uint32_t key) {
   base_ = 0;
   expected_ = 0;
   acknowledge_ = false;
+  refused_ = false;
+  tell_ready_ = false;
 }
 
 void Link::set_ready(bool ready) {

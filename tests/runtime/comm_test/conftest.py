@@ -12,7 +12,6 @@ from robot_runtime.comm_test.results import CellResult
 from robot_runtime.comm_test.runner import Runner
 from tests.board.rig import PROGRAM, ROOT, build
 
-BOOTLOADER = ROOT / "build/firmware/optiboot.hex"
 Run = Callable[..., list[CellResult]]
 
 
@@ -47,4 +46,4 @@ def program() -> Path:
 @pytest.fixture
 def run(builder: Builder, program: Path) -> Run:
     """Runs the cells of a test that differs in this from one cell of the thesis's grid."""
-    return lambda **changes: list(Runner(builder, program, BOOTLOADER, 2).run(make_test(**changes)))
+    return lambda **changes: list(Runner(builder, program, 2).run(make_test(**changes)))

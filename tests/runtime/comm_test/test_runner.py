@@ -10,7 +10,7 @@ from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.results import Cell, Counts
 from robot_runtime.comm_test.runner import Runner, run_cell
 from robot_runtime.simulation.board import BoardProcess
-from tests.runtime.comm_test.conftest import BOOTLOADER, Run, make_test
+from tests.runtime.comm_test.conftest import Run, make_test
 
 RING = 63
 
@@ -71,9 +71,9 @@ def test_the_same_test_gives_the_same_results_however_many_cells_run_at_once(
     builder: Builder, program: Path
 ) -> None:
     test = make_test(delay=(0.0, 0.05), arduinodelay=(0.0, 0.1), direction="both")
-    alone = list(Runner(builder, program, BOOTLOADER, 1).run(test))
+    alone = list(Runner(builder, program, 1).run(test))
     assert [result.cell for result in alone] == test.cells
-    assert list(Runner(builder, program, BOOTLOADER, 3).run(test)) == alone
+    assert list(Runner(builder, program, 3).run(test)) == alone
 
 
 def test_a_board_that_does_not_understand_is_a_lost_result(
@@ -93,7 +93,7 @@ def test_a_board_that_does_not_understand_is_a_lost_result(
 
 def test_whoever_stops_asking_cancels(builder: Builder, program: Path) -> None:
     test = make_test(delay=tuple(number / 10 for number in range(100)))
-    cells = Runner(builder, program, BOOTLOADER, 1).run(test)
+    cells = Runner(builder, program, 1).run(test)
     before = time.monotonic()
     assert next(cells).cell == test.cells[0]
     cells.close()  # type: ignore[attr-defined]

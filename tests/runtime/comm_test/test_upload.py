@@ -11,10 +11,10 @@ from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.line import StoppedError
 from robot_runtime.comm_test.results import Cell, CellResult
-from robot_runtime.comm_test.runner import run_cell
+from robot_runtime.comm_test.runner import BOOTLOADER, run_cell
 from robot_runtime.comm_test.upload import UploadError, avrdude_version, upload_paused
 from robot_runtime.simulation.board import Board, BoardProcess
-from tests.runtime.comm_test.conftest import BOOTLOADER, make_test
+from tests.runtime.comm_test.conftest import make_test
 
 TEST, CELL = make_test(framing="robot"), Cell(115200, 0.0, 0.0)
 Empty = tuple[BoardProcess, Board]
@@ -23,7 +23,7 @@ Empty = tuple[BoardProcess, Board]
 @pytest.fixture
 def empty(program: Path, tmp_path: Path) -> Iterator[Empty]:
     """A board with nothing but its boot loader, and no time that passes."""
-    options = ("--bootloader", str(BOOTLOADER), "--paused")
+    options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused")
     with (
         BoardProcess(program, None, tmp_path / "tty", tmp_path / "socket", *options) as process,
         process.connect() as board,
