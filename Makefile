@@ -7,7 +7,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench fuzz soak generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench fuzz soak samples generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -36,16 +36,20 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
 
+samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
+	$(PYTHON) -m server.comm_tests.samples
+
 fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
 	@nice $(PYTHON) -m tests.proofs.fuzz $(FUZZ_SECONDS)
 
 soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
 	@nice $(PYTHON) -m tests.proofs
 
-firmware: ## compile the firmware, for the baud of robot.toml, and the emulated board
+firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
 	@python3 -m robot_runtime.firmware
+	@$(MAKE) --silent -C firmware/bootloader
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 
