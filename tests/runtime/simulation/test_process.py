@@ -18,10 +18,10 @@ from robot_runtime import samples
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.messages import Messages
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.process import PERIOD, Process
 from robot_runtime.simulation.simulator import Simulator
 from robot_runtime.topics import read_blocks, read_rows
+from tests.runtime.simulation.harness import QUIET
 
 DEADLINE = 10.0
 RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
@@ -60,7 +60,7 @@ class Board:
         self.line.sendall(fins)
         word, *numbers = self.hear().split()
         assert word == "sense"
-        assert len(numbers) == 11
+        assert len(numbers) == 15
         return [float(number) for number in numbers]
 
     def hang_up(self) -> None:
@@ -101,7 +101,7 @@ def clock() -> SimulatedClock:
 @pytest.fixture
 def process(folder: Path, board: Board, messages: Messages, clock: SimulatedClock) -> Iterator[Process]:
     del board
-    made = Process(Simulator(Parameters(), seed=1), folder / "board", messages, clock)
+    made = Process(Simulator(QUIET, seed=1), folder / "board", messages, clock)
     thread = threading.Thread(target=made.run)
     thread.start()
     yield made

@@ -9,10 +9,10 @@ from robot_runtime.simulation.fins import Four
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.sensors import Reading
 from robot_runtime.simulation.simulator import FinMotion, Simulator
-from tests.runtime.simulation.harness import STILL, Flapping
+from robot_runtime.simulation.surroundings import Current
+from tests.runtime.simulation.harness import QUIET, STILL, Flapping
 
 PERIOD = 0.005
-QUIET = Parameters(rate_noise=0.0, force_noise=0.0)
 UP = -pi / 2
 
 
@@ -112,7 +112,7 @@ def test_reset_goes_back_to_the_start() -> None:
 
 def test_current_carries_the_robot() -> None:
     simulator = Simulator(QUIET, seed=1)
-    simulator.set_current(0.2, -0.1, 0.0)
+    simulator.set_current(Current(0.2, -0.1, 0.0))
     rest(simulator, 60)
     before = simulator.truth().position
     rest(simulator, 10)
@@ -127,14 +127,14 @@ def test_current_carries_the_robot() -> None:
 def test_impossible_current_is_refused(wrong: tuple[float, float, float]) -> None:
     simulator = Simulator(QUIET, seed=1)
     with pytest.raises(ValueError, match="at most 2 m/s"):
-        simulator.set_current(*wrong)
+        simulator.set_current(Current(*wrong))
     rest(simulator, 1)
     assert simulator.truth().position[:2] == pytest.approx((0, 0), abs=1e-9)
 
 
 def test_strongest_current_is_taken() -> None:
     simulator = Simulator(QUIET, seed=1)
-    simulator.set_current(0.0, -2.0, 0.0)
+    simulator.set_current(Current(0.0, -2.0, 0.0))
     rest(simulator, 10)
     assert simulator.truth().position[1] < -5
 
