@@ -4,12 +4,14 @@ The hull is an ellipsoid, so that it touches each plane at one point. Its speed 
 impulses, with the mass that it has in water: one along the plane's normal, which returns `restitution` of the
 approach (Newton), then one along the plane against the sliding, at most `friction` times the first (Coulomb).
 An impulse -(1+e)·v/K along a line in which the hull has the speed v and the mass 1/K changes the energy by
--(1-e²)·v²/2K; neither impulse can create any. Fins touch nothing.
+-(1-e²)·v²/2K; neither impulse can create any. What the hull has moved too far is taken back in the same
+direction as the first impulse pushes, turning included: a hull that lies on the floor lies still. Fins touch
+nothing.
 """
 
 from math import sqrt
 
-from robot_runtime.simulation.geometry import cross, rotation
+from robot_runtime.simulation.geometry import Matrix, attitude_rate, cross, normalize, rotation, to_world
 from robot_runtime.simulation.parameters import Parameters, Vector
 from robot_runtime.simulation.state import State
 from robot_runtime.simulation.surroundings import Basin
@@ -49,13 +51,30 @@ class Contact:
         reach = sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2)
         if side * state.position[axis] + reach <= limit:
             return state
-        place = list(state.position)
-        place[axis] = side * (limit - reach)
         scale = side / reach
         point = (a * a * x * scale, b * b * y * scale, c * c * z * scale)
         inwards = (-side * x, -side * y, -side * z)
-        back = state._replace(position=(place[0], place[1], place[2]))
-        return self._stop(back, point, inwards)
+        depth = side * state.position[axis] + reach - limit
+        back = self._take_back(state, matrix, point, inwards, depth)
+        x, y, z = rotation(back.attitude)[axis]
+        place = list(back.position)
+        place[axis] = side * min(side * place[axis], limit - sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2))
+        return self._stop(back._replace(position=(place[0], place[1], place[2])), point, inwards)
+
+    def _take_back(self, state: State, matrix: Matrix, point: Vector, inwards: Vector, depth: float) -> State:
+        """The state moved and turned as a push at the point would, so far that the point is back inside."""
+        size = depth * self._mass_along(point, inwards)
+        x, y, z, roll, pitch, yaw = (
+            size * part / mass
+            for part, mass in zip((*inwards, *cross(point, inwards)), self._mass, strict=True)
+        )
+        (north, east, down), moved = state.position, to_world(matrix, (x, y, z))
+        w, i, j, k = state.attitude
+        turned = attitude_rate(state.attitude, (roll, pitch, yaw))
+        return state._replace(
+            position=(north + moved[0], east + moved[1], down + moved[2]),
+            attitude=normalize((w + turned[0], i + turned[1], j + turned[2], k + turned[3])),
+        )
 
     def _stop(self, state: State, point: Vector, inwards: Vector) -> State:
         approach = -_dot(_speed_at(state, point), inwards)

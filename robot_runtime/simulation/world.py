@@ -17,7 +17,7 @@ class Flow(NamedTuple):
     velocity: Vector
     """m/s north, east, down."""
     acceleration: Vector
-    """m/s²."""
+    """m/s², of the water that is there: ∂u/∂t + (u·∇)u."""
     rise: float
     """m by which the surface above is higher than still water."""
 
@@ -73,15 +73,19 @@ class World:
         (north, east, down), (north_rate, east_rate, down_rate) = self._drift(time)
         if not self.waves.amplitude:
             return Flow((north, east, down), (north_rate, east_rate, down_rate), 0.0)
-        deep, phase = self._place(time, position)
-        swing, bob = cos(phase), sin(phase)
-        across = self._speed * (deep[0] + deep[1])
-        along = self._speed * (deep[0] - deep[1])
-        ahead, ahead_rate = across * swing, across * self._frequency * bob
+        (near, far), phase = self._place(time, position)
         x, y = self._direction
-        velocity = (north + ahead * x, east + ahead * y, down - along * bob)
-        rates = (north_rate + ahead_rate * x, east_rate + ahead_rate * y, along * self._frequency * swing)
-        return Flow(velocity, (rates[0], rates[1], down_rate + rates[2]), self.waves.amplitude * swing)
+        swing, bob = cos(phase), sin(phase)
+        level, upright = self._speed * (near + far), self._speed * (near - far)
+        ahead, under = level * swing, -upright * bob
+        # Phase and decay change as the water itself moves on: θ by k·u less ω, e^(-kz) with its depth.
+        passing = self._frequency - self._number * (north * x + east * y + ahead)
+        sinking = self._number * (down + under)
+        ahead_rate = passing * level * bob - sinking * upright * swing
+        under_rate = passing * upright * swing + sinking * level * bob
+        velocity = (north + ahead * x, east + ahead * y, down + under)
+        acceleration = (north_rate + ahead_rate * x, east_rate + ahead_rate * y, down_rate + under_rate)
+        return Flow(velocity, acceleration, self.waves.amplitude * swing)
 
     def pressure(self, time: float, position: Vector) -> float:
         """Pa, absolute: hydrostatic, and the wave's; in the air that of the surface."""

@@ -241,6 +241,44 @@ class TestAttached:
         with pytest.raises(Refused, match=r"takes|number|at most 2 m/s"):
             messages.ask("simulator/current", question)
 
+    def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
+        self, board: Board, messages: Messages
+    ) -> None:
+        board.accept()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
+        messages.ask("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear() == "fault imu absent"
+        assert board.hear().startswith("sense ")
+        board.line.sendall(b"ok\nok\n")
+        board.exchange()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault imu none"
+        assert board.hear().startswith("sense ")
+        board.accept()
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear().startswith("sense ")
+
+    @pytest.mark.parametrize(
+        ("name", "question"),
+        [
+            ("waves", {"amplitude": 0.1, "period": 3, "direction": 0.5}),
+            ("trim", {"buoyancy": 1.01, "forward": 0, "right": 0, "above": 0.01}),
+            ("world", {"depth": 2, "length": 8, "width": 4}),
+            ("beacons", {"positions": [[2, 0, 0.5]]}),
+            ("fault", {"sensor": "battery", "kind": "drift", "speed": -0.1}),
+        ],
+    )
+    def test_everything_can_be_asked_for_over_zenoh(
+        self, messages: Messages, name: str, question: dict[str, object]
+    ) -> None:
+        assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
+        with pytest.raises(Refused, match="takes"):
+            messages.ask(f"simulator/{name}", {})
+
     def test_reset_takes_nothing(self, messages: Messages) -> None:
         with pytest.raises(Refused, match="takes nothing, not depth"):
             messages.ask("simulator/reset", {"depth": 1})
