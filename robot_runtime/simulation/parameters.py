@@ -98,15 +98,15 @@ class Parameters:
     pressure_position: Vector = (0.0, 0.0, -0.05)
     """m, of the pressure sensor in the body; the IMU is at the centre of mass. Assumed: on the back."""
     pressure: Quality = Quality(noise=42.0, walk=1.0, step=0.67)
-    """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048; step one
-    count of its 24-bit converter. Walk assumed, within a factor of five: temperature and gel. No offset, as
+    """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048, which
+    takes a quarter of the samples; step one count of its 24-bit converter. Walk assumed, within a factor of five: temperature and gel. No offset, as
     the firmware takes the surface as its zero. The emulated part adds its 4.5 ms of conversion."""
     gyroscope: Quality = Quality(latency=0.005, noise=2e-4, bias=2e-3, walk=2e-5, step=pi / 180 / 65.536)
-    """rad/s. MPU-6050: noise published (by the data sheet up to 7e-4 behind the 44 Hz filter); latency of
+    """rad/s. MPU-6050: noise of its class (by the data sheet up to 7e-4 behind the 44 Hz filter); latency of
     that filter 4.8 ms, step at ±500 °/s, both data sheet. Bias and walk assumed, after a calibration at rest:
     the data sheet allows 0.35 rad/s without one."""
     accelerometer: Quality = Quality(latency=0.005, noise=1.7e-2, bias=2e-2, walk=1e-4, step=9.80665 / 8192)
-    """m/s². MPU-6050: noise published (by the data sheet 3.3e-2 behind the 44 Hz filter); latency of that
+    """m/s². MPU-6050: noise of its class (by the data sheet 3.3e-2 behind the 44 Hz filter); latency of that
     filter 4.9 ms, step at ±4 g, both data sheet. Bias and walk assumed, after a calibration at rest: the data
     sheet allows 0.5 m/s² without one."""
     encoder: Quality = Quality(noise=2.1e-3, bias=3e-3)

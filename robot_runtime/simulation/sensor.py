@@ -22,14 +22,14 @@ class Sensor:
     """
 
     def __init__(self, name: str, quality: Quality, axes: int, seed: int) -> None:
-        self._quality = quality
+        self._noise, self._walk, self._step = quality.noise, quality.walk, quality.step
+        self._latency = quality.latency
         self._interval = 1 / quality.rate
         self._gauss = Random(f"{seed} {name}").gauss
         self._chance = Random(f"{seed} {name} fault").random
         self._offset = [self._gauss(0, quality.bias) for _ in range(axes)]
         self._due = 0.0
         self._wanders = WANDERING
-        self._taken: Numbers | None = None
         self._shown: Numbers | None = None
         self._coming: deque[tuple[float, Numbers]] = deque()
         self._fault = SOUND
@@ -44,31 +44,27 @@ class Sensor:
         self.holds = False
 
     def read(self, time: float, felt: Numbers) -> Numbers:
-        """What it shows at this time (s), having felt this; before its first reading has come, that one."""
+        """What it shows at this time (s), having felt this. A first reading is there at once."""
         if time > self._due - SAME_TIME:
             self._due = max(self._due + self._interval, time)
-            self._take(time, felt)
+            reading = self._spoilt(time, self._noisy(time, felt))
+            self.holds = reading is None
+            if self._shown is None:
+                self._shown = reading or felt
+            elif reading is not None and self._latency == 0:
+                self._shown = reading
+            elif reading is not None:
+                self._coming.append((time + self._latency, reading))
         coming = self._coming
         while coming and coming[0][0] < time + SAME_TIME:
             self._shown = coming.popleft()[1]
         return self._shown if self._shown is not None else felt
 
-    def _take(self, time: float, felt: Numbers) -> None:
-        reading = self._spoilt(time, self._noisy(time, felt))
-        self.holds = reading is None
-        self._taken = reading = self._taken if reading is None else reading
-        if self._shown is None:
-            self._shown = reading
-        if reading is not None and self._quality.latency == 0:
-            self._shown = reading
-        elif reading is not None:
-            self._coming.append((time + self._quality.latency, reading))
-
     def _noisy(self, time: float, felt: Numbers) -> Numbers:
-        gauss, noise = self._gauss, self._quality.noise
+        gauss, noise = self._gauss, self._noise
         while time > self._wanders - SAME_TIME:
             self._wanders += WANDERING
-            self._offset = [offset + gauss(0, self._quality.walk) for offset in self._offset]
+            self._offset = [offset + gauss(0, self._walk) for offset in self._offset]
         return tuple(
             [value + offset + gauss(0, noise) for value, offset in zip(felt, self._offset, strict=True)]
         )
@@ -85,5 +81,5 @@ class Sensor:
             elif fault.kind == "drift":
                 gone = (fault.speed or 0) * (time - self._since)
                 reading = tuple([value + gone for value in reading])
-        step = self._quality.step
+        step = self._step
         return tuple([step * round(value / step) for value in reading]) if step else reading

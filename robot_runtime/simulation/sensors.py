@@ -51,6 +51,7 @@ class Sensors:
         }
         for name, fault in self._faults.items():
             self._sensors[name].break_(fault, 0.0)
+        self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
     def break_(self, sensor: str, fault: Fault, time: float) -> None:
         """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
@@ -78,6 +79,7 @@ class Sensors:
         fx, fy, fz = sensors["accelerometer"].read(time, felt)
         p, q, r = sensors["gyroscope"].read(time, state.rate)
         right, left = self._seen(state, matrix)
+        first, second, third, fourth = [_encoder_error(encoder, time) for encoder in self._encoders]
         return Reading(
             pressure=max(pressure[0], 0.0),
             temperature=parameters.temperature,
@@ -86,23 +88,13 @@ class Sensors:
             beacon_right=sensors["beacon_right"].read(time, (right,))[0] > 0,
             beacon_left=sensors["beacon_left"].read(time, (left,))[0] > 0,
             battery=max(sensors["battery"].read(time, (battery,))[0], 0.0),
-            encoders=(
-                self._encoder(0, time),
-                self._encoder(1, time),
-                self._encoder(2, time),
-                self._encoder(3, time),
-            ),
+            encoders=(first, second, third, fourth),
         )
 
     def _pressure(self, time: float, state: State, matrix: Matrix) -> float:
         x, y, z = to_world(matrix, self._parameters.pressure_position)
         north, east, down = state.position
         return self._world.pressure(time, (north + x, east + y, down + z))
-
-    def _encoder(self, fin: int, time: float) -> float:
-        sensor = self._sensors[f"encoder{fin}"]
-        (error,) = sensor.read(time, (0.0,))
-        return nan if sensor.holds else remainder(error, 2 * pi)
 
     def _seen(self, state: State, matrix: Matrix) -> tuple[float, float]:
         """How well the right and the left detector see: shares of range and view that are left, above 0 seen.
@@ -126,6 +118,11 @@ class Sensors:
             views = (ahead + aside - edge) / (1 - edge), (ahead - aside - edge) / (1 - edge)
             best = max(best[0], min(near, views[0])), max(best[1], min(near, views[1]))
         return best
+
+
+def _encoder_error(encoder: Sensor, time: float) -> float:
+    (error,) = encoder.read(time, (0.0,))
+    return nan if encoder.holds else remainder(error, 2 * pi)
 
 
 def _qualities(parameters: Parameters) -> dict[str, tuple[Quality, int]]:

@@ -115,6 +115,12 @@ def test_stuck_shows_the_last_reading_for_ever() -> None:
     assert set(shown[200:]) == {1.0}
 
 
+def test_stuck_from_the_beginning_shows_what_it_felt_first() -> None:
+    sensor = made(Quality())
+    sensor.break_(Fault(kind="stuck"), 0.0)
+    assert ramp(sensor, 3) == [PERIOD, PERIOD, PERIOD]
+
+
 def test_dropout_loses_its_share_and_keeps_the_last() -> None:
     shown = broken(Fault(kind="dropout", share=0.3), 4200)[200:]
     lost = sum(late == early for early, late in pairwise(shown)) / 3999
