@@ -52,7 +52,7 @@ bool board_create(struct board *board, struct pty *pty) {
   mpu6050_create(&board->imu, &board->surroundings);
   ms5837_create(&board->pressure, &board->chip, &board->surroundings);
   pins_create(&board->pins, &board->chip, board->encoders, board->bridges);
-  motors_create(&board->motors, &board->chip, board->bridges, board->encoders);
+  motors_create(&board->motors, &board->chip, board->bridges, board->encoders, &board->surroundings);
   attach_devices(board);
   return true;
 }

@@ -53,7 +53,9 @@ static void sense(struct service *service, struct client *client, char *numbers)
   if (service->water.client && service->water.client != client) {
     refuse(service, client, "another connection is the water");
   } else if (!water_sense(&service->water, numbers)) {
-    refuse(service, client, "sense takes eleven finite numbers, pressure and battery not negative");
+    refuse(service, client,
+           "sense takes eleven finite numbers, pressure and battery not negative, and perhaps four more, up "
+           "to pi or nan");
   }
 }
 

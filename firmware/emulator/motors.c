@@ -25,7 +25,11 @@ static void turn(struct motors *motors, unsigned fin, double driven) {
 }
 
 static void show(struct motors *motors, unsigned fin) {
-  double ticks = motors->shaft[fin] * AS5040_TICKS / (2 * M_PI);
+  double error = motors->surroundings->encoder_error[fin];
+  if (isnan(error)) {
+    return;
+  }
+  double ticks = (motors->shaft[fin] + rotation_sign[fin] * error) * AS5040_TICKS / (2 * M_PI);
   as5040_turn(&motors->encoders[fin], encoder_zero[fin] + ENCODER_SIGN * ticks);
 }
 
@@ -41,8 +45,9 @@ static void on_step(void *owner) {
 }
 
 void motors_create(struct motors *motors, struct chip *chip, const struct drv8830 bridges[FIN_COUNT],
-                   struct as5040 encoders[FIN_COUNT]) {
-  *motors = (struct motors){.chip = chip, .bridges = bridges, .encoders = encoders};
+                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings) {
+  *motors =
+      (struct motors){.chip = chip, .bridges = bridges, .encoders = encoders, .surroundings = surroundings};
   for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
     motors->shaft[fin] = rotation_sign[fin] * first_angle[fin];
     show(motors, fin);

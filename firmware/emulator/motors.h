@@ -14,13 +14,14 @@ struct motors {
   struct chip *chip;
   const struct drv8830 *bridges;
   struct as5040 *encoders;
+  const struct surroundings *surroundings;
   struct chip_timer step;
   double shaft[FIN_COUNT];  // rad, growing with positive drive
   double speed[FIN_COUNT];  // rad/s
 };
 
 void motors_create(struct motors *motors, struct chip *chip, const struct drv8830 bridges[FIN_COUNT],
-                   struct as5040 encoders[FIN_COUNT]);
+                   struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings);
 
 // A fin's angle (rad, -pi to pi) and speed (rad/s); fins count front right, back right, back left, front
 // left.

@@ -11,7 +11,8 @@ struct surroundings {
   double force[3];     // m/s², specific force
   double rate[3];      // rad/s
   bool beacon_right, beacon_left;
-  double battery;  // V
+  double battery;           // V
+  double encoder_error[4];  // rad by which a fin's encoder shows too much; NAN: it shows what it last showed
 };
 
 // At the surface of still water, level and at rest, with a charged battery.

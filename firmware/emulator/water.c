@@ -2,10 +2,13 @@
 #include "water.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #define PERIOD_MIN 0.5e-3
 #define PERIOD_MAX 1.0
+#define NUMBERS 11
+#define NUMBERS_WITH_ENCODERS (NUMBERS + FIN_COUNT)
 
 static void on_due(void *owner) {
   struct water *water = owner;
@@ -70,25 +73,54 @@ bool water_awaited(struct water *water, double now) {
   return water->waiting;
 }
 
-bool water_sense(struct water *water, const char *numbers) {
-  struct surroundings felt;
-  double right, left;
-  char rest;
-  int count = sscanf(numbers, "%lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %c", &felt.pressure,
-                     &felt.temperature, &felt.force[0], &felt.force[1], &felt.force[2], &felt.rate[0],
-                     &felt.rate[1], &felt.rate[2], &right, &left, &felt.battery, &rest);
-  if (count != 11) {
-    return false;
+// How many numbers the text is; -1 where it is something else, or they are more than `most`.
+static int read_numbers(const char *text, double *numbers, int most) {
+  for (int count = 0;; count++) {
+    char *end;
+    double number = strtod(text, &end);
+    if (end == text) {
+      return text[strspn(text, " ")] ? -1 : count;
+    }
+    if (count == most) {
+      return -1;
+    }
+    numbers[count] = number;
+    text = end;
   }
-  double sum = felt.pressure + felt.temperature + right + left + felt.battery;
+}
+
+static bool possible(const struct surroundings *felt) {
+  double sum = felt->pressure + felt->temperature + felt->battery;
   for (unsigned axis = 0; axis < 3; axis++) {
-    sum += felt.force[axis] + felt.rate[axis];
+    sum += felt->force[axis] + felt->rate[axis];
   }
-  if (!isfinite(sum) || felt.pressure < 0 || felt.battery < 0) {
+  for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
+    if (fabs(felt->encoder_error[fin]) > M_PI) {
+      return false;
+    }
+  }
+  return isfinite(sum) && felt->pressure >= 0 && felt->battery >= 0;
+}
+
+bool water_sense(struct water *water, const char *text) {
+  double n[NUMBERS_WITH_ENCODERS] = {0};
+  int count = read_numbers(text, n, NUMBERS_WITH_ENCODERS);
+  if ((count != NUMBERS && count != NUMBERS_WITH_ENCODERS) || !isfinite(n[8]) || !isfinite(n[9])) {
     return false;
   }
-  felt.beacon_right = right != 0;
-  felt.beacon_left = left != 0;
+  struct surroundings felt = {
+      .pressure = n[0],
+      .temperature = n[1],
+      .force = {n[2], n[3], n[4]},
+      .rate = {n[5], n[6], n[7]},
+      .beacon_right = n[8] != 0,
+      .beacon_left = n[9] != 0,
+      .battery = n[10],
+      .encoder_error = {n[11], n[12], n[13], n[14]},
+  };
+  if (!possible(&felt)) {
+    return false;
+  }
   board_feel(water->board, &felt);
   water->waiting = false;
   return true;

@@ -34,7 +34,8 @@ void water_tell_fins(struct water *water, struct client *client, const char *wor
 void water_ask(struct water *water, double now);
 bool water_awaited(struct water *water, double now);
 
-// Takes in the numbers of a `sense` line. False where they are not eleven numbers that can be.
-bool water_sense(struct water *water, const char *numbers);
+// Takes in the numbers of a `sense` line, with or without the encoders' errors. False where they are not
+// eleven or fifteen numbers that can be.
+bool water_sense(struct water *water, const char *text);
 
 #endif

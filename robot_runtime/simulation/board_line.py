@@ -1,7 +1,7 @@
 """The lines of text between the water and the emulated board, without any socket.
 
 The board tells of its fins, `fins TIME A0..A3 S0..S3 D0..D3 POWER LED`, and waits to be answered with
-`sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY`.
+`sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3`.
 """
 
 from collections.abc import Iterator
@@ -54,7 +54,8 @@ def write_sense(reading: Reading) -> str:
     """The answer to a `fins` line, with its end."""
     numbers = (*reading.force, *reading.rate)
     motion = " ".join(f"{number:.6f}" for number in numbers)
+    encoders = " ".join(f"{error:.5f}" for error in reading.encoders)
     return (
         f"sense {reading.pressure:.1f} {reading.temperature:.2f} {motion} "
-        f"{reading.beacon_right:d} {reading.beacon_left:d} {reading.battery:.4f}\n"
+        f"{reading.beacon_right:d} {reading.beacon_left:d} {reading.battery:.4f} {encoders}\n"
     )

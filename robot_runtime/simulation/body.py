@@ -3,16 +3,16 @@
 The model is Fossen's, for a hull whose centre of mass is the origin and whose planes of symmetry make all its
 matrices diagonal: M ν̇_r + C(ν_r) ν_r + D(ν_r) ν_r + g(η) = τ, where ν_r is the velocity through the water and
 M holds the added mass (T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2011, 8.1).
-C(ν_r) includes the Munk moment, which turns a drifting hull across its path. Body axes are forward, right,
-down; the world's north, east, down.
+C(ν_r) includes the Munk moment, which turns a drifting hull across its path. Water that accelerates, in
+waves, takes the hull along as the water that it displaces (J. N. Newman, Marine Hydrodynamics, 1977, chapter
+4): its acceleration is added to that through the water. The flow is that at the centre of mass. Body axes are
+forward, right, down; the world's north, east, down.
 """
 
-from typing import NamedTuple
-
+from robot_runtime.simulation.contact import Contact
 from robot_runtime.simulation.fins import Four, Propulsion
 from robot_runtime.simulation.geometry import (
     Matrix,
-    Quaternion,
     attitude_rate,
     cross,
     normalize,
@@ -21,20 +21,9 @@ from robot_runtime.simulation.geometry import (
     to_world,
 )
 from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.simulation.state import State, at_rest
+from robot_runtime.simulation.surroundings import Trim
 from robot_runtime.simulation.world import World
-
-
-class State(NamedTuple):
-    """Where the hull is and how it moves."""
-
-    position: Vector
-    """m north, east, down."""
-    attitude: Quaternion
-    """Unit quaternion w, x, y, z that turns body axes into world axes."""
-    velocity: Vector
-    """m/s over ground, in body axes."""
-    rate: Vector
-    """rad/s, in body axes."""
 
 
 class Body:
@@ -42,21 +31,19 @@ class Body:
 
     def __init__(self, parameters: Parameters, propulsion: Propulsion, world: World) -> None:
         self._propulsion = propulsion
-        self._world = world
+        self.world = world
+        self._contact = Contact(parameters)
         self._mass = parameters.total_mass
         self._linear = parameters.damping_linear
         self._quadratic = parameters.damping_quadratic
         self._weight = parameters.weight
-        self._lift = parameters.weight * parameters.buoyancy
-        self._lift_height = parameters.buoyancy_height
-        self.current: Vector = (0.0, 0.0, 0.0)
-        """m/s north, east, down, of the water."""
-        self.state = self.at_rest(world.floating_depth)
+        self.trim = Trim(parameters.buoyancy, 0.0, 0.0, parameters.buoyancy_height)
+        self.start()
 
-    @staticmethod
-    def at_rest(depth: float) -> State:
-        """Upright, looking north, at rest, at this depth (m)."""
-        return State((0.0, 0.0, depth), (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    def start(self) -> None:
+        """Float at rest, looking north, at time 0."""
+        self.time = 0.0
+        self.state = at_rest(self.world.floating_depth(self.trim.buoyancy))
 
     def step(self, duration: float, angles: Four, speeds: Four) -> None:
         """Let `duration` (s) pass: one step of the midpoint rule (Runge-Kutta of second order).
@@ -68,17 +55,20 @@ class Body:
         a, b, c, d = angles
         e, f, g, h = speeds
         halfway = (a + e * half, b + f * half, c + g * half, d + h * half)
-        moved = _advance(self.state, self.derivative(middle, halfway, speeds), duration)
-        self.state = self._held_by_floor(moved._replace(attitude=normalize(moved.attitude)))
+        moved = _advance(self.state, self.derivative(middle, halfway, speeds, half), duration)
+        moved = moved._replace(attitude=normalize(moved.attitude))
+        self.state = self._contact.settle(moved, self.world.basin)
+        self.time += duration
 
-    def derivative(self, state: State, angles: Four, speeds: Four) -> State:
-        """Time derivative of each part of the state, in the same units per second."""
+    def derivative(self, state: State, angles: Four, speeds: Four, later: float = 0.0) -> State:
+        """Time derivative of each part of a state that is reached `later` (s) than now."""
         position, attitude, velocity, rate = state
         matrix = rotation(attitude)
-        flow = to_body(matrix, self.current)
+        water = self.world.flow(self.time + later, position)
+        flow = to_body(matrix, water.velocity)
         through = (velocity[0] - flow[0], velocity[1] - flow[1], velocity[2] - flow[2])
         push = self._propulsion.push(angles, speeds, through, rate)
-        restoring = self._restoring(position[2], matrix, velocity)
+        restoring = self._restoring(position[2] + water.rise, matrix, through)
 
         mass = self._mass
         momentum = (mass[0] * through[0], mass[1] * through[1], mass[2] * through[2])
@@ -95,31 +85,33 @@ class Body:
         )
         # In body axes a steady current turns as the hull turns, and the velocity over ground contains it.
         swing = cross(rate, flow)
+        surge, sway, heave = to_body(matrix, water.acceleration)
         return State(
             to_world(matrix, velocity),
             attitude_rate(attitude, rate),
-            (x - swing[0], y - swing[1], z - swing[2]),
+            (x - swing[0] + surge, y - swing[1] + sway, z - swing[2] + heave),
             (roll, pitch, yaw),
         )
 
-    def _restoring(self, depth: float, matrix: Matrix, velocity: Vector) -> tuple[float, ...]:
-        """Weight, buoyancy and waves: force (N) and torque (N m) in body axes."""
-        x, y, z = matrix[2]
-        sinking = x * velocity[0] + y * velocity[1] + z * velocity[2]
-        lift = self._lift * self._world.submerged(depth)
-        force = self._weight - lift + self._world.wave_drag(depth, sinking)
-        torque = lift * self._lift_height
-        return force * x, force * y, force * z, -torque * y, torque * x, 0.0
+    def _restoring(self, depth: float, matrix: Matrix, through: Vector) -> tuple[float, ...]:
+        """Weight, buoyancy and waves: force (N) and torque (N m) in body axes.
 
-    def _held_by_floor(self, state: State) -> State:
-        """The state after a hull that reached the floor lost what speed it had towards it."""
-        north, east, depth = state.position
-        if depth <= self._world.lowest_depth:
-            return state
-        matrix = rotation(state.attitude)
-        x, y, z = to_world(matrix, state.velocity)
-        velocity = to_body(matrix, (x, y, min(z, 0.0)))
-        return state._replace(position=(north, east, self._world.lowest_depth), velocity=velocity)
+        `depth` (m) is that below the surface as it is above the hull, `through` (m/s) the velocity through
+        the water.
+        """
+        x, y, z = matrix[2]
+        trim = self.trim
+        sinking = x * through[0] + y * through[1] + z * through[2]
+        lift = self._weight * trim.buoyancy * self.world.submerged(depth)
+        force = self._weight - lift + self.world.wave_drag(depth, sinking)
+        return (
+            force * x,
+            force * y,
+            force * z,
+            -lift * (trim.right * z + trim.above * y),
+            lift * (trim.above * x + trim.forward * z),
+            lift * (trim.right * x - trim.forward * y),
+        )
 
 
 def _advance(state: State, rates: State, duration: float) -> State:

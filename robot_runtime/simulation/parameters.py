@@ -5,6 +5,9 @@ estimated from the hull's size and shape, since nobody published it; may be wron
 *Chosen*: a free choice about the surroundings. Numbers of the large U-CAT (19 kg), which circulate under
 this robot's name, are not used.
 
+Sensors have a fourth: *data sheet*, of the part named; what it says is typical, and one robot's own part may
+differ by a factor of two.
+
 Fins: front right, back right, back left, front left. Body axes: forward, right, down.
 """
 
@@ -16,20 +19,51 @@ Six = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Quality:
+    """How well a sensor tells what it feels, in the units of its reading. Raises ValueError below 0."""
+
+    rate: float = 200.0
+    """Hz of new readings, at most 200, as often as the water is asked; what is faster in reality has that."""
+    latency: float = 0.0
+    """s from feeling to showing, besides what the emulated part takes; counts in steps of 5 ms."""
+    noise: float = 0.0
+    """Standard deviation of each reading: Gaussian, without memory."""
+    bias: float = 0.0
+    """Standard deviation of the offset that is drawn at the start."""
+    walk: float = 0.0
+    """Standard deviation by which the offset has wandered after one second; it grows with √time."""
+    step: float = 0.0
+    """Readings are multiples of this; 0: they are not rounded here."""
+
+    def __post_init__(self) -> None:
+        if not self.rate > 0:
+            raise ValueError(f"a sensor's rate is {self.rate} Hz; it must be above 0")
+        for name in ("latency", "noise", "bias", "walk", "step"):
+            if not getattr(self, name) >= 0:
+                raise ValueError(f"a sensor's {name} is {getattr(self, name)}; it must not be below 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Parameters:
     """What the physics needs to know. Raises ValueError where a number makes no physical sense."""
 
     # The hull
     mass: float = 3.0
     """kg. Published."""
-    height: float = 0.10
-    """m. Published; the hull is taken as a box of this height where it breaks the surface."""
+    size: Vector = (0.24, 0.10, 0.10)
+    """m, along forward, right, down. Published. Where it breaks the surface the hull is taken as an upright
+    box, where it touches something as an ellipsoid."""
     inertia: Vector = (0.005, 0.0169, 0.0169)
     """kg m², about forward, right, down. Assumed: a box of the hull's size and mass."""
     buoyancy: float = 1.003
     """Buoyancy under water as a share of the weight. Assumed; published is "slightly positive"."""
     buoyancy_height: float = 0.010
-    """m, centre of buoyancy above the centre of mass. Assumed."""
+    """m, centre of buoyancy above the centre of mass. Assumed. Both can be changed while it swims: `trim`."""
+    restitution: float = 0.2
+    """Share of the speed towards a wall or the floor with which the hull comes back. Assumed: plastic on
+    tiles under water, which damps; within 0 to 0.5."""
+    friction: float = 0.3
+    """Coulomb's, of the hull on walls and floor. Assumed: wet plastic; within 0.1 to 0.6."""
 
     # The water's answer to the moving hull: surge, sway, heave, roll, pitch, yaw
     added_mass: Six = (0.9, 2.6, 3.2, 0.004, 0.012, 0.010)
@@ -63,16 +97,35 @@ class Parameters:
     # The sensors
     pressure_position: Vector = (0.0, 0.0, -0.05)
     """m, of the pressure sensor in the body; the IMU is at the centre of mass. Assumed: on the back."""
-    rate_noise: float = 2e-4
-    """rad/s, standard deviation of each reading of the gyroscope. From the sensor's class; within 50 %."""
-    force_noise: float = 1.7e-2
-    """m/s², standard deviation of each reading of the accelerometer. From the sensor's class; within 50 %."""
+    pressure: Quality = Quality(noise=42.0, walk=1.0, step=0.67)
+    """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048, which
+    takes a quarter of the samples; step one count of its 24-bit converter. Walk assumed, within a factor of five: temperature and gel. No offset, as
+    the firmware takes the surface as its zero. The emulated part adds its 4.5 ms of conversion."""
+    gyroscope: Quality = Quality(latency=0.005, noise=2e-4, bias=2e-3, walk=2e-5, step=pi / 180 / 65.536)
+    """rad/s. MPU-6050: noise of its class (by the data sheet up to 7e-4 behind the 44 Hz filter); latency of
+    that filter 4.8 ms, step at ±500 °/s, both data sheet. Bias and walk assumed, after a calibration at rest:
+    the data sheet allows 0.35 rad/s without one."""
+    accelerometer: Quality = Quality(latency=0.005, noise=1.7e-2, bias=2e-2, walk=1e-4, step=9.80665 / 8192)
+    """m/s². MPU-6050: noise of its class (by the data sheet 3.3e-2 behind the 44 Hz filter); latency of that
+    filter 4.9 ms, step at ±4 g, both data sheet. Bias and walk assumed, after a calibration at rest: the data
+    sheet allows 0.5 m/s² without one."""
+    encoder: Quality = Quality(noise=2.1e-3, bias=3e-3)
+    """rad, each fin's. AS5040: noise data sheet, 0.12°. Bias assumed: half a tick of the calibrated zero; the
+    data sheet allows 0.5° for a centred magnet. The emulated part has the 1024 ticks of a turn; the real
+    part's delay of 0.1 ms is left out."""
+    beacon_right: Quality = Quality(rate=20.0, latency=0.05, noise=0.02)
+    beacon_left: Quality = Quality(rate=20.0, latency=0.05, noise=0.02)
+    """Share of range and view by which it sees or misses; the reading is whether that is above 0. Assumed
+    throughout: nothing of the tone detectors is published; within a factor of three."""
+    battery: Quality = Quality(rate=100.0, noise=5e-3, bias=2e-2, step=10 / 1023)
+    """V. Divider and converter of the ATmega328P: step 10 bit of 10 V. Noise assumed: half a count; bias
+    assumed: resistors of 0.25 %."""
     beacon_detector: float = pi / 4
     """rad between straight ahead and where each beacon detector looks, to its own side. Assumed."""
     beacon_view: float = pi / 3
     """rad from a detector's axis to the edge of what it sees. Assumed."""
     beacon_range: float = 8.0
-    """m at which the beacon's light is lost. Assumed: clear water."""
+    """m at which a beacon's light is lost. Assumed: clear water."""
     battery_full: float = 8.2
     """V. Assumed: two lithium cells, freshly charged."""
     battery_idle: float = 0.1 / 3600
@@ -92,19 +145,28 @@ class Parameters:
     surface_damping: float = 40.0
     """N s/m, of the waves of a hull that breaks the surface. Assumed: about half of critical."""
     floor: float = 3.0
-    """m, depth of the floor. Chosen."""
-    beacon: Vector = (3.0, 0.0, 0.5)
-    """m north, east, down of the light beacon. Chosen."""
+    """m, depth of the floor at the start. Chosen, as is that there are no walls, no current and no waves."""
+    beacons: tuple[Vector, ...] = ((3.0, 0.0, 0.5),)
+    """m north, east, down of the light beacons at the start. Chosen."""
 
     def __post_init__(self) -> None:
-        positive = ("mass", "height", "buoyancy", "fin_area", "fin_centre", "density", "gravity", "floor")
+        positive = ("mass", "buoyancy", "fin_area", "fin_centre", "density", "gravity", "floor")
         for name in positive:
             if not getattr(self, name) > 0:
                 raise ValueError(f"simulation parameter {name} is {getattr(self, name)}; it must be above 0")
         if not all(value > 0 for value in self.inertia) or not all(value >= 0 for value in self.added_mass):
             raise ValueError("simulation parameters inertia must be above 0, added_mass not below 0")
+        if not all(length > 0 for length in self.size):
+            raise ValueError(f"simulation parameter size is {self.size}; each length must be above 0")
+        if not 0 <= self.restitution <= 1 or not self.friction >= 0:
+            raise ValueError("simulation parameter restitution must be 0 to 1, friction not below 0")
         if self.floor <= self.height:
             raise ValueError(f"the floor at {self.floor} m leaves no room for a hull of {self.height} m")
+
+    @property
+    def height(self) -> float:
+        """m, of the upright hull."""
+        return self.size[2]
 
     @property
     def weight(self) -> float:

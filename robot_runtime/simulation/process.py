@@ -3,15 +3,14 @@
 import logging
 import socket
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
 from robot_runtime.simulation.board_line import LineError, Lines, read_fins, write_sense
+from robot_runtime.simulation.changes import changes
 from robot_runtime.simulation.simulator import Simulator
 
 log = logging.getLogger(__name__)
@@ -37,8 +36,8 @@ class Process:
         self._truth_due = clock.now()
         self._ending = False
         self._attached: bool | None = None
-        messages.answer("simulator/reset", self._reset)
-        messages.answer("simulator/current", self._set_current)
+        for name, change in changes(simulator).items():
+            messages.answer(f"simulator/{name}", change)
 
     def run(self) -> None:
         """Swim until `end` is called, through any number of boards."""
@@ -60,13 +59,19 @@ class Process:
 
     def _attend(self, line: socket.socket) -> None:
         line.sendall(f"attach {PERIOD}\n".encode())
+        broken: frozenset[str] = frozenset()
         for text in self._lines(line):
             if text.startswith("error"):
                 log.warning("the board says: %s", text)
                 continue
+            if text == "ok":
+                # To a fault that it was told of.
+                continue
             reading = self._simulator.advance(PERIOD, read_fins(text))
             now = self._clock.now()
-            line.sendall(write_sense(reading).encode())
+            wanted = self._simulator.broken_devices
+            line.sendall((_faults(broken, wanted) + write_sense(reading)).encode())
+            broken = wanted
             if not self._attached:
                 log.info("attached to the board at %s", self._board)
             self._attached = True
@@ -93,19 +98,9 @@ class Process:
         self._outbox.add_row("truth", now, self._simulator.truth().to_bytes())
         self._outbox.flush()
 
-    def _reset(self, question: Mapping[str, Any]) -> None:
-        _expect(question, set())
-        self._simulator.reset()
 
-    def _set_current(self, question: Mapping[str, Any]) -> None:
-        _expect(question, {"north", "east", "down"})
-        for name, value in question.items():
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise Refused(f"{name} must be a number of m/s, not {value!r}")
-        self._simulator.set_current(question["north"], question["east"], question["down"])
-
-
-def _expect(question: Mapping[str, Any], names: set[str]) -> None:
-    if set(question) != names:
-        wanted = ", ".join(sorted(names)) or "nothing"
-        raise Refused(f"this command takes {wanted}, not {', '.join(sorted(question)) or 'nothing'}")
+def _faults(told: frozenset[str], wanted: frozenset[str]) -> str:
+    """The lines that let the board's devices fail, or answer again; `told` are those that fail by now."""
+    absent = [f"fault {device} absent\n" for device in sorted(wanted - told)]
+    mended = [f"fault {device} none\n" for device in sorted(told - wanted)]
+    return "".join(absent + mended)

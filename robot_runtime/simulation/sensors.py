@@ -1,12 +1,16 @@
-"""What the robot's sensors feel of the simulated motion."""
+"""What the robot's sensors show of the simulated motion."""
 
-from math import cos, hypot, sin
-from random import Random
+from math import cos, hypot, nan, pi, remainder, sin
 from typing import NamedTuple
 
-from robot_runtime.simulation.body import State
+from robot_runtime.simulation.faults import DEVICES, SENSORS, SOUND, Fault, check_sensor
+from robot_runtime.simulation.fins import Four
 from robot_runtime.simulation.geometry import Matrix, rotation, to_body, to_world
-from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.simulation.parameters import Parameters, Quality, Vector
+from robot_runtime.simulation.sensor import Sensor
+from robot_runtime.simulation.state import State
+from robot_runtime.simulation.surroundings import check_beacons
+from robot_runtime.simulation.world import World
 
 
 class Reading(NamedTuple):
@@ -24,50 +28,114 @@ class Reading(NamedTuple):
     beacon_left: bool
     battery: float
     """V."""
+    encoders: Four = (0.0, 0.0, 0.0, 0.0)
+    """rad by which each fin's encoder shows too much; nan where it goes on showing what it last showed."""
 
 
 class Sensors:
-    """Reads the hull's state. The IMU's noise is Gaussian and the same for the same seed."""
+    """Reads the hull's state. The same seed gives the same readings."""
 
-    def __init__(self, parameters: Parameters, seed: int) -> None:
+    def __init__(self, parameters: Parameters, world: World, seed: int) -> None:
         self._parameters = parameters
-        self._random = Random(seed)
+        self._world = world
+        self._seed = seed
+        self._faults = dict.fromkeys(SENSORS, SOUND)
+        self._beacons = parameters.beacons
+        self.start()
 
-    def read(self, state: State, acceleration: Vector, battery: float) -> Reading:
-        """What the sensors show; `acceleration` is that over ground in world axes (m/s²), `battery` in V."""
-        parameters, noise = self._parameters, self._random.gauss
+    def start(self) -> None:
+        """Begin anew at time 0, with the same readings for the same motion; beacons and faults stay."""
+        self._sensors = {
+            name: Sensor(name, quality, axes, self._seed)
+            for name, (quality, axes) in _qualities(self._parameters).items()
+        }
+        for name, fault in self._faults.items():
+            self._sensors[name].break_(fault, 0.0)
+        self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
+
+    def break_(self, sensor: str, fault: Fault, time: float) -> None:
+        """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
+        check_sensor(sensor, fault)
+        self._faults[sensor] = fault
+        self._sensors[sensor].break_(fault, time)
+
+    def set_beacons(self, positions: tuple[Vector, ...]) -> None:
+        """Have light beacons here (m) and nowhere else. Raises ValueError; see `check_beacons`."""
+        check_beacons(positions)
+        self._beacons = positions
+
+    @property
+    def broken_devices(self) -> frozenset[str]:
+        """The emulated board's devices that must not answer."""
+        return frozenset(DEVICES[name] for name, fault in self._faults.items() if fault.kind == "bus")
+
+    def read(self, time: float, state: State, acceleration: Vector, battery: float) -> Reading:
+        """What they show at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
+        parameters, sensors = self._parameters, self._sensors
         matrix = rotation(state.attitude)
         north, east, down = acceleration
-        x, y, z = to_body(matrix, (north, east, down - parameters.gravity))
-        p, q, r = state.rate
-        force_noise, rate_noise = parameters.force_noise, parameters.rate_noise
-        right, left = self._beacons(state, matrix)
+        felt = to_body(matrix, (north, east, down - parameters.gravity))
+        pressure = sensors["pressure"].read(time, (self._pressure(time, state, matrix),))
+        fx, fy, fz = sensors["accelerometer"].read(time, felt)
+        p, q, r = sensors["gyroscope"].read(time, state.rate)
+        right, left = self._seen(state, matrix)
+        first, second, third, fourth = [_encoder_error(encoder, time) for encoder in self._encoders]
         return Reading(
-            pressure=self._pressure(state, matrix),
+            pressure=max(pressure[0], 0.0),
             temperature=parameters.temperature,
-            force=(x + noise(0, force_noise), y + noise(0, force_noise), z + noise(0, force_noise)),
-            rate=(p + noise(0, rate_noise), q + noise(0, rate_noise), r + noise(0, rate_noise)),
-            beacon_right=right,
-            beacon_left=left,
-            battery=battery,
+            force=(fx, fy, fz),
+            rate=(p, q, r),
+            beacon_right=sensors["beacon_right"].read(time, (right,))[0] > 0,
+            beacon_left=sensors["beacon_left"].read(time, (left,))[0] > 0,
+            battery=max(sensors["battery"].read(time, (battery,))[0], 0.0),
+            encoders=(first, second, third, fourth),
         )
 
-    def _pressure(self, state: State, matrix: Matrix) -> float:
-        parameters = self._parameters
-        depth = state.position[2] + to_world(matrix, parameters.pressure_position)[2]
-        return parameters.surface_pressure + parameters.density * parameters.gravity * max(depth, 0.0)
+    def _pressure(self, time: float, state: State, matrix: Matrix) -> float:
+        x, y, z = to_world(matrix, self._parameters.pressure_position)
+        north, east, down = state.position
+        return self._world.pressure(time, (north + x, east + y, down + z))
 
-    def _beacons(self, state: State, matrix: Matrix) -> tuple[bool, bool]:
-        """Whether the right and the left detector see the beacon: it is near enough and within their view."""
+    def _seen(self, state: State, matrix: Matrix) -> tuple[float, float]:
+        """How well the right and the left detector see: shares of range and view that are left, above 0 seen.
+
+        A detector sees a beacon that is near enough and within its view; the brightest counts.
+        """
         parameters = self._parameters
-        north, east, down = (a - b for a, b in zip(parameters.beacon, state.position, strict=True))
-        distance = hypot(north, east, down)
-        if distance > parameters.beacon_range:
-            return False, False
-        if distance == 0:
-            return True, True
-        forward, right, _ = to_body(matrix, (north, east, down))
-        ahead = cos(parameters.beacon_detector) * forward / distance
-        aside = sin(parameters.beacon_detector) * right / distance
+        best = (-1.0, -1.0)
         edge = cos(parameters.beacon_view)
-        return ahead + aside >= edge, ahead - aside >= edge
+        for beacon in self._beacons:
+            north, east, down = (a - b for a, b in zip(beacon, state.position, strict=True))
+            distance = hypot(north, east, down)
+            near = 1 - distance / parameters.beacon_range
+            if near < -1:
+                continue
+            if distance == 0:
+                return 1.0, 1.0
+            forward, right, _ = to_body(matrix, (north, east, down))
+            ahead = cos(parameters.beacon_detector) * forward / distance
+            aside = sin(parameters.beacon_detector) * right / distance
+            views = (ahead + aside - edge) / (1 - edge), (ahead - aside - edge) / (1 - edge)
+            best = max(best[0], min(near, views[0])), max(best[1], min(near, views[1]))
+        return best
+
+
+def _encoder_error(encoder: Sensor, time: float) -> float:
+    (error,) = encoder.read(time, (0.0,))
+    return nan if encoder.holds else remainder(error, 2 * pi)
+
+
+def _qualities(parameters: Parameters) -> dict[str, tuple[Quality, int]]:
+    """How well each sensor tells, and how many axes it has."""
+    return {
+        "pressure": (parameters.pressure, 1),
+        "gyroscope": (parameters.gyroscope, 3),
+        "accelerometer": (parameters.accelerometer, 3),
+        "encoder0": (parameters.encoder, 1),
+        "encoder1": (parameters.encoder, 1),
+        "encoder2": (parameters.encoder, 1),
+        "encoder3": (parameters.encoder, 1),
+        "beacon_right": (parameters.beacon_right, 1),
+        "beacon_left": (parameters.beacon_left, 1),
+        "battery": (parameters.battery, 1),
+    }

@@ -1,21 +1,21 @@
 """The whole simulated robot apart from its board: fins in, sensor readings out."""
 
 import threading
-from math import ceil, hypot
+from math import ceil
 from typing import NamedTuple
 
 from robot_runtime.samples import Truth
 from robot_runtime.simulation.body import Body
+from robot_runtime.simulation.faults import Fault
 from robot_runtime.simulation.fins import Fins, Four
 from robot_runtime.simulation.geometry import rotation, to_world
 from robot_runtime.simulation.parameters import Parameters, Vector
 from robot_runtime.simulation.sensors import Reading, Sensors
+from robot_runtime.simulation.surroundings import Basin, Current, Trim, Waves
 from robot_runtime.simulation.world import World
 
 STEP_MAX = 0.005
 """s; at this step a position is off by less than 0.1 mm after 10 s of swimming."""
-CURRENT_MAX = 2.0
-"""m/s; ten times what the robot swims."""
 DRIVE_MAX = 63
 """The H-bridges' command at full voltage."""
 
@@ -40,7 +40,7 @@ class Simulator:
         self._parameters = parameters
         self._world = World(parameters)
         self._body = Body(parameters, Fins(parameters), self._world)
-        self._sensors = Sensors(parameters, seed)
+        self._sensors = Sensors(parameters, self._world, seed)
         self._battery = parameters.battery_full
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
         self._lock = threading.Lock()
@@ -66,21 +66,55 @@ class Simulator:
                 (after[1] - before[1]) / period,
                 (after[2] - before[2]) / period,
             )
-            return self._sensors.read(self._body.state, acceleration, self._battery)
+            return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
     def reset(self) -> None:
-        """Back to the start: at rest at the surface, looking north, with a full battery."""
-        with self._lock:
-            self._body.state = Body.at_rest(self._world.floating_depth)
-            self._battery = self._parameters.battery_full
+        """Back to the start: time 0, at rest at the surface, looking north, with a full battery.
 
-    def set_current(self, north: float, east: float, down: float) -> None:
-        """Let the water flow at this speed (m/s). Raises ValueError beyond 2 m/s."""
-        parts = (north, east, down)
-        if not all(abs(part) <= CURRENT_MAX for part in parts) or hypot(*parts) > CURRENT_MAX:
-            raise ValueError(f"a current must be finite and at most {CURRENT_MAX:g} m/s in all")
+        The sensors' noise begins anew, too. Water, trim, beacons and faults stay as they are.
+        """
         with self._lock:
-            self._body.current = parts
+            self._start()
+
+    def set_current(self, current: Current) -> None:
+        """Let the water flow so from now on."""
+        with self._lock:
+            self._world.set_current(current, self._body.time)
+
+    def set_waves(self, waves: Waves) -> None:
+        """Let this wave run. Raises ValueError where it would break in water of this depth."""
+        with self._lock:
+            self._world.set_waves(waves)
+
+    def set_trim(self, trim: Trim) -> None:
+        """Let the hull float so."""
+        with self._lock:
+            self._body.trim = trim
+
+    def set_basin(self, basin: Basin) -> None:
+        """Put floor and walls elsewhere, and go back to the start, as what was free water may now be wall.
+
+        Raises ValueError where the present waves would break there.
+        """
+        with self._lock:
+            self._world.set_basin(basin)
+            self._start()
+
+    def set_beacons(self, positions: tuple[Vector, ...]) -> None:
+        """Have light beacons here (m north, east, down) and nowhere else. Raises ValueError."""
+        with self._lock:
+            self._sensors.set_beacons(positions)
+
+    def set_fault(self, sensor: str, fault: Fault) -> None:
+        """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
+        with self._lock:
+            self._sensors.break_(sensor, fault, self._body.time)
+
+    @property
+    def broken_devices(self) -> frozenset[str]:
+        """The emulated board's devices that must not answer: imu, pressure, encoder0 to encoder3."""
+        with self._lock:
+            return self._sensors.broken_devices
 
     def truth(self) -> Truth:
         """What the body really does now."""
@@ -89,6 +123,12 @@ class Simulator:
             return Truth(
                 position=position, attitude=attitude, velocity=velocity, rate=rate, fins=self._angles
             )
+
+    def _start(self) -> None:
+        self._body.start()
+        self._world.set_current(self._world.current)
+        self._sensors.start()
+        self._battery = self._parameters.battery_full
 
     def _velocity(self) -> Vector:
         state = self._body.state

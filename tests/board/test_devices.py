@@ -183,6 +183,32 @@ def test_an_encoder_shows_the_fins_angle_with_parity(rig: Rig, monitor: Monitor)
         assert 24 * 16 / CLOCK < duration < 24 * 16 / CLOCK + 6e-6
 
 
+def test_an_encoder_shows_too_much_by_what_the_water_says(rig: Rig, monitor: Monitor) -> None:
+    def ticks() -> list[int]:
+        rig.board.run(0.002)
+        return [monitor.encoder(fin)[1] >> 6 for fin in range(4)]
+
+    before = ticks()
+    quarter = math.pi / 2
+    rig.board.sense(STILL_WATER._replace(encoders=(quarter, quarter, -quarter, 0.0)))
+    # An encoder counts down as its shaft turns on, and the left shafts turn against their fins.
+    moved = [(late - early) % 1024 for early, late in zip(before, ticks(), strict=True)]
+    assert moved == [768, 768, 768, 0]
+
+
+def test_an_encoder_without_a_reading_shows_the_last_one(rig: Rig, monitor: Monitor) -> None:
+    before = monitor.encoder(0)[1]
+    rig.board.sense(STILL_WATER._replace(encoders=(math.nan, 0.0, 0.0, 0.0)))
+    monitor.outputs(MOTOR_POWER)
+    drive(monitor, 0, 40)
+    rig.board.run(0.1)
+    assert rig.board.fins().angles[0] > 0.5
+    assert monitor.encoder(0)[1] == before
+    rig.board.sense(STILL_WATER)
+    rig.board.run(0.002)
+    assert monitor.encoder(0)[1] != before
+
+
 def test_an_absent_encoder_leaves_the_line_high(rig: Rig, monitor: Monitor) -> None:
     rig.board.fault("encoder2", "absent")
     assert monitor.encoder(2)[1] == 0xFFFF

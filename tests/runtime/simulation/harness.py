@@ -3,11 +3,23 @@
 from dataclasses import replace
 from math import cos, pi, sin
 
-from robot_runtime.simulation.body import Body, State
+from robot_runtime.simulation.body import Body
 from robot_runtime.simulation.fins import Fins, Four
-from robot_runtime.simulation.parameters import Parameters, Six, Vector
+from robot_runtime.simulation.parameters import Parameters, Quality, Six, Vector
+from robot_runtime.simulation.state import State, at_rest
 from robot_runtime.simulation.world import World
 
+PERFECT = Quality()
+QUIET = Parameters(
+    pressure=PERFECT,
+    gyroscope=PERFECT,
+    accelerometer=PERFECT,
+    encoder=PERFECT,
+    beacon_right=PERFECT,
+    beacon_left=PERFECT,
+    battery=PERFECT,
+)
+"""The default robot with sensors that tell just what they feel."""
 STILL: Four = (0.0, 0.0, 0.0, 0.0)
 NEUTRAL = Parameters(buoyancy=1.0, floor=1000.0)
 UNDAMPED = replace(NEUTRAL, damping_linear=(0.0,) * 6, damping_quadratic=(0.0,) * 6)
@@ -27,14 +39,14 @@ class SteadyPush:
 def pushed(parameters: Parameters, wrench: Six = (0.0,) * 6, depth: float = 100.0) -> Body:
     """A body at rest under a steady push."""
     body = Body(parameters, SteadyPush(wrench), World(parameters))
-    body.state = Body.at_rest(depth)
+    body.state = at_rest(depth)
     return body
 
 
 def finned(parameters: Parameters = NEUTRAL, depth: float = 100.0) -> Body:
     """A body at rest with its fins."""
     body = Body(parameters, Fins(parameters), World(parameters))
-    body.state = Body.at_rest(depth)
+    body.state = at_rest(depth)
     return body
 
 

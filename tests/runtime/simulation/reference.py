@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.simulation.body import State
 from robot_runtime.simulation.fins import Four
 from robot_runtime.simulation.parameters import Parameters, Six, Vector
+from robot_runtime.simulation.state import State
 
 Array = NDArray[np.float64]
 

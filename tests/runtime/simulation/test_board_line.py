@@ -1,5 +1,7 @@
 """The lines between water and board: whole, split, malformed."""
 
+from math import nan
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -8,7 +10,9 @@ from robot_runtime.simulation.board_line import LINE_BYTES_MAX, LineError, Lines
 from robot_runtime.simulation.sensors import Reading
 
 FINS = "fins 1.25 0.1 0.2 0.3 0.4 1 2 3 4 10 -20 30 -40 1 0"
-SENSE = Reading(106230.04, 15.0, (0.1, -0.2, -9.81), (0.001, 0.002, -0.003), True, False, 7.89)
+SENSE = Reading(
+    106230.04, 15.0, (0.1, -0.2, -9.81), (0.001, 0.002, -0.003), True, False, 7.89, (0.01, -0.02, nan, 0.0)
+)
 
 
 def test_fins_line_is_read() -> None:
@@ -41,7 +45,8 @@ def test_what_is_no_fins_line_is_refused(line: str) -> None:
 
 def test_sense_line_says_what_was_read() -> None:
     assert write_sense(SENSE) == (
-        "sense 106230.0 15.00 0.100000 -0.200000 -9.810000 0.001000 0.002000 -0.003000 1 0 7.8900\n"
+        "sense 106230.0 15.00 0.100000 -0.200000 -9.810000 0.001000 0.002000 -0.003000 1 0 7.8900 "
+        "0.01000 -0.02000 nan 0.00000\n"
     )
 
 

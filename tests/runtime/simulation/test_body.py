@@ -8,9 +8,11 @@ from random import Random
 import numpy as np
 import pytest
 
-from robot_runtime.simulation.body import Body, State
+from robot_runtime.simulation.body import Body
 from robot_runtime.simulation.geometry import normalize, rotation, to_body, to_world
 from robot_runtime.simulation.parameters import Parameters, Six, Vector
+from robot_runtime.simulation.state import State
+from robot_runtime.simulation.surroundings import Current
 from tests.runtime.simulation.harness import NEUTRAL, STILL, UNDAMPED, drift, pushed
 from tests.runtime.simulation.reference import acceleration
 from tests.runtime.simulation.reference import rotation as reference_rotation
@@ -52,10 +54,11 @@ def test_acceleration_equals_the_textbook_matrices() -> None:
         wrench: Six = (*some_vector(random, 2.0), *some_vector(random, 0.2))
         parameters = Parameters(floor=1000.0)
         body = pushed(parameters, wrench)
-        body.current = some_vector(random, 0.5)
+        current = some_vector(random, 0.5)
+        body.world.set_current(Current(*current))
         state = some_state(random)
         got = body.derivative(state, STILL, STILL)
-        expected = acceleration(parameters, state, body.current, wrench)
+        expected = acceleration(parameters, state, current, wrench)
         assert (*got.velocity, *got.rate) == pytest.approx(tuple(expected), rel=1e-9, abs=1e-9)
 
 
@@ -159,16 +162,17 @@ def test_damping_only_takes_energy() -> None:
 
 def test_hull_drifts_with_the_current() -> None:
     body = pushed(NEUTRAL)
-    body.current = (0.3, -0.2, 0.1)
+    current = (0.3, -0.2, 0.1)
+    body.world.set_current(Current(*current))
     state = drift(body, 120, 0.01)
-    assert to_world(rotation(state.attitude), state.velocity) == pytest.approx(body.current, abs=1e-3)
+    assert to_world(rotation(state.attitude), state.velocity) == pytest.approx(current, abs=1e-3)
 
 
 def test_a_current_carries_every_motion_along_unchanged() -> None:
     """Galilei: motion in a steady current, seen by who drifts with it, is the motion in still water."""
     current = (0.3, -0.2, 0.1)
     still, carried = tumbling(NEUTRAL), tumbling(NEUTRAL)
-    carried.current = current
+    carried.world.set_current(Current(*current))
     x, y, z = to_world(rotation(still.state.attitude), still.state.velocity)
     moving = (x + current[0], y + current[1], z + current[2])
     carried.state = carried.state._replace(velocity=to_body(rotation(still.state.attitude), moving))

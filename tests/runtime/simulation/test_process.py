@@ -18,10 +18,10 @@ from robot_runtime import samples
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.messages import Messages
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.process import PERIOD, Process
 from robot_runtime.simulation.simulator import Simulator
 from robot_runtime.topics import read_blocks, read_rows
+from tests.runtime.simulation.harness import QUIET
 
 DEADLINE = 10.0
 RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
@@ -60,7 +60,7 @@ class Board:
         self.line.sendall(fins)
         word, *numbers = self.hear().split()
         assert word == "sense"
-        assert len(numbers) == 11
+        assert len(numbers) == 15
         return [float(number) for number in numbers]
 
     def hang_up(self) -> None:
@@ -101,7 +101,7 @@ def clock() -> SimulatedClock:
 @pytest.fixture
 def process(folder: Path, board: Board, messages: Messages, clock: SimulatedClock) -> Iterator[Process]:
     del board
-    made = Process(Simulator(Parameters(), seed=1), folder / "board", messages, clock)
+    made = Process(Simulator(QUIET, seed=1), folder / "board", messages, clock)
     thread = threading.Thread(target=made.run)
     thread.start()
     yield made
@@ -240,6 +240,44 @@ class TestAttached:
     def test_impossible_currents_are_refused(self, messages: Messages, question: dict[str, object]) -> None:
         with pytest.raises(Refused, match=r"takes|number|at most 2 m/s"):
             messages.ask("simulator/current", question)
+
+    def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
+        self, board: Board, messages: Messages
+    ) -> None:
+        board.accept()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
+        messages.ask("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear() == "fault imu absent"
+        assert board.hear().startswith("sense ")
+        board.line.sendall(b"ok\nok\n")
+        board.exchange()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault imu none"
+        assert board.hear().startswith("sense ")
+        board.accept()
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear().startswith("sense ")
+
+    @pytest.mark.parametrize(
+        ("name", "question"),
+        [
+            ("waves", {"amplitude": 0.1, "period": 3, "direction": 0.5}),
+            ("trim", {"buoyancy": 1.01, "forward": 0, "right": 0, "above": 0.01}),
+            ("world", {"depth": 2, "length": 8, "width": 4}),
+            ("beacons", {"positions": [[2, 0, 0.5]]}),
+            ("fault", {"sensor": "battery", "kind": "drift", "speed": -0.1}),
+        ],
+    )
+    def test_everything_can_be_asked_for_over_zenoh(
+        self, messages: Messages, name: str, question: dict[str, object]
+    ) -> None:
+        assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
+        with pytest.raises(Refused, match="takes"):
+            messages.ask(f"simulator/{name}", {})
 
     def test_reset_takes_nothing(self, messages: Messages) -> None:
         with pytest.raises(Refused, match="takes nothing, not depth"):

@@ -1,18 +1,20 @@
 """The simulated robot as the board meets it: fins in, readings out."""
 
 from itertools import pairwise
-from math import inf, nan, pi
+from math import copysign, inf, nan, pi, remainder, sin, sqrt
+from statistics import stdev
 
 import pytest
 
+from robot_runtime.control.controllers import BangBang, BangBangDeadZone, Controller, Pid
 from robot_runtime.simulation.fins import Four
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.sensors import Reading
 from robot_runtime.simulation.simulator import FinMotion, Simulator
-from tests.runtime.simulation.harness import STILL, Flapping
+from robot_runtime.simulation.surroundings import Current
+from tests.runtime.simulation.harness import QUIET, STILL, Flapping
 
 PERIOD = 0.005
-QUIET = Parameters(rate_noise=0.0, force_noise=0.0)
 UP = -pi / 2
 
 
@@ -112,7 +114,7 @@ def test_reset_goes_back_to_the_start() -> None:
 
 def test_current_carries_the_robot() -> None:
     simulator = Simulator(QUIET, seed=1)
-    simulator.set_current(0.2, -0.1, 0.0)
+    simulator.set_current(Current(0.2, -0.1, 0.0))
     rest(simulator, 60)
     before = simulator.truth().position
     rest(simulator, 10)
@@ -127,14 +129,14 @@ def test_current_carries_the_robot() -> None:
 def test_impossible_current_is_refused(wrong: tuple[float, float, float]) -> None:
     simulator = Simulator(QUIET, seed=1)
     with pytest.raises(ValueError, match="at most 2 m/s"):
-        simulator.set_current(*wrong)
+        simulator.set_current(Current(*wrong))
     rest(simulator, 1)
     assert simulator.truth().position[:2] == pytest.approx((0, 0), abs=1e-9)
 
 
 def test_strongest_current_is_taken() -> None:
     simulator = Simulator(QUIET, seed=1)
-    simulator.set_current(0.0, -2.0, 0.0)
+    simulator.set_current(Current(0.0, -2.0, 0.0))
     rest(simulator, 10)
     assert simulator.truth().position[1] < -5
 
@@ -152,20 +154,74 @@ def test_battery_drains_faster_while_the_motors_are_driven() -> None:
     assert loss((63, 63, 63, 63), powered=False) == pytest.approx(0.1)
 
 
-def test_bang_bang_control_ends_in_a_limit_cycle() -> None:
-    """Full force towards 0.5 m at 10 Hz, from depth in steps of 1 cm, swings about the set point for good."""
+def controlled(controller: Controller, seconds: float = 60.0) -> list[float]:
+    """Depths every 5 ms of a robot that is steered at 10 Hz towards 0.5 m, by depth in steps of 1 cm.
+
+    Its fins move as the firmware lets them: 80 ticks in 0.1 s for their direction, 0.12 s to their full
+    amplitude, and motors of 12.6 rad/s.
+    """
     simulator = Simulator(QUIET, seed=1)
-    down, up = Flapping((UP,) * 4), Flapping((-UP,) * 4)
-    chosen, depths, pushes = down, [], []
-    for index in range(round(60 / PERIOD)):
-        time = (index + 1) * PERIOD
-        motion = FinMotion(chosen.at(time), chosen.speeds_at(time), STILL, powered=True)
+    controller.start()
+    direction = amplitude = wanted = size = 0.0
+    angles, depths = [0.0] * 4, list[float]()
+    for index in range(1, round(seconds / PERIOD) + 1):
+        direction += limited(wrapped(wanted - direction), 80 * 2 * pi / 1024 / 0.1 * PERIOD)
+        amplitude += limited(size - amplitude, 1.6 / 0.12 * PERIOD)
+        speeds = []
+        for fin, phase in enumerate((pi, 0.0, 0.0, pi)):
+            goal = direction + amplitude / 2 * sin(2 * pi * 1.3 * index * PERIOD + phase)
+            turn = limited(wrapped(goal - angles[fin]), 12.6 * PERIOD)
+            angles[fin] += turn
+            speeds.append(turn / PERIOD)
+        a, b, c, d = angles
+        e, f, g, h = speeds
+        motion = FinMotion((a, b, c, d), (e, f, g, h), STILL, powered=True)
         depths.append(depth(simulator.advance(PERIOD, motion)))
-        if (index + 1) % 20 == 0:
-            chosen = down if round(depths[-1], 2) < 0.5 else up
-            pushes.append(chosen is down)
-    late = depths[round(30 / PERIOD) :]
-    assert sum(late) / len(late) == pytest.approx(0.5, abs=0.05)
-    assert 0.02 < max(late) - min(late) < 0.3
-    turns = sum(early != later for early, later in pairwise(pushes[300:]))
-    assert turns >= 10
+        if index % 20 == 0:
+            command = controller.step(0.5, round(depths[-1], 2), 0.1)
+            size = 1.6 * abs(command)
+            wanted = copysign(UP, -command) if command else wanted
+    return depths
+
+
+def limited(value: float, most: float) -> float:
+    return min(max(value, -most), most)
+
+
+def wrapped(angle: float) -> float:
+    return remainder(angle, 2 * pi)
+
+
+def deviation(depths: list[float]) -> tuple[float, float, float]:
+    """RMSE from 0.5 m, peak to peak (m) and period (s) of the second half."""
+    late = depths[len(depths) // 2 :]
+    rmse = sqrt(sum((value - 0.5) ** 2 for value in late) / len(late))
+    downs = [index for index, (early, later) in enumerate(pairwise(late)) if early < 0.5 <= later]
+    return rmse, max(late) - min(late), PERIOD * (downs[-1] - downs[0]) / (len(downs) - 1)
+
+
+def test_bang_bang_control_ends_in_the_limit_cycle_of_the_reference() -> None:
+    """The trial that the model was chosen by: RMSE 5 to 8 cm, 19 to 27 cm from peak to peak with ±5 cm."""
+    rmse, span, period = deviation(controlled(BangBangDeadZone()))
+    assert 0.05 < rmse < 0.08
+    assert 0.19 < span < 0.27
+    assert 2 < period < 6
+
+
+def test_bang_bang_without_dead_zone_swings_too_and_pid_less() -> None:
+    rmse, span, period = deviation(controlled(BangBang()))
+    assert 0.04 < rmse < 0.08
+    assert 0.15 < span < 0.27
+    assert 1.5 < period < 4
+    assert deviation(controlled(Pid()))[0] < 0.6 * rmse
+
+
+def test_sensors_are_as_noisy_as_their_parameters_say() -> None:
+    simulator = Simulator(Parameters(), seed=2)
+    readings = [rest(simulator) for _ in range(2000)]
+    depths = [depth(reading) for reading in readings]
+    assert stdev(depths) == pytest.approx(42 / 9810, rel=0.1)
+    assert stdev(reading.force[0] for reading in readings) == pytest.approx(1.7e-2, rel=0.1)
+    assert stdev(reading.rate[0] for reading in readings) == pytest.approx(2e-4, rel=0.2)
+    assert stdev(reading.encoders[0] for reading in readings) == pytest.approx(2.1e-3, rel=0.1)
+    assert readings[-1].battery == pytest.approx(8.2, abs=0.1)

@@ -1,12 +1,9 @@
 """The surface and the floor."""
 
-from dataclasses import replace
 from math import pi
 
 import pytest
 
-from robot_runtime.simulation.body import State
-from robot_runtime.simulation.geometry import normalize, rotation, to_world
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.world import World
 from tests.runtime.simulation.harness import STILL, Flapping, drift, finned, pushed
@@ -16,7 +13,7 @@ TOP = PARAMETERS.height / 2
 
 
 def test_starts_floating_at_rest() -> None:
-    body = finned(PARAMETERS, World(PARAMETERS).floating_depth)
+    body = finned(PARAMETERS, World(PARAMETERS).floating_depth(PARAMETERS.buoyancy))
     start = body.state
     state = drift(body, 10, 0.005)
     assert state.position == pytest.approx(start.position, abs=1e-9)
@@ -30,7 +27,7 @@ def test_rises_from_below_and_comes_to_rest_at_the_surface() -> None:
         body.step(0.005, STILL, STILL)
         depths.append(body.state.position[2])
     assert min(depths) > TOP - 0.02
-    assert depths[-1] == pytest.approx(World(PARAMETERS).floating_depth, abs=1e-3)
+    assert depths[-1] == pytest.approx(World(PARAMETERS).floating_depth(PARAMETERS.buoyancy), abs=1e-3)
 
 
 def test_does_not_fly_out_however_hard_it_swims_upwards() -> None:
@@ -64,29 +61,6 @@ def test_waves_take_speed_only_where_the_hull_breaks_the_surface() -> None:
     assert world.wave_drag(0.04, -0.1) == pytest.approx(4.0)
     assert world.wave_drag(0.06, 0.1) == 0
     assert world.wave_drag(-0.06, 0.1) == 0
-
-
-def test_lies_on_the_floor_and_leaves_it() -> None:
-    heavy = Parameters(buoyancy=0.99)
-    body = pushed(heavy, depth=2.5)
-    state = drift(body, 20, 0.005)
-    assert state.position[2] == pytest.approx(3.0 - TOP)
-    assert to_world(rotation(state.attitude), state.velocity)[2] == pytest.approx(0, abs=1e-3)
-    lifted = pushed(PARAMETERS, (0, 0, -0.5, 0, 0, 0), depth=3.0 - TOP)
-    assert drift(lifted, 2, 0.005).position[2] < 2.9
-
-
-def test_floor_takes_only_the_speed_towards_it() -> None:
-    velocities = []
-    for parameters in (PARAMETERS, replace(PARAMETERS, floor=1000.0)):
-        body = pushed(parameters)
-        attitude = normalize((0.9, 0.1, 0.2, 0.0))
-        body.state = State((0.0, 0.0, 2.9499), attitude, (0.2, 0.1, 0.5), (0.0, 0.0, 0.0))
-        body.step(0.001, STILL, STILL)
-        velocities.append(to_world(rotation(body.state.attitude), body.state.velocity))
-    on_floor, free = velocities
-    assert free[2] > 0.1
-    assert on_floor == pytest.approx((free[0], free[1], 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(

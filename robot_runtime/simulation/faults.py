@@ -1,0 +1,67 @@
+"""What can be wrong with a sensor, on request."""
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Literal, get_args
+
+Kind = Literal["none", "stuck", "dropout", "spike", "drift", "bus"]
+
+DEVICES = {
+    "pressure": "pressure",
+    "gyroscope": "imu",
+    "accelerometer": "imu",
+    "encoder0": "encoder0",
+    "encoder1": "encoder1",
+    "encoder2": "encoder2",
+    "encoder3": "encoder3",
+}
+"""The emulated board's device behind each sensor on a bus. Gyroscope and accelerometer are one chip."""
+SENSORS = (*DEVICES, "beacon_right", "beacon_left", "battery")
+
+_NUMBERS: dict[str, tuple[str, ...]] = {
+    "dropout": ("share",),
+    "spike": ("share", "size"),
+    "drift": ("speed",),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """A sensor's fault. Raises ValueError where the numbers do not belong to the kind."""
+
+    kind: Kind = "none"
+    """stuck: shows its last reading for ever. dropout: some readings never come, and the last one stays.
+    spike: some readings jump up or down. drift: the offset grows steadily. bus: the part does not answer."""
+    share: float | None = None
+    """Of the readings that drop out or jump, above 0, at most 1."""
+    size: float | None = None
+    """By which a reading jumps, in the sensor's unit, above 0."""
+    speed: float | None = None
+    """At which the offset grows, in the sensor's unit per second."""
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Kind):
+            raise ValueError(f"there is no fault {self.kind!r}; there are {', '.join(get_args(Kind))}")
+        wanted = _NUMBERS.get(self.kind, ())
+        for name in ("share", "size", "speed"):
+            value = getattr(self, name)
+            if (value is not None) != (name in wanted):
+                takes = " and ".join(wanted) or "no numbers"
+                raise ValueError(f"the fault {self.kind} takes {takes}")
+            if value is not None and not isfinite(value):
+                raise ValueError(f"a fault's {name} is {value}; it must be finite")
+        if self.share is not None and not 0 < self.share <= 1:
+            raise ValueError(f"a fault's share is {self.share:g}; it must be above 0 and at most 1")
+        if self.size is not None and not self.size > 0:
+            raise ValueError(f"a fault's size is {self.size:g}; it must be above 0")
+
+
+SOUND = Fault()
+
+
+def check_sensor(sensor: str, fault: Fault) -> None:
+    """Raises ValueError where there is no such sensor, or it cannot have this fault."""
+    if sensor not in SENSORS:
+        raise ValueError(f"there is no sensor {sensor!r}; there are {', '.join(SENSORS)}")
+    if fault.kind == "bus" and sensor not in DEVICES:
+        raise ValueError(f"{sensor} has a wire of its own and is on no bus; take stuck or dropout")

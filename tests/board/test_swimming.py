@@ -1,0 +1,86 @@
+"""The robot's firmware, on the emulated board, swims in the simulated water with sound and broken sensors."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import fmean
+
+import pytest
+
+from robot_runtime.packets import Beacon, Depth, Imu, Motor, Navigation
+from robot_runtime.simulation.faults import Fault
+from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.simulation.simulator import Simulator
+from tests.board.host import TICK, Robot, all_of, last, start
+from tests.board.rig import ROOT, build
+
+PERIOD = 0.005
+DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
+FLAPS_TICKS = 154
+"""Two flaps at 1.3 Hz."""
+SENSOR_HEIGHT = 0.05
+"""m from the hull's centre to the pressure sensor above it."""
+
+
+@pytest.fixture
+def water() -> Simulator:
+    return Simulator(Parameters(), seed=5)
+
+
+@pytest.fixture
+def robot(built: None, tmp_path: Path, water: Simulator) -> Iterator[Robot]:  # noqa: ARG001 - built first
+    build(ROOT / "firmware", "robot")
+    with start("robot", tmp_path) as rig:
+        rig.board.attach(PERIOD, lambda fins: water.advance(PERIOD, fins))
+        made = Robot(rig)
+        made.listen(1.0)
+        yield made
+
+
+def test_it_dives_and_knows_how_deep(robot: Robot, water: Simulator) -> None:
+    robot.arm()
+    robot.converse(4.0, DOWN)
+    shown = [packet.depth for packet in all_of(robot.converse(0.5, DOWN), Depth)]
+    true = water.truth().position[2] - SENSOR_HEIGHT
+    assert true > 0.3
+    # 0.5 s at 0.18 m/s, and noise of 4 mm on the surface's pressure and on each reading.
+    assert fmean(shown) == pytest.approx(true - 0.045, abs=0.03)
+    assert len(set(shown)) > 5
+
+
+def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(robot: Robot, water: Simulator) -> None:
+    robot.arm()
+    robot.converse(1.0, DOWN)
+    water.set_fault("pressure", Fault(kind="stuck"))
+    robot.converse(0.2, DOWN)
+    depths = [packet.depth for packet in all_of(robot.converse(2.0, DOWN), Depth)]
+    assert max(depths) - min(depths) <= 0.001
+    assert water.truth().position[2] > 0.2
+
+
+def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulator) -> None:
+    robot.arm()
+    robot.converse(2.0, DOWN)
+    water.set_fault("encoder1", Fault(kind="drift", speed=0.2))
+    robot.converse(2.0, DOWN)
+    packets, angles = [], []
+    for _ in range(FLAPS_TICKS):
+        packets += robot.converse(TICK, DOWN)
+        angles.append(robot.board.fins().angles)
+    shown = [fmean(told) for told in zip(*[packet.angle for packet in all_of(packets, Motor)], strict=True)]
+    true = [fmean(angle) for angle in zip(*angles, strict=True)]
+    # The firmware sees its fin where it wants it, and it stands 0.57 rad behind that by then.
+    assert shown == pytest.approx([-math.pi / 2] * 4, abs=0.2)
+    assert true[1] - true[0] == pytest.approx(-0.57, abs=0.15)
+    assert true[2] - true[3] == pytest.approx(0, abs=0.15)
+
+
+def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simulator) -> None:
+    quiet = all_of(robot.listen(1.0), Imu)
+    assert max(abs(part) for packet in quiet for part in packet.rate) < 0.05
+    assert last(robot.listen(0.3), Beacon).right
+    water.set_fault("gyroscope", Fault(kind="spike", share=0.3, size=1.0))
+    water.set_beacons(())
+    loud = all_of(robot.listen(1.0), Imu)
+    assert 0.9 < max(abs(part) for packet in loud for part in packet.rate) < 1.1
+    assert not last(robot.listen(0.3), Beacon).right
