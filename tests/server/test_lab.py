@@ -222,7 +222,7 @@ def test_a_lab_that_cannot_begin_says_why(settings: Settings, monkeypatch: pytes
     asyncio.run(scenario())
 
 
-REFUSED = [
+REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"delay": [-1]}, "test 1: delay[0]: -1 is not a delay"),
     ({"delay": []}, "test 1: delay"),
     ({"baud_rate": [230400]}, "test 1: baud_rate[0]"),
