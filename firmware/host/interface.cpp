@@ -51,7 +51,7 @@ FramePacker* packer_create() { return new FramePacker; }
 void packer_destroy(FramePacker* packer) { delete packer; }
 
 bool packer_add(FramePacker* packer, uint8_t type, const uint8_t* payload, uint8_t size) {
-  if (!packer->fits(type, size)) return false;
+  if (!packer->fits(size)) return false;
   packer->add(type, payload, size);
   return true;
 }

@@ -84,9 +84,8 @@ class FrameDecoder {
 // Gathers messages into one frame.
 class FramePacker {
  public:
-  bool fits(uint8_t type, uint8_t payload_size) const {
-    const uint8_t room = is_reliable(type) ? kReliableMessagesBytesMax : kMessagesBytesMax;
-    return size_ + 1 + payload_size <= kControlBytes + room;
+  bool fits(uint8_t payload_size) const {
+    return size_ + 1 + payload_size <= kControlBytes + kMessagesBytesMax;
   }
   // Only where it fits.
   void add(uint8_t type, const void* payload, uint8_t payload_size);

@@ -109,7 +109,7 @@ void Link::take_held(uint8_t held) {
 }
 
 void Link::put(uint8_t type, const void* payload, uint8_t size) {
-  if (!packer_.fits(type, size)) flush();
+  if (!packer_.fits(size)) flush();
   packer_.add(type, payload, size);
 }
 
@@ -200,7 +200,7 @@ uint8_t Link::pack(uint8_t offset, uint8_t limit) {
   uint8_t message[kReliableBytesMax];
   while (packed < limit) {
     const uint8_t size = queue_.peek(offset + packed, message);
-    if (size == 0 || !packer_.fits(message[0], size - 1)) break;
+    if (size == 0 || !packer_.fits(size - 1)) break;
     packer_.add(message[0], message + 1, size - 1);
     packed += size;
   }
