@@ -24,7 +24,7 @@ _START = 0.1
 _STEP_BYTES = 4
 _FRAMES = 150
 _SECONDS_MIN = 5.0
-_DRAIN = 20.0
+_DRAIN = 60.0
 """Longest frames' airtime."""
 
 
@@ -64,21 +64,12 @@ def goodput(baud: int, size: int, bit_errors: float = 0.0) -> float:
         airtime = _FRAMES * 64 * _BITS_PER_BYTE / baud
         began = host.now
         heard, acknowledged = host.heard, host.delivered
-        host.run(max(airtime, _SECONDS_MIN), talk=True)
+        host.talk(max(airtime, _SECONDS_MIN))
         passed = host.now - began
         heard, acknowledged = host.heard - heard, host.delivered - acknowledged
         for direction in _DIRECTIONS:
             rig.board.clean_line(direction)
         host.check()
-    print(
-        baud,
-        size,
-        bit_errors,
-        heard * size / (passed * baud / 10),
-        acknowledged * size / (passed * baud / 10),
-        host._channel.counters,
-        host._report,
-    )
     return min(heard, acknowledged) * size / (passed * baud / _BITS_PER_BYTE)
 
 
@@ -114,22 +105,24 @@ class _Host:
         self._decoder.key = session_key(_HOST_EPOCH, board.epoch)
         self._channel = Channel(self._baud, board.credit, self._decoder.key)
         self.now = self._rig.board.stats()["time"]
-        self.run(_START + 10 * 64 * self._byte_time, talk=True)
+        self.talk(_START + 10 * 64 * self._byte_time)
 
-    def run(self, seconds: float, talk: bool) -> None:
-        """Let time pass; with more to say than the line carries, or with nothing."""
+    def talk(self, seconds: float) -> None:
+        """Let time pass with more to say than the line carries."""
         end = self.now + seconds
         while self.now < end:
-            if talk:
-                self._top_up()
+            self._top_up()
             self._pass()
 
     def check(self) -> None:
         """Let all arrive that is under way. Raises RuntimeError where lines are missing or not in order."""
-        self._top_up()
-        self.run(_DRAIN * 64 * self._byte_time + 1.0, talk=False)
+        end = self.now + _DRAIN * 64 * self._byte_time + 1.0
+        while self._channel.pending() and self.now < end:
+            self._pass()
         self._channel.offer(encode(Heartbeat(time=0)), self.now)
-        self.run(_DRAIN * 64 * self._byte_time, talk=False)
+        end = self.now + _DRAIN * 64 * self._byte_time
+        while self._report is None and self.now < end:
+            self._pass()
         report = self._report
         if report is None:
             raise RuntimeError("the board does not tell what has come")
