@@ -16,6 +16,8 @@ PARTS = (
     "codec",
     "link",
     "corruption",
+    "chip",
+    "comm_test",
     "setpoint",
     "connection",
     "start",

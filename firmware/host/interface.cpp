@@ -9,6 +9,7 @@
 #include "link/crc32.h"
 #include "link/debug.h"
 #include "link/frame.h"
+#include "link/message_queue.h"
 #include "robot.h"
 #include "sensors/as5040.h"
 #include "sensors/attitude.h"
@@ -61,24 +62,20 @@ uint8_t packer_close(FramePacker* packer, uint16_t number, uint8_t acknowledged,
   return packer->close(number, acknowledged, key, *reinterpret_cast<uint8_t(*)[kFrameBytesMax]>(frame));
 }
 
-DebugQueue* queue_create() { return new DebugQueue; }
-void queue_destroy(DebugQueue* queue) { delete queue; }
-uint16_t queue_lost(const DebugQueue* queue) { return queue->lost(); }
+MessageQueue* queue_create() { return new MessageQueue; }
+void queue_destroy(MessageQueue* queue) { delete queue; }
 
-void queue_push(DebugQueue* queue, const char* text, uint8_t size) {
-  DebugLine line(DebugLevel::kInfo);
-  memcpy(line.packet().text, text, size);
-  line.packet().text_size = size;
-  queue->push(line.packet());
+bool queue_push(MessageQueue* queue, uint8_t type, const uint8_t* payload, uint8_t size) {
+  return queue->push(type, payload, size);
 }
 
-// Takes the oldest line's text; its size, or -1 where there is none.
-int queue_pop(DebugQueue* queue, char* text) {
-  Debug line;
-  if (!queue->peek(0, &line)) return -1;
-  queue->drop(debug_bytes(line));
-  memcpy(text, line.text, line.text_size);
-  return line.text_size;
+// Takes the oldest message, its type first; its size, or 0 where there is none.
+uint8_t queue_pop(MessageQueue* queue, uint8_t* out) {
+  uint8_t message[kReliableBytesMax];
+  const uint8_t size = queue->peek(0, message);
+  queue->drop(size);
+  memcpy(out, message, size);
+  return size;
 }
 
 // A number as a line of text writes it, with that many digits, or with as many as it takes where they are 0.

@@ -4,9 +4,10 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xf3db8247UL;
+constexpr uint32_t kDefinitionsHash = 0x7089247cUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
+constexpr uint8_t kNotReady = 128;
 
 enum class DebugLevel : uint8_t {
   kDebug = 0,
@@ -153,9 +154,33 @@ static_assert(sizeof(Heartbeat) == 4, "Heartbeat has another size");
 // Both ways: which reliable frames came after the first that is missing.
 struct __attribute__((packed)) Acknowledge {
   static constexpr uint8_t kType = 0x0d;
-  uint8_t held;  // bit n: frame acknowledged + 1 + n is here
+  uint8_t held;  // bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait
 };
 static_assert(sizeof(Acknowledge) == 1, "Acknowledge has another size");
+
+// Both ways, in the communication test alone: a number.
+struct __attribute__((packed)) TestMsg {
+  static constexpr uint8_t kType = 0x0e;
+  uint16_t number;
+};
+static_assert(sizeof(TestMsg) == 2, "TestMsg has another size");
+
+// Host to board, in the communication test alone: asks what has come.
+struct __attribute__((packed)) RequestResult {
+  static constexpr uint8_t kType = 0x0f;
+};
+static_assert(sizeof(RequestResult) == 1, "RequestResult has another size");
+
+// Board to host, in the communication test alone: what has come.
+struct __attribute__((packed)) TestResult {
+  static constexpr uint8_t kType = 0x10;
+  uint16_t right;  // numbers of the test, each above all right ones before it
+  uint16_t out_of_sequence;  // other numbers
+  uint16_t frames_invalid;  // frames thrown away
+  uint16_t frames_repeated;  // reliable frames sent again
+  uint16_t bytes_lost;  // received bytes lost for want of room
+};
+static_assert(sizeof(TestResult) == 10, "TestResult has another size");
 
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
@@ -171,11 +196,14 @@ inline int8_t payload_bytes(uint8_t type) {
     case Status::kType: return 23;
     case Heartbeat::kType: return 4;
     case Acknowledge::kType: return 1;
+    case TestMsg::kType: return 2;
+    case RequestResult::kType: return 0;
+    case TestResult::kType: return 10;
     default: return -1;
   }
 }
 
 // Whether a packet of this type is repeated until it is acknowledged.
-constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType; }
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType; }
 
 }  // namespace mucat

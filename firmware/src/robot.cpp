@@ -1,7 +1,5 @@
 #include "robot.h"
 
-#include <string.h>
-
 #include "board/board.h"
 #include "led.h"
 #include "schedule.h"
@@ -13,13 +11,6 @@ constexpr uint8_t kTicksPerSecond = 100;
 constexpr uint16_t kNoBoot = 0;
 // How long the fins have for turning down once the battery is low; half a turn takes 0.64 s.
 constexpr uint32_t kLoweringMs = 1500;
-
-template <typename Packet>
-Packet unpack(const Message& message) {
-  Packet packet;
-  memcpy(&packet, message.payload, sizeof packet);
-  return packet;
-}
 
 template <typename Enum>
 constexpr uint8_t bit(Enum flag, bool on) {
@@ -35,7 +26,7 @@ void Robot::start() {
   arming_.begin(epoch_);
   sensors_.start(board::reset_cause() == ResetCause::kPowerOn);
   say_boot();
-  send_hello();
+  link_.greet(epoch_);
 }
 
 void Robot::step() {
@@ -80,9 +71,7 @@ void Robot::handle(const Message& message) {
 
 void Robot::greet(const Hello& hello) {
   say_disarmed(arming_.greet(hello));
-  link_.begin(session_key(hello.epoch, epoch_));
-  link_.set_credit(hello.credit);
-  send_hello();
+  link_.answer(hello, epoch_);
 }
 
 void Robot::arm(const Start& start) {
@@ -173,8 +162,6 @@ void Robot::send_status() {
   said_armed_ = armed();
   link_.send(status);
 }
-
-void Robot::send_hello() { link_.send_open(Hello{kDefinitionsHash, epoch_, board::kLineCredit}); }
 
 uint8_t Robot::flags() const {
   return bit(StatusFlag::kArmed, armed()) | bit(StatusFlag::kHostAlive, arming_.host_alive()) |

@@ -26,7 +26,6 @@ class Robot {
   Motion motion(uint32_t now_ms);
   void send_telemetry();
   void send_status();
-  void send_hello();
   uint8_t faults() const { return sensors_.faults() | fins_.faults(); }
   uint8_t flags() const;
   void say_boot();

@@ -109,6 +109,15 @@ describe('Live', () => {
     expect(live.gaps.missed(2)).toBe(3);
   });
 
+  it('measures age by what the line carries', () => {
+    server().greet();
+    server().give(depthBlock(99.9, [0.1]));
+    vi.advanceTimersByTime(1300);
+    expect(live.freshness('depth').state).toBe('stale');
+    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 101, paces: [{ topic: 'depth', period: 0.5 }] }]));
+    expect(live.freshness('depth').state).toBe('fresh');
+  });
+
   it('asks for a reload, and reads no rows, where definitions differ', () => {
     server().greet({ definitions: 'deadbeef' });
     server().give(depthBlock(99, [0.1]));

@@ -1,5 +1,7 @@
 """Compiles the test's sketch for one baud and one Arduino delay, as firmware/Makefile compiles the robot's.
 
+For the robot's framing the parts of its library that make up the link are compiled for that baud as well.
+
 Products are kept in a folder named by the hash of everything that goes into them: sources, core, flags
 and the compiler's version.
 """
@@ -8,7 +10,7 @@ import hashlib
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +22,9 @@ COMPILE_TIMEOUT = 60.0
 HASH_CHARACTERS = 16
 ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
 SKETCHES = Path(__file__).resolve().parents[2] / "firmware/examples"
+LIBRARY = Path(__file__).resolve().parents[2] / "firmware/src"
+LINK_PARTS = ("link", "board/avr")
+"""The folders of the library that the sketch needs."""
 
 MCU = ("-mmcu=atmega328p",)
 COMMON = (
@@ -69,7 +74,10 @@ class Builder:
             raise BuildError(f"the Arduino core is not in {ARDUINO}; install the package arduino-core-avr")
         self._sketch = SKETCHES / SKETCH
         self._core_hash = self._hash(self._core_files(), [*COMMON, *CXX])
-        self.firmware_hash = self._hash(self._sketch_files(), [self._core_hash, *CXX, *OWN, *LINK])
+        library_files = [*_library_sources(), *sorted(LIBRARY.rglob("*.h"))]
+        self._library_hash = self._hash(library_files, [*CXX, *OWN])
+        words = [self._core_hash, self._library_hash, *CXX, *OWN, *LINK]
+        self.firmware_hash = self._hash(self._sketch_files(), words)
         """Of everything but the parameters."""
 
     def build(self, test: CommTest, baud: int, arduino_delay: float) -> Product:
@@ -78,16 +86,28 @@ class Builder:
         inputs = self._hash([], [self.firmware_hash, *parameters])
         place = self._folder / inputs
         if not place.exists():
-            self._make(place, lambda unfinished: self._compile_sketch(unfinished, parameters))
+            library = baud if FRAMINGS[test.framing].library else None
+            self._make(place, lambda unfinished: self._compile_sketch(unfinished, parameters, library))
         return Product(place / "comm_test.elf", place / "comm_test.hex", inputs)
 
-    def _compile_sketch(self, folder: Path, parameters: Sequence[str]) -> None:
+    def _compile_sketch(self, folder: Path, parameters: Sequence[str], library: int | None) -> None:
         objects, elf = folder / "comm_test.o", folder / "comm_test.elf"
-        include = ("-x", "c++", "-include", "Arduino.h")
+        include = (f"-I{LIBRARY}", "-x", "c++", "-include", "Arduino.h")
         _run(["avr-g++", *CXX, *OWN, *parameters, *include, "-c", str(self._sketch), "-o", str(objects)])
-        _run(["avr-gcc", *LINK, str(objects), str(self._core()), "-o", str(elf), "-lm"])
+        archives = [self._library(library), self._core()] if library else [self._core()]
+        _run(["avr-gcc", *LINK, str(objects), *map(str, archives), "-o", str(elf), "-lm"])
         _run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", str(elf), str(folder / "comm_test.hex")])
         objects.unlink()
+
+    def _library(self, baud: int) -> Path:
+        place = self._folder / f"library-{self._hash([], [self._library_hash, str(baud)])}"
+        if not place.exists():
+            self._make(place, lambda unfinished: self._compile_library(unfinished, baud))
+        return place / "library.a"
+
+    def _compile_library(self, folder: Path, baud: int) -> None:
+        command = ["avr-g++", *CXX, *OWN, f"-I{LIBRARY}", f"-DMUCAT_BAUD={baud}"]
+        _archive(folder / "library.a", dict.fromkeys(_library_sources(), command))
 
     def _core(self) -> Path:
         place = self._folder / f"core-{self._core_hash}"
@@ -101,12 +121,7 @@ class Builder:
             ".cpp": ["avr-g++", *CXX, "-w"],
             ".S": ["avr-gcc", *COMMON, "-x", "assembler-with-cpp"],
         }
-        objects = []
-        for source in self._core_sources:
-            made = folder / f"{source.name}.o"
-            _run([*commands[source.suffix], "-c", str(source), "-o", str(made)])
-            objects.append(str(made))
-        _run(["avr-gcc-ar", "rcs", str(folder / "core.a"), *objects])
+        _archive(folder / "core.a", {source: commands[source.suffix] for source in self._core_sources})
 
     def _make(self, place: Path, compile_into: Callable[[Path], None]) -> None:
         # Under another name until it is whole, so that nobody finds half of it.
@@ -138,11 +153,27 @@ class Builder:
         return made.hexdigest()[:HASH_CHARACTERS]
 
 
+def _library_sources() -> list[Path]:
+    return sorted(path for part in LINK_PARTS for path in (LIBRARY / part).glob("*.cpp"))
+
+
+def _archive(archive: Path, commands: Mapping[Path, Sequence[str]]) -> None:
+    """Compile each source by its command, and put what comes of it together."""
+    objects = []
+    for source, command in commands.items():
+        made = archive.parent / f"{source.name}.o"
+        _run([*command, "-c", str(source), "-o", str(made)])
+        objects.append(str(made))
+    _run(["avr-gcc-ar", "rcs", str(archive), *objects])
+
+
 def _macros(test: CommTest, baud: int, arduino_delay: float) -> list[str]:
+    framing = FRAMINGS[test.framing]
     return [
+        *([f"-DMUCAT_BAUD={baud}"] if framing.library else []),
         f"-DCOMM_TEST_BAUD={baud}",
         f"-DCOMM_TEST_ARDUINO_DELAY={arduino_delay:.6f}",
-        f"-DCOMM_TEST_FRAMING={FRAMINGS[test.framing].code}",
+        f"-DCOMM_TEST_FRAMING={framing.code}",
         f"-DCOMM_TEST_DIRECTION={DIRECTIONS[test.direction]}",
         f"-DCOMM_TEST_FROM={test.from_val}u",
         f"-DCOMM_TEST_TO={test.to_val}u",

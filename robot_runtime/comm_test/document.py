@@ -125,7 +125,7 @@ class _Reader:
             name=self._name(),
             ino_path=self._path(),
             delay=self._delays("delay"),
-            baud_rate=self._bauds(),
+            baud_rate=self._bauds(framing),
             from_val=from_val,
             to_val=to_val,
             expected=expected,
@@ -213,11 +213,17 @@ class _Reader:
                 delays.append(float(value))
         return tuple(delays)
 
-    def _bauds(self) -> tuple[int, ...]:
+    def _bauds(self, framing: str) -> tuple[int, ...]:
         bauds: list[int] = []
+        lowest, highest = FRAMINGS[framing].bauds
         for place, value in enumerate(self._list("baud_rate")):
             if type(value) is not int or not 1 <= value <= CLOCK:
                 self.problems.append(f"baud_rate[{place}]: {value!r} is not a baud rate")
+                continue
+            if not lowest <= value <= highest:
+                self.problems.append(
+                    f"baud_rate[{place}]: {value} is not a baud rate of this framing, {lowest} to {highest}"
+                )
                 continue
             made = chip_baud(value)
             if abs(made / value - 1) > BAUD_ERROR_MAX:

@@ -16,6 +16,8 @@ from robot_runtime.simulation.board import BoardError, BoardProcess
 PATIENCE = 10.0
 """s of real time for what the operating system does between two processes."""
 BITS_PER_BYTE = 10
+START_TIME = 0.02
+"""s of emulated time until the sketch listens."""
 WRITE_BUFFER_BYTES = 4000
 """A little less than Linux keeps for a serial port; a longer write waits for the line."""
 READ_STEP_BYTES = 1024

@@ -1,12 +1,14 @@
-"""The host's ends of the test framings, without any I/O.
+"""The framings of the test, and the host's ends of those that know nothing of sessions, without any I/O.
 
 `plain` (the thesis's Table 5): a number is two bytes, the high one first; the request is the byte 0xff, so
 that numbers may be 0 to 254. `thesis` (Figure 9, Table 4): `~ T D0 D1 CS0 CS1 CS2 CS3 \\n`, the checksum is
 the XOR of T and the data as a number of four bytes; the end mark alone ends a packet. The chip answers a
 request in both with a thesis packet of type REQUEST_RESULT whose data are hexadecimal digits.
+
+`robot` is the robot's own link; `link_end` is its host's end.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import reduce
 from operator import xor
@@ -42,15 +44,24 @@ class Sequence:
             self.out_of_sequence += 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Framing:
-    """How numbers lie on the wire: `message` makes one, `request` asks for the result, `count` reads them.
+    """What the sketch is compiled with: `code` is its macro, `library` says whether it needs the robot's own.
 
-    `number_max` is the largest number that can be sent; `code` is the sketch's macro.
+    `number_max` is the largest number that can be sent, `bauds` are the lowest and the highest that it runs
+    at, in bit/s.
     """
 
     code: str
     number_max: int
+    bauds: tuple[int, int] = (1, 16_000_000)
+    library: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamFraming(Framing):
+    """How numbers lie on the wire: `message` makes one, `request` asks for the result, `count` reads them."""
+
     request: bytes
     message: Callable[[int], bytes]
     count: Callable[[bytes, int, int], Counts]
@@ -124,7 +135,21 @@ def _count_thesis(stream: bytes, start: int, end: int) -> Counts:
     return Counts(sequence.right, sequence.out_of_sequence, checksum_errors, framing_errors, 0, len(stream))
 
 
-FRAMINGS = {
-    "plain": Framing("COMM_TEST_PLAIN", 254, PLAIN_REQUEST, _plain_message, _count_plain),
-    "thesis": Framing("COMM_TEST_THESIS", 32767, make_packet(REQUEST_RESULT), _thesis_message, _count_thesis),
+STREAM_FRAMINGS = {
+    "plain": StreamFraming(
+        code="COMM_TEST_PLAIN",
+        number_max=254,
+        request=PLAIN_REQUEST,
+        message=_plain_message,
+        count=_count_plain,
+    ),
+    "thesis": StreamFraming(
+        code="COMM_TEST_THESIS",
+        number_max=32767,
+        request=make_packet(REQUEST_RESULT),
+        message=_thesis_message,
+        count=_count_thesis,
+    ),
 }
+ROBOT = Framing(code="COMM_TEST_ROBOT", number_max=32767, bauds=(1200, 500_000), library=True)
+FRAMINGS: Mapping[str, Framing] = {**STREAM_FRAMINGS, "robot": ROBOT}

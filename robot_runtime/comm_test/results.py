@@ -51,7 +51,8 @@ class Cell:
 @dataclass(frozen=True, slots=True)
 class CellResult:
     """What a cell gave. `board` is None where the chip's answer never came; `lost` are bytes written to the
-    line and not read from it, towards the board and towards the host. `seconds` is emulated time.
+    line and not read from it, towards the board and towards the host. `seconds` is emulated time, `repeated`
+    are frames that either end sent again.
     """
 
     cell: Cell
@@ -63,6 +64,7 @@ class CellResult:
     lost_to_host: int
     line: LineErrors
     seconds: float
+    repeated: int = 0
 
     @property
     def rate(self) -> float:
@@ -90,7 +92,11 @@ class CellResult:
     @property
     def explanation(self) -> str:
         """Why the rate is what it is, for a person."""
-        return "; ".join(f"{cause}: {words}" for cause, words in self._findings()) or "every number arrived"
+        findings = [f"{cause}: {words}" for cause, words in self._findings()]
+        return "; ".join([*(findings or ["every number arrived"]), *self._remarks()])
+
+    def _remarks(self) -> list[str]:
+        return []
 
     def _findings(self) -> list[Finding]:
         findings = []
@@ -108,6 +114,34 @@ class CellResult:
                 ("UART overrun", f"{self.line.overruns} bytes came before the chip had fetched those before")
             )
         return findings
+
+
+@dataclass(frozen=True, slots=True)
+class LinkCellResult(CellResult):
+    """What a cell gave over the robot's own link, where damage on the line is not yet a failure; `trouble`
+    says why there is no result.
+    """
+
+    trouble: tuple[Finding, ...] = ()
+
+    def _findings(self) -> list[Finding]:
+        findings = list(self.trouble)
+        ends = {"the chip": self.board} if self.direction != "to_host" else {}
+        if self.direction != "to_board":
+            ends["the host"] = self.host
+        for who, counts in ends.items():
+            if counts and counts.right < self.expected:
+                missing = f"{self.expected - counts.right} of {self.expected} numbers did not reach {who}"
+                findings.append(("lost numbers", missing))
+            if counts and counts.out_of_sequence:
+                words = f"numbers that came twice or out of their order at {who}: {counts.out_of_sequence}"
+                findings.append(("out of sequence", words))
+        return findings
+
+    def _remarks(self) -> list[str]:
+        remarks = [f"frames sent again: {self.repeated}"] if self.repeated else []
+        damaged = self.counts.checksum_errors
+        return [*remarks, f"damaged frames thrown away: {damaged}"] if damaged else remarks
 
 
 def _explain(counts: Counts, expected: int, lost: int, who: str) -> list[Finding]:

@@ -14,12 +14,11 @@ from threading import Lock
 
 from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, EmulatedLine
-from robot_runtime.comm_test.framings import ANSWER_BYTES, FRAMINGS, find_answer
+from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME, EmulatedLine
+from robot_runtime.comm_test.framings import ANSWER_BYTES, STREAM_FRAMINGS, find_answer
+from robot_runtime.comm_test.link_end import estimate_link_seconds, run_link_cell
 from robot_runtime.comm_test.results import RING_BYTES, Cell, CellResult, Counts
 
-START_TIME = 0.02
-"""s of emulated time until the sketch listens."""
 LOOP_TIME = 0.003
 """s that a message costs the sketch beyond its delay and the line; `delay` is up to 1 ms late."""
 PATIENCE = 0.05
@@ -64,7 +63,9 @@ class Runner:
 
 def run_cell(test: CommTest, cell: Cell, line: EmulatedLine) -> CellResult:
     """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
-    framing = FRAMINGS[test.framing]
+    if test.framing not in STREAM_FRAMINGS:
+        return run_link_cell(test, cell, line)
+    framing = STREAM_FRAMINGS[test.framing]
     messages = [framing.message(number) for number in range(test.from_val, test.to_val)]
     line.wait(START_TIME)
     for message in messages if test.direction != "to_host" else messages[:1]:
@@ -91,7 +92,9 @@ def run_cell(test: CommTest, cell: Cell, line: EmulatedLine) -> CellResult:
 
 def estimate_seconds(test: CommTest, cell: Cell) -> float:
     """About how long a cell takes in emulated time, s."""
-    message_bytes = len(FRAMINGS[test.framing].message(test.from_val))
+    if test.framing not in STREAM_FRAMINGS:
+        return estimate_link_seconds(test, cell)
+    message_bytes = len(STREAM_FRAMINGS[test.framing].message(test.from_val))
     airtime = test.expected * message_bytes * BITS_PER_BYTE / cell.baud
     emptying = (RING_BYTES / message_bytes + 1) * (cell.arduino_delay + LOOP_TIME)
     sending = 0.0 if test.direction == "to_host" else test.expected * cell.pi_delay

@@ -6,6 +6,7 @@ from robot_runtime.packets import (
     DEFINITIONS_HASH,
     FIN_COUNT,
     FRAME_BYTES_MAX,
+    NOT_READY,
     PACKETS,
     DebugLevel,
     Packet,
@@ -25,12 +26,13 @@ namespace mucat {
 constexpr uint32_t kDefinitionsHash = 0x%08xUL;
 constexpr uint8_t kFinCount = %d;
 constexpr uint8_t kFrameBytesMax = %d;
+constexpr uint8_t kNotReady = %d;
 """
 
 
 def header() -> str:
     """The whole text of packets.gen.h."""
-    head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX)
+    head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX, NOT_READY)
     enums = [_enum(enum) for enum in (DebugLevel, StatusFlag, SensorFault, ResetCause)]
     structs = [_struct(cls) for _, cls in sorted(PACKETS.items())]
     return "\n".join([head, *enums, *structs, _sizes(), _reliability(), "}  // namespace mucat", ""])

@@ -16,6 +16,10 @@ has nothing better to do.
 A receiver may have no room to hold frames out of order. It then drops them and says ACKNOWLEDGE never, and
 the timers make of it what is called go-back-n.
 
+A receiver that has no room even for the next frame drops it and says so (Receive Not Ready, as in HDLC).
+Nothing more is sent then until it says otherwise, but for the oldest frame now and then, in case that was
+not heard.
+
 Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while.
 
 The line's pace is respected: a frame is handed over when the one before it has gone, so that what is urgent
@@ -24,8 +28,9 @@ wait: on a slow line they would fill it alone.
 """
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from robot_runtime.link.framing import (
     MESSAGES_BYTES_MAX,
@@ -36,13 +41,15 @@ from robot_runtime.link.framing import (
     assemble,
 )
 from robot_runtime.link.round_trip import RoundTrip
-from robot_runtime.packets import PACKETS, Acknowledge, Packet
+from robot_runtime.packets import NOT_READY, PACKETS, Acknowledge, Packet
 
 WINDOW = 7
 """Reliable frames in flight, at most."""
 EXPIRY = 0.3
 """s that an unreliable message may wait for the line."""
 _ACKNOWLEDGE_DELAY = 0.005
+_PROBE = 1.0
+"""s between two tries at a receiver that has no room."""
 _STALLED_WAIT = 1.25
 """Mean round trips."""
 _FRAME_OVERHEAD = 7
@@ -103,6 +110,7 @@ class Channel:
         self._base = 0
         self._order = 0
         self._newest_order = -1
+        self._ready = True
         self._latest: dict[int, tuple[bytes, float]] = {}
         self._reliable_next = False
         self._number = 0
@@ -145,17 +153,21 @@ class Channel:
 
     def due(self) -> float:
         """When `poll` has something to do, where nothing else happens; never is infinite."""
-        if self._latest or any(flight.lost for flight in self._flights) or self._may_send_new():
+        if self._latest or self._may_send_new():
+            return self._line_free
+        if self._ready and any(flight.lost for flight in self._flights):
             return self._line_free
         wait = self._patience()
-        timers = (flight.sent + wait for flight in self._flights if not flight.held)
+        timers = (flight.sent + wait for flight in self._repeatable() if not flight.held)
         return max(min(self._acknowledge_at, *timers, _NEVER), self._line_free)
 
     def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
         """The messages that this frame of the session lets through, in order."""
         self.counters.frames_received += 1
-        held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), 0)
-        self._take_acknowledgement(frame.acknowledged, held, now)
+        held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), None)
+        self._take_acknowledgement(frame.acknowledged, held or 0, now)
+        if held is not None:
+            self._take_readiness(held & NOT_READY == 0)
         let_through = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
         messages = [one for each in let_through for one in each.messages if one[0] != Acknowledge.type]
         self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
@@ -188,15 +200,20 @@ class Channel:
 
     def _patience(self) -> float:
         """s to wait for news of a frame: the timeout, or a mean round trip where the line would idle."""
+        if not self._ready:
+            return _PROBE
         if self._waiting and self.round_trip.mean > 0 and not self._may_send_new():
             return min(_STALLED_WAIT * self.round_trip.mean, self.timeout())
         return self.timeout()
+
+    def _repeatable(self) -> Iterable[_Flight]:
+        return self._flights if self._ready else islice(self._flights, 1)
 
     def _in_flight(self) -> int:
         return sum(flight.size for flight in self._flights if not flight.held)
 
     def _may_send_new(self) -> bool:
-        if not self._waiting or len(self._flights) >= WINDOW:
+        if not self._waiting or not self._ready or len(self._flights) >= WINDOW:
             return False
         size = sum(map(len, self._gather(take=False))) + _FRAME_OVERHEAD
         in_flight = self._in_flight()
@@ -238,8 +255,8 @@ class Channel:
 
     def _send_lost(self, now: float) -> bytes:
         wait = self._patience()
-        for place, flight in enumerate(self._flights):
-            if flight.held or not (flight.lost or now >= flight.sent + wait):
+        for place, flight in enumerate(self._repeatable()):
+            if flight.held or not ((flight.lost and self._ready) or now >= flight.sent + wait):
                 continue
             flight.sent, flight.order, flight.lost = now, self._next_order(), False
             self.counters.frames_repeated += 1
@@ -287,6 +304,13 @@ class Channel:
                 flight.held = True
         for flight in self._flights:
             flight.lost |= not flight.held and flight.order < self._newest_order
+
+    def _take_readiness(self, ready: bool) -> None:
+        if ready and not self._ready:
+            # What was sent meanwhile was dropped.
+            for flight in self._flights:
+                flight.lost = not flight.held
+        self._ready = ready
 
     def _note_arrival(self, flight: _Flight, now: float) -> None:
         if flight.held:

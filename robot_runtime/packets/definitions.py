@@ -17,6 +17,9 @@ FIN_COUNT = 4
 FRAME_BYTES_MAX = 64
 """Bytes of a whole frame on the line: its overhead, its messages and the closing zero."""
 
+NOT_READY = 0x80
+"""In ACKNOWLEDGE, beside the bits of what is held: the sender has no room for the next reliable frame."""
+
 Micros = Annotated[int, Wire("I", unit="µs", meaning="the board's own clock, which wraps after 71 minutes")]
 Fins = tuple[float, float, float, float]
 
@@ -210,7 +213,33 @@ class Heartbeat(Packet):
 class Acknowledge(Packet):
     """Both ways: which reliable frames came after the first that is missing."""
 
-    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here")]
+    held: Annotated[int, Wire("B", meaning="bit n: frame acknowledged + 1 + n is here; bit 7: no room, wait")]
+
+
+# The communication test: the messages of the thesis's Table 4, whose numbers are taken here.
+
+
+@_packet(0x0E, reliable=True)
+class TestMsg(Packet):
+    """Both ways, in the communication test alone: a number."""
+
+    number: Annotated[int, Wire("H")]
+
+
+@_packet(0x0F, reliable=True)
+class RequestResult(Packet):
+    """Host to board, in the communication test alone: asks what has come."""
+
+
+@_packet(0x10, reliable=True)
+class TestResult(Packet):
+    """Board to host, in the communication test alone: what has come."""
+
+    right: Annotated[int, Wire("H", meaning="numbers of the test, each above all right ones before it")]
+    out_of_sequence: Annotated[int, Wire("H", meaning="other numbers")]
+    frames_invalid: Annotated[int, Wire("H", meaning="frames thrown away")]
+    frames_repeated: Annotated[int, Wire("H", meaning="reliable frames sent again")]
+    bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost for want of room")]
 
 
 def encode(packet: Packet) -> bytes:
@@ -228,7 +257,7 @@ def decode(type_: int, payload: bytes | memoryview) -> Packet:
 
 def canonical() -> str:
     """Everything that both sides must agree on, as text; its hash is what they compare."""
-    lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX}"]
+    lines = [f"fins {FIN_COUNT} frame {FRAME_BYTES_MAX} not_ready {NOT_READY}"]
     for type_, cls in sorted(PACKETS.items()):
         fields = [
             f"{name}:{wire.count}{wire.code}*{wire.scale!r}{wire.unit}" for name, wire in cls.wires.items()

@@ -9,6 +9,7 @@ from cobs import cobs
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot_runtime import packets
 from robot_runtime.link import framing
 from robot_runtime.packets import (
     DEFINITIONS_HASH,
@@ -63,7 +64,8 @@ keys = st.integers(0, 0xFFFFFFFF)
 
 def raw_frame(content: bytes) -> bytes:
     """A frame around any control and messages, with a right checksum; 0 as number, where it has one."""
-    if content[1:2] not in (bytes([Start.type]), bytes([Debug.type])):
+    first = packets.PACKETS.get(content[1]) if len(content) > 1 else None
+    if first is None or not first.reliable:
         content += b"\0"
     return bytes(cobs.encode(content + zlib.crc32(content).to_bytes(4, "little"))) + b"\0"
 
@@ -265,40 +267,43 @@ def queue(firmware: ctypes.CDLL) -> Iterator[int]:
 
 
 def popped(firmware: ctypes.CDLL, queue: int, most: int) -> list[bytes]:
-    """The oldest lines, up to that many, taken."""
-    room = ctypes.create_string_buffer(40)
+    """The oldest messages, up to that many, taken."""
+    room = ctypes.create_string_buffer(64)
     sizes = (firmware.queue_pop(queue, room) for _ in range(most))
-    return [room.raw[:size] for size in sizes if size >= 0]
+    return [room.raw[:size] for size in sizes if size]
 
 
-@given(texts=st.lists(st.binary(max_size=40), max_size=60), takes=st.lists(st.integers(0, 4), max_size=60))
-def test_lines_come_in_order_or_are_counted(
-    firmware: ctypes.CDLL, texts: list[bytes], takes: list[int]
-) -> None:
+def pushed(firmware: ctypes.CDLL, queue: int, packet: Packet) -> bool:
+    data = encode(packet)
+    return bool(firmware.queue_push(queue, data[0], data[1:], len(data) - 1))
+
+
+queueable: st.SearchStrategy[Packet] = st.one_of(
+    st.builds(Debug, time=st.integers(0, 0xFFFFFFFF), level=st.integers(0, 3), text=st.text(max_size=20)),
+    st.builds(packets.TestMsg, number=st.integers(0, 0xFFFF)),
+)
+
+
+@given(some=st.lists(queueable, max_size=60), takes=st.lists(st.integers(0, 4), max_size=60))
+def test_what_is_queued_comes_in_order(firmware: ctypes.CDLL, some: list[Packet], takes: list[int]) -> None:
     queue = firmware.queue_create()
     came: list[bytes] = []
     accepted: list[bytes] = []
-    lost = 0
     rest = iter(takes)
-    for text in texts:
-        firmware.queue_push(queue, text, len(text))
-        if firmware.queue_lost(queue) == lost:
-            accepted.append(text)
-        lost = firmware.queue_lost(queue)
+    for packet in some:
+        if pushed(firmware, queue, packet):
+            accepted.append(encode(packet))
         came += popped(firmware, queue, next(rest, 0))
-    came += popped(firmware, queue, len(texts))
+    came += popped(firmware, queue, len(some))
     firmware.queue_destroy(queue)
     assert came == accepted
-    assert len(texts) == len(accepted) + lost
 
 
-def test_queue_holds_a_starts_lines_and_then_drops(firmware: ctypes.CDLL, queue: int) -> None:
-    for _ in range(100):
-        firmware.queue_push(queue, b"a" * 40, 40)
-    kept = 100 - firmware.queue_lost(queue)
+def test_queue_holds_a_starts_lines_and_then_refuses(firmware: ctypes.CDLL, queue: int) -> None:
+    line = Debug(time=1, level=0, text="a" * 40)
+    kept = sum(pushed(firmware, queue, line) for _ in range(100))
     assert 4 <= kept < 100
-    room = ctypes.create_string_buffer(40)
-    assert [firmware.queue_pop(queue, room) for _ in range(kept + 1)] == [40] * kept + [-1]
+    assert popped(firmware, queue, 100) == [encode(line)] * kept
 
 
 @given(number=st.integers(0, 0xFFFF))

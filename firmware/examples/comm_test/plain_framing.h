@@ -2,12 +2,12 @@
 // of this framing (0 to 254) contains. After an odd number of lost bytes every later number is wrong.
 #pragma once
 
+#include <Arduino.h>
+
 #include "counts.h"
 
 class PlainFraming {
  public:
-  enum Event : uint8_t { NOTHING, MESSAGE, REQUEST };
-
   Event take(uint8_t byte, Counts &counts) {
     if (byte == REQUEST_BYTE) {
       counts.framing_errors += half_;

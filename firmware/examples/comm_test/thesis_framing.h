@@ -3,11 +3,10 @@
 #pragma once
 
 #include "counts.h"
+#include "thesis_packet.h"
 
 class ThesisFraming {
  public:
-  enum Event : uint8_t { NOTHING, MESSAGE, REQUEST };
-
   Event take(uint8_t byte, Counts &counts) {
     counts.bytes_read++;
     if (!inside_) {

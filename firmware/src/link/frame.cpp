@@ -1,6 +1,5 @@
 #include "link/frame.h"
 
-#include <stddef.h>
 #include <string.h>
 
 #include "link/crc32.h"
@@ -14,17 +13,10 @@ uint32_t read_u32(const uint8_t* at) {
   return value;
 }
 
-// Bytes of the message at `at`, its type included; 0 where its type is unknown or it does not fit.
-uint8_t message_bytes(const uint8_t* at, uint8_t available) {
-  int16_t payload = payload_bytes(at[0]);
-  if (at[0] == Debug::kType) {
-    constexpr uint8_t kHead = offsetof(Debug, text);
-    if (available < 1 + kHead) return 0;
-    const uint8_t text = at[1 + offsetof(Debug, text_size)];
-    if (text > Debug::kTextMax) return 0;
-    payload = kHead + text;
-  }
-  return payload < 0 || payload >= available ? 0 : payload + 1;
+// Bytes of the message at `at`; 0 where its type is unknown or it does not fit.
+uint8_t message_bytes_at(const uint8_t* at, uint8_t available) {
+  const uint8_t bytes = message_bytes(at[0], available > kTextSizeAt ? at[kTextSizeAt] : 0);
+  return bytes > available ? 0 : bytes;
 }
 
 }  // namespace
@@ -34,6 +26,11 @@ uint32_t session_key(uint16_t host_epoch, uint16_t board_epoch) {
   key = (key ^ key >> 16) * 0x85ebca6bUL;
   key = (key ^ key >> 13) * 0xc2b2ae35UL;
   return key ^ key >> 16;
+}
+
+uint8_t message_bytes(uint8_t type, uint8_t text_size) {
+  if (type == Debug::kType) return text_size > Debug::kTextMax ? 0 : kTextSizeAt + 1 + text_size;
+  return payload_bytes(type) + 1;
 }
 
 bool FrameDecoder::feed(uint8_t byte) {
@@ -69,7 +66,7 @@ bool FrameDecoder::accept() {
 bool FrameDecoder::well_formed() const {
   uint8_t at = kControlBytes;
   while (at < messages_end_) {
-    const uint8_t bytes = message_bytes(block_ + at, messages_end_ - at);
+    const uint8_t bytes = message_bytes_at(block_ + at, messages_end_ - at);
     if (bytes == 0) return false;
     at += bytes;
   }
@@ -79,7 +76,7 @@ bool FrameDecoder::well_formed() const {
 bool FrameDecoder::next(Message* message) {
   if (cursor_ >= messages_end_) return false;
   const uint8_t* const at = block_ + cursor_;
-  const uint8_t bytes = message_bytes(at, messages_end_ - cursor_);
+  const uint8_t bytes = message_bytes_at(at, messages_end_ - cursor_);
   cursor_ += bytes;
   *message = Message{at[0], static_cast<uint8_t>(bytes - 1), at + 1};
   return true;

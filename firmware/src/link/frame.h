@@ -7,7 +7,9 @@
 // own number, or the upper four of the twelve bits that number an unreliable one. The CRC is little-endian,
 // over all before it, combined by exclusive or with the session's key, or with nothing in an open frame.
 #pragma once
+#include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "link/cobs.h"
 #include "packets.gen.h"
@@ -20,6 +22,8 @@ constexpr uint8_t kControlBytes = 1;
 constexpr uint8_t kBlockBytesMax = kFrameBytesMax - kCobsOverhead - 1;
 constexpr uint8_t kNumberBytes = 1;
 constexpr uint8_t kMessagesBytesMax = kBlockBytesMax - kControlBytes - kNumberBytes - kCrcBytes;
+// A reliable frame has no number byte.
+constexpr uint8_t kReliableMessagesBytesMax = kMessagesBytesMax + kNumberBytes;
 constexpr uint32_t kOpen = 0;
 
 // The key of the frames between this run of the host and this boot of the board: both epochs, mixed by
@@ -27,11 +31,28 @@ constexpr uint32_t kOpen = 0;
 // a CRC would not do, as some bit errors have the same effect. Never kOpen, as no boot is numbered 0.
 uint32_t session_key(uint16_t host_epoch, uint16_t board_epoch);
 
+// Bytes of the longest reliable message, its type included.
+constexpr uint8_t kReliableBytesMax = 1 + sizeof(Debug);
+// Where in a message that carries text the text's length stands.
+constexpr uint8_t kTextSizeAt = 1 + offsetof(Debug, text_size);
+
+// Bytes of a message, its type included; `text_size` is of use where it carries text. 0 where the type is
+// unknown, or the text longer than it may be.
+uint8_t message_bytes(uint8_t type, uint8_t text_size);
+
 struct Message {
   uint8_t type;
   uint8_t size;
   const uint8_t* payload;
 };
+
+// Only of a message of this type.
+template <typename Packet>
+Packet unpack(const Message& message) {
+  Packet packet;
+  memcpy(&packet, message.payload, sizeof packet);
+  return packet;
+}
 
 // Takes bytes one by one; a frame counts only as a whole: stuffing, CRC, and every message's type and length.
 class FrameDecoder {

@@ -45,22 +45,39 @@ bool Link::next(Message* message) {
   return false;
 }
 
+void Link::answer(const Hello& hello, uint16_t epoch) {
+  begin(session_key(hello.epoch, epoch));
+  credit_ = hello.credit;
+  greet(epoch);
+}
+
 void Link::begin(uint32_t key) {
   if (key == key_) return;
   key_ = key;
   decoder_.set_key(key);
   number_ = 0;
   in_flight_ = 0;
-  lines_bytes_ = 0;
+  messages_bytes_ = 0;
   base_ = 0;
   expected_ = 0;
   acknowledge_ = false;
+  refused_ = false;
+  tell_ready_ = false;
+}
+
+void Link::set_ready(bool ready) {
+  ready_ = ready;
+  if (ready && refused_) {
+    refused_ = false;
+    tell_ready_ = true;
+  }
 }
 
 void Link::take_number() {
   if (!acknowledge_) heard_ms_ = board::milliseconds();
   acknowledge_ = true;
-  fresh_ = decoder_.number() == expected_;
+  fresh_ = ready_ && decoder_.number() == expected_;
+  if (!ready_) refused_ = tell_ready_ = true;
   if (fresh_) expected_ = (expected_ + 1) & kNumberMask;
 }
 
@@ -77,8 +94,8 @@ void Link::take_acknowledgement() {
       round_trip_.measure(static_cast<uint16_t>(board::milliseconds()) - flight.sent_ms);
     }
   }
-  lines_.drop(bytes);
-  lines_bytes_ -= bytes;
+  queue_.drop(bytes);
+  messages_bytes_ -= bytes;
   in_flight_ -= count;
   for (uint8_t i = 0; i < in_flight_; ++i) flights_[i] = flights_[i + count];
 }
@@ -118,9 +135,9 @@ void Link::write(uint16_t number, uint32_t key) {
   acknowledge_ = false;
 }
 
-void Link::send_open(const Hello& hello) {
+void Link::greet(uint16_t epoch) {
   flush();
-  put(Hello::kType, &hello, sizeof hello);
+  send(Hello{kDefinitionsHash, epoch, board::kLineCredit});
   if (board::line_room() < packer_.line_bytes()) {
     packer_.clear();
   } else {
@@ -130,21 +147,25 @@ void Link::send_open(const Hello& hello) {
 
 void Link::say(DebugLine& line) {
   line.packet().time = board::microseconds();
-  lines_.push(line.packet());
+  if (!queue_.push(Debug::kType, &line.packet(), debug_bytes(line.packet()))) ++lines_lost_;
 }
 
 bool Link::calm() { return board::line_room() >= kCalmRoom; }
 
 void Link::step(uint16_t now_ms) {
   if (!calm()) return;
-  if (repeat(now_ms) || start_flight(now_ms)) return;
-  if (acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs) {
-    send(Acknowledge{0});
-    flush();
-  }
+  const bool late = acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs;
+  if (!tell_ready_ && (repeat(now_ms) || start_flight(now_ms) || !late)) return;
+  acknowledge();
 }
 
-uint16_t Link::bytes_in_flight() const { return lines_bytes_ + in_flight_ * kFrameOverhead; }
+void Link::acknowledge() {
+  tell_ready_ = false;
+  send(Acknowledge{refused_ ? kNotReady : uint8_t{0}});
+  flush();
+}
+
+uint16_t Link::bytes_in_flight() const { return messages_bytes_ + in_flight_ * kFrameOverhead; }
 
 bool Link::repeat(uint16_t now_ms) {
   const uint16_t timeout = round_trip_.timeout(bytes_in_flight());
@@ -157,6 +178,7 @@ bool Link::repeat(uint16_t now_ms) {
       flight.sent_ms = now_ms;
       flight.again = true;
       flight.lost = false;
+      ++repeated_;
       write((base_ + i) & kNumberMask, key_);
       return true;
     }
@@ -168,24 +190,24 @@ bool Link::repeat(uint16_t now_ms) {
 bool Link::start_flight(uint16_t now_ms) {
   if (in_flight_ == kWindow) return false;
   if (in_flight_ > 0 && bytes_in_flight() + kFrameBytesMax > credit_) return false;
-  const uint8_t bytes = pack(lines_bytes_, DebugQueue::kBytes);
+  const uint8_t bytes = pack(messages_bytes_, MessageQueue::kBytes);
   if (bytes == 0) return false;
   flights_[in_flight_] = Flight{now_ms, bytes, false, false, false};
   write((base_ + in_flight_) & kNumberMask, key_);
   ++in_flight_;
-  lines_bytes_ += bytes;
+  messages_bytes_ += bytes;
   return true;
 }
 
-// Puts the lines from there on into the frame in the making, up to that many bytes or as many as fit; returns
-// their bytes.
+// Puts the messages from there on into the frame in the making, up to that many bytes or as many as fit;
+// returns their bytes.
 uint8_t Link::pack(uint8_t offset, uint8_t limit) {
   uint8_t packed = 0;
-  Debug line;
-  while (packed < limit && lines_.peek(offset + packed, &line)) {
-    const uint8_t size = debug_bytes(line);
-    if (!packer_.fits(size)) break;
-    packer_.add(Debug::kType, &line, size);
+  uint8_t message[kReliableBytesMax];
+  while (packed < limit) {
+    const uint8_t size = queue_.peek(offset + packed, message);
+    if (size == 0 || !packer_.fits(size - 1)) break;
+    packer_.add(message[0], message + 1, size - 1);
     packed += size;
   }
   return packed;

@@ -1,12 +1,12 @@
-// The board's end of the serial line: frames in, frames out, lines of text. Never waits.
+// The board's end of the serial line: frames in, frames out. Never waits.
 //
-// Telemetry is sent once. Lines of text are reliable, and arrive exactly once and in order: they stay in
-// their queue until they are acknowledged, and the queue is the only store of what is in flight. Up to four
-// reliable frames are, of several lines each, numbered modulo 16, and no more bytes than the host can take
-// in. A frame that the host says is missing goes out again at once, and any other after the timeout of
-// RoundTrip, for as long as it takes. Of the host's reliable frames only the next in order is taken: there is
-// no room to hold others. What is taken is acknowledged by the next frame of telemetry, or by a frame of its
-// own.
+// Telemetry is sent once. Lines of text and all else that is queued are reliable, and arrive exactly once and
+// in order: they stay in their queue until they are acknowledged, and the queue is the only store of what is
+// in flight. Up to four reliable frames are, of several messages each, numbered modulo 16, and no more bytes
+// than the host can take in. A frame that the host says is missing goes out again at once, and any other
+// after the timeout of RoundTrip, for as long as it takes. Of the host's reliable frames only the next in
+// order is taken: there is no room to hold others. What is taken is acknowledged by the next frame of
+// telemetry, or by a frame of its own.
 //
 // A session begins with a HELLO that carries another epoch than the last. Its frames have a key made of both
 // epochs, so that none from before a restart is believed. Of open frames only HELLO and STOP are taken then.
@@ -16,6 +16,7 @@
 #include "board/board.h"
 #include "link/debug.h"
 #include "link/frame.h"
+#include "link/message_queue.h"
 #include "link/round_trip.h"
 #include "packets.gen.h"
 
@@ -28,11 +29,15 @@ class Link {
   // The received frame's next message that is new; false after the last. Ask until then.
   bool next(Message* message);
 
-  // Numbers start anew, and lines that were not acknowledged are sent again. Does nothing where the session
-  // goes on.
-  void begin(uint32_t key);
-  // Bytes that the host can take in at once.
-  void set_credit(uint16_t bytes) { credit_ = bytes; }
+  // Whether the host's reliable messages are taken, as they are at first. Where they are not, the host is
+  // told, and sends them again when it is told otherwise.
+  void set_ready(bool ready);
+
+  // Says at once who speaks, in an open frame of its own; `epoch` is this boot of the board.
+  void greet(uint16_t epoch);
+  // The same as an answer. Where it is another session's, numbers start anew, and reliable messages that were
+  // not acknowledged are sent again.
+  void answer(const Hello& hello, uint16_t epoch);
 
   // Puts a packet into the frame in the making; closes that first where the packet does not fit.
   template <typename Packet>
@@ -42,30 +47,40 @@ class Link {
   // Closes the frame in the making. Where the line has no room for it, it is dropped: what it held is old by
   // the time there is.
   void flush() { flush(key_); }
-  // Sends a HELLO at once, in an open frame of its own.
-  void send_open(const Hello& hello);
 
   // Whether what is sent now is on the line soon.
   static bool calm();
 
-  // Queues a line of text.
+  // Queues a reliable packet of fixed length; false where there is no room for it.
+  template <typename Packet>
+  bool queue(const Packet& packet) {
+    static_assert(is_reliable(Packet::kType), "only reliable packets are queued");
+    return queue_.push(Packet::kType, &packet, sizeof packet);
+  }
+  // Queues a line of text; where there is no room it is dropped and counted.
   void say(DebugLine& line);
-  // Sends one frame of lines, or an acknowledgement, where one is due and the line is calm.
+  // Sends one frame of reliable messages, or an acknowledgement, where one is due and the line is calm.
   void step(uint16_t now_ms);
 
+  // Says now what has come. To be called now and then by whoever sends nothing else: the host takes a board
+  // that is silent for 1 s for lost.
+  void acknowledge();
+
   uint16_t frames_invalid() const { return decoder_.invalid(); }
-  uint16_t lines_lost() const { return lines_.lost(); }
+  uint16_t frames_repeated() const { return repeated_; }
+  uint16_t lines_lost() const { return lines_lost_; }
 
  private:
   static constexpr uint8_t kWindow = 4;
   struct Flight {
     uint16_t sent_ms;
-    uint8_t bytes;  // of lines
+    uint8_t bytes;  // of messages
     bool again;     // sent more than once
     bool held;      // the host has it, but not one before it
     bool lost;      // the host has a later one
   };
 
+  void begin(uint32_t key);
   void put(uint8_t type, const void* payload, uint8_t size);
   void flush(uint32_t key);
   void write(uint16_t number, uint32_t key);
@@ -80,16 +95,21 @@ class Link {
 
   FrameDecoder decoder_;
   FramePacker packer_;
-  DebugQueue lines_;
+  MessageQueue queue_;
   RoundTrip round_trip_;
   Flight flights_[kWindow];
   uint32_t key_ = kOpen;
   uint16_t credit_ = kFrameBytesMax;
-  uint16_t number_ = 0;      // of the next unreliable frame
-  uint8_t in_flight_ = 0;    // reliable frames
-  uint8_t lines_bytes_ = 0;  // of lines in flight
-  uint8_t base_ = 0;         // number of the oldest in flight
-  uint8_t expected_ = 0;     // number of the host's next reliable frame
+  uint16_t number_ = 0;         // of the next unreliable frame
+  uint16_t repeated_ = 0;       // reliable frames
+  uint16_t lines_lost_ = 0;     // for want of room
+  uint8_t in_flight_ = 0;       // reliable frames
+  uint8_t messages_bytes_ = 0;  // of messages in flight
+  uint8_t base_ = 0;            // number of the oldest in flight
+  uint8_t expected_ = 0;        // number of the host's next reliable frame
+  bool ready_ = true;
+  bool refused_ = false;     // a reliable frame since it was last ready
+  bool tell_ready_ = false;  // whether it is, with the next step
   bool fresh_ = false;       // the received frame's reliable messages are new
   bool acknowledge_ = false;
   uint16_t heard_ms_ = 0;

@@ -6,14 +6,14 @@ from hypothesis import strategies as st
 
 from robot_runtime.comm_test.framings import (
     ANSWER_BYTES,
-    FRAMINGS,
     REQUEST_RESULT,
+    STREAM_FRAMINGS,
     find_answer,
     make_packet,
 )
 from robot_runtime.comm_test.results import Counts
 
-PLAIN, THESIS = FRAMINGS["plain"], FRAMINGS["thesis"]
+PLAIN, THESIS = STREAM_FRAMINGS["plain"], STREAM_FRAMINGS["thesis"]
 ANSWER = make_packet(REQUEST_RESULT, b"006200000001000200ff0384")
 COUNTS = Counts(98, 0, 1, 2, 255, 900)
 
@@ -25,9 +25,9 @@ def test_numbers_on_the_wire() -> None:
     assert THESIS.request == b"~\x02\x00\x00\x00\x02\n"
 
 
-@pytest.mark.parametrize("name", FRAMINGS)
+@pytest.mark.parametrize("name", STREAM_FRAMINGS)
 def test_a_clean_stream_counts_every_number(name: str) -> None:
-    framing = FRAMINGS[name]
+    framing = STREAM_FRAMINGS[name]
     stream = b"".join(map(framing.message, range(20, 120)))
     assert framing.count(stream, 20, 120) == Counts(right=100, bytes_read=len(stream))
 
@@ -73,7 +73,7 @@ def test_a_damaged_answer_is_none() -> None:
 
 @given(st.binary(max_size=200))
 def test_noise_never_breaks_a_receiver(noise: bytes) -> None:
-    for framing in FRAMINGS.values():
+    for framing in STREAM_FRAMINGS.values():
         counts = framing.count(noise, 1, 101)
         assert counts.bytes_read == len(noise)
         assert counts.right <= 100

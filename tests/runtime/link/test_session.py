@@ -1,5 +1,7 @@
 """The session, in simulated time: greeting, refusal, silence, restart of the board, delivery, counting."""
 
+from itertools import pairwise
+
 import pytest
 
 from robot_runtime.link.framing import Decoder, Frame, build
@@ -66,6 +68,35 @@ def test_greets_until_answered_then_beats() -> None:
     assert session.statistics().round_trip == pytest.approx(0.01)
     beats = b"".join(session.poll(1.01 + step * 0.025) for step in range(21))
     assert said(beats) == [Heartbeat.type] * 4
+
+
+def test_on_a_slow_line_it_beats_and_waits_as_the_line_allows() -> None:
+    session = Session(1, 1200)
+    greet(session, 0.0)
+    session.receive(build([hello()], 0, 0), 0.0)
+    beats: list[float] = []
+    now = 0.0
+    while now < 1.0:
+        if data := session.poll(now):
+            assert said(data) == [Heartbeat.type]
+            beats.append(now)
+        assert session.due() > now
+        now = session.due()
+    airtime = 13 * 10 / 1200
+    assert [later - earlier for earlier, later in pairwise(beats)] == pytest.approx(
+        [airtime] * (len(beats) - 1)
+    )
+
+
+@pytest.mark.parametrize(("baud", "limit"), [(250_000, SILENCE), (1200, 1.6)])
+def test_silence_is_measured_by_what_the_line_carries(baud: int, limit: float) -> None:
+    session = Session(1, baud)
+    greet(session, 0.0)
+    session.receive(build([hello()], 0, 0), 0.0)
+    session.poll(limit)
+    assert session.stage is Stage.ESTABLISHED
+    session.poll(limit + 0.01)
+    assert session.stage is Stage.GREETING
 
 
 def test_nothing_is_taken_before_the_greeting() -> None:

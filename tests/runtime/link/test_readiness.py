@@ -1,0 +1,72 @@
+"""A receiver that has no room says so: the sender waits, asks now and then, and goes on when it may."""
+
+from robot_runtime.link.channel import Channel
+from robot_runtime.link.framing import Decoder, Frame, Messages
+from robot_runtime.packets import NOT_READY, Acknowledge
+from tests.runtime.link.line import KEY, PACKETS, numbered
+
+GIVEN = 24
+
+
+def told(acknowledged: int, held: int) -> Frame:
+    return Frame(0, acknowledged, False, False, ((Acknowledge.type, bytes([held])),))
+
+
+class Sender:
+    """A channel that has eight frames full to say, and what it sent, frame by frame."""
+
+    def __init__(self) -> None:
+        self.channel = Channel(115_200, 4096, KEY, packets=PACKETS)
+        self.now = 0.0
+        self._decoder = Decoder(PACKETS)
+        self._decoder.key = KEY
+        for message in numbered(18, GIVEN):
+            self.channel.queue(message)
+
+    def run(self, until: float) -> list[tuple[float, int, Messages]]:
+        """Time, number and messages of what goes out until then; it is asked only when it wants to be."""
+        sent = []
+        asked = 0
+        while self.now < until:
+            while data := self.channel.poll(self.now):
+                (frame,) = self._decoder.feed(data)
+                sent.append((self.now, frame.number, frame.messages))
+            asked += 1
+            self.now = min(max(self.channel.due(), self.now + 1e-6), until)
+        assert asked < 1000, "it wants to be asked without having anything to do"
+        return sent
+
+
+def test_it_sends_only_the_oldest_once_a_second_until_it_may_send_on() -> None:
+    sender = Sender()
+    first = sender.run(0.04)
+    assert [number for _, number, _ in first[:3]] == [0, 1, 2]
+    sender.channel.receive(told(1, NOT_READY), sender.now)
+    waited = sender.run(5.0)
+    assert {number for _, number, _ in waited} == {1}
+    assert len(waited) in (4, 5)
+    sender.channel.receive(told(1, 0), sender.now)
+    after = sender.run(5.04)
+    assert [number for _, number, _ in after[:6]] == [1, 2, 3, 4, 5, 6]
+
+
+def test_it_is_not_ready_until_it_says_otherwise() -> None:
+    sender = Sender()
+    sender.run(0.04)
+    sender.channel.receive(told(0, NOT_READY), sender.now)
+    # A frame that says nothing of it: telemetry, or a number the other way.
+    sender.channel.receive(Frame(1, 0, False, False, numbered_message()), sender.now)
+    assert len(sender.run(0.9)) <= 1
+
+
+def numbered_message() -> Messages:
+    (message,) = numbered(6, 1)
+    return ((message[0], message[1:]),)
+
+
+def test_held_frames_are_not_sent_again() -> None:
+    sender = Sender()
+    sender.run(0.04)
+    sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
+    sender.channel.receive(told(0, 0b1), sender.now)
+    assert 1 not in [number for _, number, _ in sender.run(0.06)]
