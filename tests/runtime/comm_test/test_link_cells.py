@@ -119,10 +119,11 @@ def test_a_board_that_never_answers_is_told(run_harmed: RunHarmed) -> None:
     assert result.seconds == pytest.approx(GREETING_PATIENCE, abs=0.5)
 
 
-def test_a_board_that_restarts_is_told(run_harmed: RunHarmed) -> None:
-    result = run_harmed(lambda board: board.reset(), 1.0, arduinodelay=(0.1,))
+@pytest.mark.parametrize("delays", [{"arduinodelay": (0.1,)}, {"delay": (0.5,)}], ids=["busy", "idle"])
+def test_a_board_that_restarts_is_told(run_harmed: RunHarmed, delays: dict[str, Any]) -> None:
+    result = run_harmed(lambda board: board.reset(), 1.2, **delays)
     assert (result.board, result.causes[0]) == (None, "restart")
-    assert "messages were on their way" in result.explanation
+    assert "the chip restarted after 1." in result.explanation
 
 
 def test_a_line_that_is_cut_for_good_is_given_up_loudly(run_harmed: RunHarmed) -> None:
