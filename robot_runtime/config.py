@@ -39,10 +39,11 @@ class RobotConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkConfig:
-    """The serial line; baud in bit/s."""
+    """The serial line; baud in bit/s. `reset` is how the board's reset pin is pulled before an upload."""
 
     port: str = "/dev/serial0"
     baud: Annotated[int, Range(1200, 500_000)] = 250_000
+    reset: str = "gpio:/dev/gpiochip0:4"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -55,6 +55,7 @@ class _LinkCell:
         self._next_at = 0.0
         self._awaits = test.expected if test.direction != "to_board" else 0
         self._sequence = Sequence(test.from_val, test.to_val)
+        self._boot: int | None = None
         self._asked = False
         self._answer: TestResult | None = None
         self._read = 0
@@ -80,11 +81,12 @@ class _LinkCell:
         if self._session.board is None:
             return self._line.now > GREETING_PATIENCE
         refused = self._session.stage is Stage.REFUSED
-        return refused or self._discarded > 0 or self._line.now > self._patience
+        return refused or self._restarted or self._line.now > self._patience
 
     @property
-    def _discarded(self) -> int:
-        return self._session.counters.messages_discarded
+    def _restarted(self) -> bool:
+        board = self._session.board
+        return board is not None and self._boot not in (None, board.epoch)
 
     def _give(self) -> None:
         now = self._line.now
@@ -122,6 +124,8 @@ class _LinkCell:
                 self._sequence.take(TestMsg.from_bytes(message.payload).number)
             elif message.type == TestResult.type:
                 self._answer = TestResult.from_bytes(message.payload)
+        if self._boot is None and self._established and self._session.board:
+            self._boot = self._session.board.epoch
 
     def _result(self) -> CellResult:
         statistics, answer = self._session.statistics(), self._answer
@@ -161,8 +165,9 @@ class _LinkCell:
             return (("no link", f"{words}: it does not run the sketch, or at another baud"),)
         if self._session.stage is Stage.REFUSED:
             return (("other definitions", "the sketch was compiled with other packet definitions"),)
-        if self._discarded:
-            return (("restart", f"the chip restarted, and {self._discarded} messages were on their way"),)
+        if self._restarted:
+            lost = self._session.counters.messages_discarded
+            return (("restart", f"the chip restarted after {self._line.now:.1f} s; on their way: {lost}"),)
         if self._answer is None:
             return (("out of time", f"after {self._line.now:.0f} s of test time the result was not there"),)
         return ()

@@ -11,6 +11,7 @@ from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.link_end import GREETING_PATIENCE, estimate_link_seconds
 from robot_runtime.comm_test.results import CellResult, Counts
 from robot_runtime.comm_test.runner import Runner, run_cell
+from robot_runtime.link.session import SILENCE
 from robot_runtime.simulation.board import Board, BoardProcess
 from tests.runtime.comm_test.conftest import Run, make_test
 
@@ -123,10 +124,13 @@ def test_a_board_that_never_answers_is_told(run_harmed: RunHarmed) -> None:
     assert result.seconds == pytest.approx(GREETING_PATIENCE, abs=0.5)
 
 
-def test_a_board_that_restarts_is_told(run_harmed: RunHarmed) -> None:
-    result = run_harmed(lambda board: board.reset(), 1.0, arduinodelay=(0.1,))
+@pytest.mark.parametrize("delays", [{"arduinodelay": (0.1,)}, {"delay": (0.5,)}], ids=["busy", "idle"])
+def test_a_board_that_restarts_is_told(run_harmed: RunHarmed, delays: dict[str, Any]) -> None:
+    result = run_harmed(lambda board: board.reset(), 1.2, **delays)
     assert (result.board, result.causes[0]) == (None, "restart")
-    assert "messages were on their way" in result.explanation
+    assert "the chip restarted after" in result.explanation
+    # At once by its HELLO, or after the silence that shows that this was lost.
+    assert result.seconds < 1.2 + SILENCE + 0.5
 
 
 def test_a_line_that_is_cut_for_good_is_given_up_loudly(run_harmed: RunHarmed) -> None:
