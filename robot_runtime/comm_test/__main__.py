@@ -11,7 +11,8 @@ from pathlib import Path
 from threading import Event
 
 from robot_runtime.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
-from robot_runtime.comm_test.lab import EmulatedLab, Teller, run_tests
+from robot_runtime.comm_test.lab import TROUBLE, EmulatedLab, RobotLab, Teller, run_tests
+from robot_runtime.comm_test.reset_pin import find_reset
 from robot_runtime.lifetime import end_with_parent
 
 REFUSED = 2
@@ -21,9 +22,16 @@ NICENESS = 10
 
 def main() -> int:
     """Run the document. Exit status: 0 if every test is complete, 1 if one is not, 2 if it is refused."""
-    arguments = _parser().parse_args()
+    parser = _parser()
+    arguments = parser.parse_args()
+    if not arguments.restore and not arguments.where:
+        parser.error("--where or --restore is needed")
+    if (arguments.restore or arguments.where == "robot") and not (arguments.port and arguments.reset):
+        parser.error("the robot's board needs --port and --reset")
     if arguments.with_parent:
         end_with_parent()
+    if arguments.restore:
+        return _restore(arguments)
     stop = Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
@@ -33,8 +41,26 @@ def main() -> int:
     except DocumentError as problem:
         teller.tell("refused", problems=problem.problems)
         return REFUSED
-    os.nice(NICENESS)
-    return 0 if run_tests(tests, EmulatedLab(arguments.build, stop), teller, stop) else 1
+    try:
+        lab = _robot(arguments, stop) if arguments.where == "robot" else EmulatedLab(arguments.build, stop)
+        if arguments.where == "emulated":
+            os.nice(NICENESS)
+        return 0 if run_tests(tests, lab, teller, stop) else 1
+    except TROUBLE as problem:
+        sys.exit(f"comm_test: the robot's firmware is not on its board: {problem}")
+
+
+def _robot(arguments: argparse.Namespace, stop: Event) -> RobotLab:
+    pull = find_reset(arguments.reset)
+    return RobotLab(arguments.build, arguments.port, pull, arguments.reset == "dtr", stop)
+
+
+def _restore(arguments: argparse.Namespace) -> int:
+    try:
+        _robot(arguments, Event()).close()
+    except TROUBLE as problem:
+        sys.exit(f"comm_test: the robot's firmware is not on its board: {problem}")
+    return 0
 
 
 def _decode(document: bytes) -> str:
@@ -51,7 +77,11 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--build", type=Path, required=True, help="the folder of everything that is built")
-    parser.add_argument("--where", choices=["emulated"], required=True, help="where the cells run")
+    parser.add_argument("--where", choices=["emulated", "robot"], help="where the cells run")
+    parser.add_argument("--restore", action="store_true", help="only upload the robot's firmware")
+    parser.add_argument("--port", help="the robot's serial port")
+    parser.add_argument("--baud-robot", type=int, metavar="B", help="the baud of the robot's firmware")
+    parser.add_argument("--reset", metavar="SPEC", help="gpio:CHIP:LINE, board:SOCKET or dtr")
     parser.add_argument("--with-parent", action="store_true", help="end, in order, when the parent ends")
     return parser
 

@@ -11,7 +11,7 @@ from threading import Event
 from typing import get_args
 
 from robot_runtime.comm_test.faults import RateKind
-from robot_runtime.comm_test.line import WRITE_BUFFER_BYTES, Line, check
+from robot_runtime.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, check
 from robot_runtime.comm_test.results import FaultCounts, LineErrors
 from robot_runtime.link.port import Port
 from robot_runtime.simulation.board import Board, BoardError, LineDirection
@@ -70,11 +70,9 @@ class EmulatedLine(Line):
     def _pass(self, seconds: float) -> None:
         end = self.now + seconds
         step = READ_STEP_BYTES * self.byte_time
-        # The board counts runs from the end of the last, however far the last instruction reached beyond it.
-        while (left := end - self.now) > 0:
+        while (left := end - self.now) > TIME_MIN:
             check(self._stop)
-            now = self._board.run(min(left, step))
-            self.now = end if left <= step else now
+            self.now = self._board.run(min(left, step))
             self._read()
 
     def _read(self) -> None:

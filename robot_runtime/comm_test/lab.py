@@ -3,6 +3,8 @@
 import json
 import os
 import platform
+import sys
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from threading import Event, Lock
@@ -10,15 +12,24 @@ from typing import Any, Protocol, TextIO
 
 from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.line import StoppedError
+from robot_runtime.comm_test.faults import Faults
+from robot_runtime.comm_test.line import StoppedError, check
+from robot_runtime.comm_test.port_line import PortLine
+from robot_runtime.comm_test.reset_pin import Pull, ResetError
 from robot_runtime.comm_test.results import CellResult
-from robot_runtime.comm_test.runner import BOOTLOADER, Phase, Runner
-from robot_runtime.comm_test.upload import UploadError, avrdude_version
+from robot_runtime.comm_test.runner import BOOTLOADER, Phase, Runner, run_cell
+from robot_runtime.comm_test.upload import BOOT_BAUD, UploadError, avrdude_version, upload
 from robot_runtime.link.port import PortError
 from robot_runtime.simulation.board import BoardError
 
-TROUBLE = (BuildError, UploadError, BoardError, PortError)
+TROUBLE = (BuildError, UploadError, ResetError, BoardError, PortError)
 """What may end a test before it is complete; the texts say why."""
+
+FIRMWARE = "firmware/robot.hex"
+"""In the folder of all that is built."""
+SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
+"""s until a sketch listens after its upload, and after a reset, when the boot loader listens first."""
+ATTEMPTS = 3
 
 
 class Teller:
@@ -84,9 +95,62 @@ class EmulatedLab:
         """Every board has ended with its cell."""
 
 
+class RobotLab:
+    """The robot's own board at `port`, in real time, cell by cell; it gets its firmware back at the end."""
+
+    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Event) -> None:
+        self._build = build
+        self._port = port
+        self._pull = pull
+        self._boot_time = BOOT_LOADER_TIME if opening_resets else SKETCH_TIME
+        self._stop = stop
+        self._builder: Builder | None = None
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """See Lab."""
+        self._builder = Builder(self._build / "comm_test")
+        tools = {"compiler": self._builder.compiler, "avrdude": avrdude_version()}
+        return self._builder.firmware_hash, tools, f"{_host()}, the robot's own board at {self._port}"
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """See Lab."""
+        assert self._builder
+        for number, cell in enumerate(test.cells):
+            check(self._stop)
+            tell(number, "compile")
+            product = self._builder.build(test, cell.baud, cell.arduino_delay)
+            tell(number, "upload")
+            self._upload(product.hex, self._stop)
+            tell(number, "run")
+            with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+                proxy = Path(folder) if test.faults != Faults(seed=test.faults.seed) else None
+                with PortLine(self._port, cell.baud, self._boot_time, self._stop, proxy) as line:
+                    result = run_cell(test, cell, line)
+            yield result
+
+    def close(self) -> None:
+        """Upload the robot's firmware, whatever has been before and whoever wants to stop."""
+        self._upload(self._build / FIRMWARE, Event())
+
+    def _upload(self, program: Path, stop: Event) -> None:
+        # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
+        for left in reversed(range(ATTEMPTS)):
+            self._pull()
+            try:
+                upload(program, self._port, BOOT_BAUD, stop)
+                return
+            except UploadError as problem:
+                if not left:
+                    raise
+                print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
+
+
 def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Event) -> bool:
     """Run tests one after the other up to the first that does not come to its end; whether all did."""
-    return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
+    try:
+        return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
+    finally:
+        lab.close()
 
 
 def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Event) -> bool:

@@ -1,0 +1,86 @@
+"""The lab on the robot's own board, in real time; an emulated board at 1x plays the Arduino."""
+
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+import serial
+
+from robot_runtime.comm_test.faults import Faults
+from robot_runtime.comm_test.reset_pin import ResetError, find_reset
+from robot_runtime.comm_test.runner import BOOTLOADER
+from robot_runtime.link.framing import Decoder
+from robot_runtime.packets import Hello
+from robot_runtime.simulation.board import BoardProcess
+from tests.board.host import BAUD
+from tests.board.rig import ROOT, build, wait_for
+from tests.runtime.comm_test.conftest import make_test
+from tests.runtime.comm_test.lab_process import cancel, lab, read_until, run_lab, write_document
+
+SHORT = make_test(framing="plain", to_val=21, expected=20)
+StartBoard = Callable[..., BoardProcess]
+
+
+@pytest.fixture
+def arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+    """A board with the robot's firmware and a boot loader; opening its port resets it, as on many boards."""
+    build(ROOT / "firmware", "robot")
+    elf = ROOT / "build/firmware/robot.elf"
+    options = ("--bootloader", str(program.parent / BOOTLOADER), "--reset-on-open")
+    with BoardProcess(program, elf, tmp_path / "tty", tmp_path / "socket", *options) as process:
+        yield process
+
+
+def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
+    return ("--port", str(arduino.tty), "--baud-robot", str(BAUD), "--reset", reset)
+
+
+def check_firmware(arduino: BoardProcess) -> None:
+    """The robot's firmware says HELLO once the boot loader has waited in vain."""
+    with serial.Serial(str(arduino.tty), BAUD, timeout=10) as port, arduino.connect() as board:
+        opened = board.stats()["time"]
+        wait_for(lambda: board.stats()["time"] > opened + 0.5, "the boot loader")
+        (frame,) = Decoder().feed(port.read_until(b"\0"))
+    assert [type_ for type_, _ in frame.messages] == [Hello.type]
+
+
+@pytest.mark.parametrize("pulled", [False, True])
+def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess, pulled: bool) -> None:
+    reset = f"board:{arduino.socket}" if pulled else "dtr"
+    faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
+    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino, reset))
+    assert (status, [event["state"] for event in events if event["event"] == "ended"]) == (
+        0,
+        ["complete"] * 2,
+    )
+    clean, harmed = (event["values"] for event in events if event["event"] == "cell")
+    assert (clean["rate"], clean["bytes_read"]) == (1.0, 40)
+    assert harmed["answered"]
+    assert harmed["bytes_lost"] > 0
+    check_firmware(arduino)
+
+
+def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) -> None:
+    slow = make_test(delay=(10.0,))
+    with lab(write_document(slow), "--where", "robot", *place(arduino)) as process:
+        read_until(process.stdout, event="phase", phase="run")
+        status, events = cancel(process)
+    assert (status, events[-1]["state"]) == (1, "cancelled")
+    check_firmware(arduino)
+
+
+def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: BoardProcess) -> None:
+    with lab(write_document(SHORT), "--where", "robot", *place(arduino)) as process:
+        read_until(process.stdout, event="phase", phase="upload")
+        with arduino.connect() as board:
+            wait_for(lambda: board.stats()["bytes_to_board"] > 600, "the first pages")
+        process.send_signal(signal.SIGKILL)
+    assert run_lab(b"", "--restore", *place(arduino)) == (0, [])
+    check_firmware(arduino)
+
+
+@pytest.mark.parametrize("spec", ["", "gpio", "gpio:4", "gpio:/dev/gpiochip0:x", "board:", "dtr:", "rts"])
+def test_a_reset_that_cannot_be_is_refused(spec: str) -> None:
+    with pytest.raises(ResetError, match="it must be gpio:CHIP:LINE, board:SOCKET or dtr"):
+        find_reset(spec)
