@@ -6,7 +6,7 @@ import signal
 import sqlite3
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -95,7 +95,11 @@ def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
             "The emulated robot's board runs only while the server does. Start the test from the page, or "
             "leave --place out."
         )
-    with claim(settings.data):
+    with ExitStack() as claimed:
+        try:
+            claimed.enter_context(claim(settings.data))
+        except SetupError as problem:
+            raise SetupError(f"{problem} Beside a running server, start the test from its page.") from problem
         prepare(settings.data)
         with closing(Store(settings.data.database)) as store:
             return asyncio.run(_perform(text, tests, place, settings, Runs(store)))
