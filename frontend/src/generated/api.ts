@@ -343,7 +343,7 @@ export interface paths {
         put?: never;
         /**
          * Start recording
-         * @description Record everything from now on; refused while another session records.
+         * @description Record everything from now on; refused while another records, or the board is lent to a test.
          */
         post: operations["startSession"];
         delete?: never;
