@@ -121,15 +121,13 @@ async def _perform(text: str, tests: list[CommTest], place: Place, settings: Set
     board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
     lab = Lab(settings, runs, SteadyClock(), progress.tell, board.lend)
     loop = asyncio.get_running_loop()
-    cancelling: list[asyncio.Task[None]] = []
     for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, lambda: cancelling.append(loop.create_task(lab.cancel())))
+        loop.add_signal_handler(number, lab.cancel)
     try:
         first = await lab.start(text, place)
     except Refused as problem:
         raise SetupError(str(problem)) from problem
     await lab.wait()
-    await asyncio.gather(*cancelling)
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
 
