@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 LINE_BYTES_MAX = 100_000
 WORDS_KEPT = 5
 """Lines that are no JSON are the last words of a process that fails."""
-CANCEL_SECONDS = 20.0
+CANCEL_SECONDS = 45.0
 """After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
 
 
