@@ -2,6 +2,7 @@
 
 import asyncio
 import csv
+import fcntl
 import io
 import json
 import os
@@ -120,6 +121,18 @@ def test_what_cannot_be_done_is_said(
         assert words in capsys.readouterr().err
     assert main(["commtest", "list", *options]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 1
+
+
+def test_beside_a_running_server_the_page_is_the_place(
+    settings: Settings, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = write(tmp_path, ENTRY)
+    with settings.data.lock.open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert main(["commtest", "run", document, *options]) == 1
+        assert "start the test from its page" in capsys.readouterr().err
+    assert main(["commtest", "run", document, "--place", "robot", *options]) == 1
+    assert "runs only while the server does" in capsys.readouterr().err
 
 
 def test_a_damaged_database_is_told_of(
