@@ -6,7 +6,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench samples generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -35,9 +35,13 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 bench: setup-test ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
 
-firmware: ## compile the firmware and the emulated board
+samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
+	$(PYTHON) -m server.comm_tests.samples
+
+firmware: ## compile the firmware, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
+	@$(MAKE) --silent -C firmware/bootloader
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator
 

@@ -75,7 +75,7 @@ class Assembly:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-            await self.lab.cancel()
+            await self.lab.close()
             await self.parts.stop()
             await self._end_session()
             await self.bridge.close()

@@ -57,6 +57,18 @@ bool board_create(struct board *board, struct pty *pty) {
   return true;
 }
 
+bool board_renew(struct board *board) {
+  struct board before = *board;
+  if (!board_create(board, before.pty)) {
+    return false;
+  }
+  chip_inherit(&board->chip, &before.chip);
+  eeprom_inherit(&board->eeprom, &before.eeprom);
+  chip_remove(&before.chip);
+  board_feel(board, &before.surroundings);
+  return true;
+}
+
 void board_feel(struct board *board, const struct surroundings *surroundings) {
   board->surroundings = *surroundings;
   pins_show(&board->pins, surroundings);

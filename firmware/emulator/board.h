@@ -35,6 +35,10 @@ struct board {
 // A board without a program, in still water.
 bool board_create(struct board *board, struct pty *pty);
 
+// Takes the power away and gives it back: everything is as after `board_create`, the chip's time too, but for
+// flash memory, EEPROM and surroundings. The reset is the caller's, as is what hangs on the chip's timers.
+bool board_renew(struct board *board);
+
 void board_feel(struct board *board, const struct surroundings *surroundings);
 
 // The device of this name, or NULL: imu, pressure, encoder0 to 3, bridge0 to 3.

@@ -94,6 +94,16 @@ bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owne
   return true;
 }
 
+void chip_remove(struct chip *chip) {
+  avr_terminate(chip->avr);
+  free(chip->avr);
+}
+
+void chip_inherit(struct chip *chip, const struct chip *other) {
+  memcpy(chip->avr->flash, other->avr->flash, other->avr->flashend + 1);
+  chip->avr->reset_pc = other->avr->reset_pc;
+}
+
 static bool check_elf(const char *path, char *reason, size_t size) {
   FILE *file = fopen(path, "rb");
   if (!file) {

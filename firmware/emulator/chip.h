@@ -48,6 +48,12 @@ struct chip {
 // `after_reset` is called after every reset, before the first instruction.
 bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owner);
 
+// Frees what `chip_create` has made.
+void chip_remove(struct chip *chip);
+
+// Takes over what is in the other's flash memory, the boot loader and its fuses too.
+void chip_inherit(struct chip *chip, const struct chip *other);
+
 // Puts a program into the flash memory, and leaves a boot loader there; the reset is the caller's. False with
 // a reason where it cannot.
 bool chip_load(struct chip *chip, const char *elf_path, char *reason, size_t reason_size);

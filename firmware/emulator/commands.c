@@ -68,6 +68,16 @@ static void reset(struct service *service, struct client *client, char *nothing)
   agree(service, client);
 }
 
+static void power(struct service *service, struct client *client, char *nothing) {
+  (void)nothing;
+  if (service->runner) {
+    refuse(service, client, "a run is under way");
+    return;
+  }
+  service_power(service);
+  agree(service, client);
+}
+
 static void load(struct service *service, struct client *client, char *path) {
   char reason[CLIENT_LINE_MAX];
   if (!chip_load(&service->board.chip, path, reason, sizeof reason / 2)) {
@@ -117,13 +127,14 @@ static void stats(struct service *service, struct client *client, char *nothing)
                "stats time=%.6f cycles=%llu speed_x=%.2f late=%lu skipped=%.3f sense_late=%lu resets=%lu "
                "watchdog_resets=%lu crashes=%lu baud_host=%u baud_board=%.0f bytes_from_host=%lu "
                "bytes_to_board=%lu framing_errors_board=%lu overruns=%lu bytes_from_board=%lu "
-               "bytes_to_host=%lu bytes_lost=%lu framing_errors_host=%lu%s",
+               "bytes_to_host=%lu bytes_lost=%lu framing_errors_host=%lu "
+               "waiting=%zu%s",
                time, (unsigned long long)chip_now(&board->chip), speed_x, service->pace.late,
                service->pace.skipped, service->water.late, board->chip.resets, board->chip.watchdog_resets,
                board->chip.crashes, board->host.baud, CHIP_FREQUENCY / uart_bit(&board->uart),
                board->host.bytes_taken, board->uart.bytes_received, board->uart.framing_errors,
                board->uart.overruns, board->uart.bytes_sent, board->host.bytes_given, board->host.bytes_lost,
-               board->host.framing_errors, faults);
+               board->host.framing_errors, board->host.send_count - board->host.send_done, faults);
 }
 
 static void fault(struct service *service, struct client *client, char *arguments) {
@@ -202,8 +213,9 @@ static void quit(struct service *service, struct client *client, char *nothing) 
 }
 
 static const struct command commands[] = {
-    {"attach", attach}, {"sense", sense}, {"fins", fins}, {"reset", reset}, {"load", load}, {"run", run},
-    {"stats", stats},   {"fault", fault}, {"line", line}, {"seed", seed},   {"quit", quit},
+    {"attach", attach}, {"sense", sense}, {"fins", fins}, {"reset", reset},
+    {"power", power},   {"load", load},   {"run", run},   {"stats", stats},
+    {"fault", fault},   {"line", line},   {"seed", seed}, {"quit", quit},
 };
 
 void commands_do(void *owner, struct client *client, char *line) {

@@ -42,6 +42,12 @@ void eeprom_create(struct eeprom *eeprom, struct chip *chip) {
   chip_hook_write(chip, REGISTER_EECR, &eeprom->control_written, on_control_written, eeprom);
 }
 
+void eeprom_inherit(struct eeprom *eeprom, const struct eeprom *other) {
+  free(eeprom->module->eeprom);
+  eeprom->module->eeprom = other->module->eeprom;
+  other->module->eeprom = NULL;
+}
+
 static bool prepare_file(int file, size_t size) {
   struct stat status;
   if (fstat(file, &status)) {

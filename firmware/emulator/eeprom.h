@@ -19,4 +19,7 @@ void eeprom_create(struct eeprom *eeprom, struct chip *chip);
 // Keeps the contents in this file from now on; a file that is not there begins erased. False with a reason.
 bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t reason_size);
 
+// Takes over what the other keeps, and its file.
+void eeprom_inherit(struct eeprom *eeprom, const struct eeprom *other);
+
 #endif

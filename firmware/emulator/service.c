@@ -70,6 +70,25 @@ bool service_create(struct service *service, const struct options *options, char
   return true;
 }
 
+void service_power(struct service *service) {
+  struct board *board = &service->board;
+  struct water *water = &service->water;
+  struct client *client = water->client;
+  double period = chip_seconds(water->period);
+  if (!board_renew(board)) {
+    service->quitting = true;
+    return;
+  }
+  water_create(water, board, &service->clients, water->patience);
+  if (client) {
+    water_attach(water, client, period, chip_now(&board->chip));
+  }
+  service->busy = 0;
+  service->run_until = 0;
+  chip_reset(&board->chip, CHIP_POWER_ON);
+  pace_start(&service->pace, service->options->speed, pace_clock(), chip_now(&board->chip));
+}
+
 void service_remove(struct service *service) {
   pty_remove(&service->pty);
   clients_close(&service->clients);

@@ -26,6 +26,9 @@ struct service {
 // False with a reason where something cannot be had.
 bool service_create(struct service *service, const struct options *options, char *reason, size_t reason_size);
 
+// Takes the board's power away and gives it back. Time begins anew; the water stays.
+void service_power(struct service *service);
+
 // Serves until it is told to quit.
 void service_run(struct service *service);
 

@@ -1,4 +1,4 @@
-"""The test document: JSON with the fields of the thesis's Figure 10, and two more that may be left out.
+"""The test document: JSON with the fields of the thesis's Figure 10, and three more that may be left out.
 
 Every problem is told with the place where it is. All delays are seconds, as in Figure 10.
 """
@@ -6,10 +6,11 @@ Every problem is told with the place where it is. All delays are seconds, as in 
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import isfinite
 from typing import Any, get_args
 
+from robot_runtime.comm_test.faults import RATE_KINDS, Faults
 from robot_runtime.comm_test.framings import FRAMINGS
 from robot_runtime.comm_test.results import Cell, Direction
 
@@ -19,6 +20,11 @@ NUMBERS_MAX = 5000
 DELAY_MAX = 10.0
 """s."""
 BAUD_ERROR_MAX = 0.025
+FAULT_RATE_MAX = 0.1
+BURST_BITS_MAX = 10_000
+PERIOD_MIN, PERIOD_MAX = 0.05, 3600.0
+"""s between two stalls, or two cuts, from beginning to beginning."""
+SEED_MAX = 2**32 - 1
 NAME_CHARACTERS_MAX = 200
 CLOCK = 16_000_000
 """Hz."""
@@ -28,7 +34,8 @@ THESIS_SKETCH = re.compile(r"micro_cat_test/arduino/(test_\d+)/\1\.ino")
 """The thesis's package has one sketch per test; all of them are the one sketch here."""
 
 NEEDED = ("id", "name", "ino_path", "delay", "baud_rate", "from_val", "to_val", "expected", "arduinodelay")
-OPTIONAL = ("framing", "direction")
+OPTIONAL = ("framing", "direction", "faults")
+NO_FAULTS = Faults()
 
 
 class DocumentError(ValueError):
@@ -54,6 +61,7 @@ class CommTest:
     arduinodelay: tuple[float, ...]
     framing: str = "thesis"
     direction: Direction = "to_board"
+    faults: Faults = NO_FAULTS
 
     @property
     def cells(self) -> list[Cell]:
@@ -132,7 +140,18 @@ class _Reader:
             arduinodelay=self._delays("arduinodelay"),
             framing=framing,
             direction=self._choice("direction", "to_board", get_args(Direction)),  # type: ignore[arg-type]
+            faults=self._faults(),
         )
+
+    def _faults(self) -> Faults:
+        value = self._entry.get("faults", {})
+        if not isinstance(value, dict):
+            self.problems.append("faults: it must be an object in braces")
+            return Faults()
+        reader = _FaultReader(value)
+        faults = reader.read()
+        self.problems += [f"faults.{problem}" for problem in reader.problems]
+        return faults
 
     def _whole(self, name: str, minimum: int, maximum: int) -> int:
         value = self._entry.get(name, minimum)
@@ -202,8 +221,7 @@ class _Reader:
     def _delays(self, name: str) -> tuple[float, ...]:
         delays: list[float] = []
         for place, value in enumerate(self._list(name)):
-            number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-            if not number or not 0 <= value <= DELAY_MAX:
+            if not _is_number(value) or not 0 <= value <= DELAY_MAX:
                 self.problems.append(
                     f"{name}[{place}]: {value!r} is not a delay from 0 to {DELAY_MAX:g} seconds"
                 )
@@ -237,3 +255,78 @@ class _Reader:
             else:
                 bauds.append(value)
         return tuple(bauds)
+
+
+class _FaultReader:
+    def __init__(self, entry: Mapping[str, Any]) -> None:
+        # A test that was stored says null where there is none.
+        self._entry = {name: value for name, value in entry.items() if value is not None}
+        self.problems: list[str] = []
+
+    def read(self) -> Faults:
+        """The faults; only of use where no problems were found."""
+        known = [field.name for field in fields(Faults)]
+        for name in self._entry:
+            if name not in known:
+                self.problems.append(f"{name}: there is no such fault; known are {', '.join(known)}")
+        return Faults(
+            seed=self._seed(),
+            **{kind: self._rate(kind, self._entry.get(kind, 0.0)) for kind in RATE_KINDS},
+            burst=self._burst(),
+            stall=self._recurring("stall"),
+            cut=self._recurring("cut"),
+        )
+
+    def _seed(self) -> int:
+        value = self._entry.get("seed", 0)
+        if type(value) is not int or not 0 <= value <= SEED_MAX:
+            self.problems.append(f"seed: {value!r} is not a whole number from 0 to {SEED_MAX}")
+            return 0
+        return value
+
+    def _rate(self, name: str, value: Any) -> float:
+        if not _is_number(value) or not 0 <= value <= FAULT_RATE_MAX:
+            self.problems.append(f"{name}: {value!r} is not a rate from 0 to {FAULT_RATE_MAX:g}")
+            return 0.0
+        return float(value)
+
+    def _burst(self) -> tuple[float, int] | None:
+        pair = self._pair("burst", "a rate and a length in bits")
+        if pair is None:
+            return None
+        rate = self._rate("burst[0]", pair[0])
+        if type(pair[1]) is not int or not 1 <= pair[1] <= BURST_BITS_MAX:
+            self.problems.append(
+                f"burst[1]: {pair[1]!r} is not a whole number of bits, 1 to {BURST_BITS_MAX}"
+            )
+            return None
+        return rate, pair[1]
+
+    def _recurring(self, name: str) -> tuple[float, float] | None:
+        pair = self._pair(name, "how often and for how long, both in seconds")
+        if pair is None:
+            return None
+        every, seconds = pair
+        if not _is_number(every) or not PERIOD_MIN <= every <= PERIOD_MAX:
+            limits = f"from {PERIOD_MIN:g} to {PERIOD_MAX:g} seconds"
+            self.problems.append(f"{name}[0]: {every!r} is not a time {limits}")
+        elif not _is_number(seconds) or not 0 < seconds < every:
+            self.problems.append(
+                f"{name}[1]: {seconds!r} is not a time above 0 and below faults.{name}[0], {every}"
+            )
+        else:
+            return float(every), float(seconds)
+        return None
+
+    def _pair(self, name: str, meaning: str) -> list[Any] | None:
+        value = self._entry.get(name)
+        if value is None:
+            return None
+        if not isinstance(value, list) or len(value) != 2:
+            self.problems.append(f"{name}: it must be a list of two numbers, {meaning}")
+            return None
+        return value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

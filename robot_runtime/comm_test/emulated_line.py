@@ -8,93 +8,74 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from threading import Event
-from typing import Self
+from typing import get_args
 
-from robot_runtime.comm_test.line import check
-from robot_runtime.comm_test.results import LineErrors
+from robot_runtime.comm_test.faults import RateKind
+from robot_runtime.comm_test.line import WRITE_BUFFER_BYTES, Line, check
+from robot_runtime.comm_test.results import FaultCounts, LineErrors
 from robot_runtime.link.port import Port
-from robot_runtime.simulation.board import BoardError, BoardProcess
+from robot_runtime.simulation.board import Board, BoardError, LineDirection
 
-PATIENCE = 10.0
-"""s of real time for what the operating system does between two processes."""
-BITS_PER_BYTE = 10
-START_TIME = 0.02
-"""s of emulated time until the sketch listens."""
-WRITE_BUFFER_BYTES = 4000
-"""A little less than Linux keeps for a serial port; a longer write waits for the line."""
+PATIENCE = 60.0
+"""s of real time for what the operating system does between two processes, on a busy computer."""
 READ_STEP_BYTES = 1024
-RUN_MIN = 1e-6
-"""s; the board tells its time with six digits."""
+DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)
 
 
-class EmulatedLine:
-    """The board with this program on it, reset, and its port opened at `baud` (bit/s).
+class EmulatedLine(Line):
+    """The port at `tty` of a paused board, whose power is switched off and on once the port is open.
 
-    `now` is emulated time in s, `written` and `heard` are what went over the port.
-
-    Raises BoardError and PortError.
+    So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
     """
 
-    def __init__(self, program: Path, elf: Path, folder: Path, baud: int, stop: Event | None = None) -> None:
-        self.byte_time = BITS_PER_BYTE / baud
+    start_time = 0.02
+
+    def __init__(self, board: Board, tty: Path, baud: int, stop: Event | None = None) -> None:
+        super().__init__(baud)
+        self._board = board
         self._stop = stop or Event()
-        self._process = BoardProcess(
-            program, elf, folder / "tty", folder / "socket", "--paused", "--with-parent"
-        )
+        self._port = Port(str(tty), baud)
         try:
-            self._board = self._process.connect()
-            self._port = Port(str(self._process.tty), baud)
+            self._wait_for(lambda: self._count("baud_host") == baud)
+            board.power()
         except Exception:
-            self._process.stop()
+            self._port.close()
             raise
-        self.written = 0
-        self.heard = b""
-        self.now = 0.0
-        self._line_free = 0.0
-        self._wait_for(lambda: self._count("baud_host") == baud)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """Close the port."""
         self._port.close()
-        self._board.close()
-        self._process.stop()
-
-    @property
-    def busy(self) -> float:
-        """s until everything that was written is through the line."""
-        return max(self._line_free - self.now, 0.0)
-
-    def write(self, data: bytes) -> None:
-        """Hand bytes to the port, waiting for the line where they find no room. Raises BoardError."""
-        room = WRITE_BUFFER_BYTES * self.byte_time
-        airtime = len(data) * self.byte_time
-        if self.busy + airtime > room:
-            self.wait(self.busy + airtime - room)
-        self._port.write(data)
-        self.written += len(data)
-        self._line_free = self.now + self.busy + airtime
-        self._wait_for(lambda: self._count("bytes_from_host") == self.written)
-
-    def wait(self, seconds: float) -> None:
-        """Let emulated time pass, and read what comes meanwhile into `heard`.
-
-        Raises BoardError, and StoppedError once `stop` is set.
-        """
-        end = self.now + seconds
-        step = READ_STEP_BYTES * self.byte_time
-        while (left := end - self.now) > RUN_MIN:
-            check(self._stop)
-            self.now = self._board.run(min(left, step))
-            self._read()
 
     def errors(self) -> LineErrors:
-        """What the two UARTs have counted since the start."""
-        stats = self._board.stats()
+        """What the two UARTs have counted since the start, and what has befallen the line."""
+        stats = {name: int(value) for name, value in self._board.stats().items()}
         return LineErrors(
-            int(stats["framing_errors_board"]), int(stats["framing_errors_host"]), int(stats["overruns"])
+            framing_board=stats["framing_errors_board"],
+            framing_host=stats["framing_errors_host"],
+            overruns=stats["overruns"],
+            faults=FaultCounts.add_up(stats),
         )
+
+    def _wire(self) -> "_EmulatedWire":
+        return _EmulatedWire(self._board)
+
+    def _hand_over(self, data: bytes) -> None:
+        # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
+        while self._count("waiting") + len(data) > WRITE_BUFFER_BYTES:
+            self.wait(len(data) * self.byte_time)
+        self._port.write(data)
+        self.written += len(data)
+        self._wait_for(lambda: self._count("bytes_from_host") == self.written)
+
+    def _pass(self, seconds: float) -> None:
+        end = self.now + seconds
+        step = READ_STEP_BYTES * self.byte_time
+        # The board counts runs from the end of the last, however far the last instruction reached beyond it.
+        while (left := end - self.now) > 0:
+            check(self._stop)
+            now = self._board.run(min(left, step))
+            self.now = end if left <= step else now
+            self._read()
 
     def _read(self) -> None:
         given = self._count("bytes_to_host")
@@ -106,8 +87,8 @@ class EmulatedLine:
 
         self._wait_for(complete)
 
-    def _count(self, name: str) -> int:
-        return int(self._board.stats()[name])
+    def _count(self, counter: str) -> int:
+        return int(self._board.stats()[counter])
 
     def _wait_for(self, condition: Callable[[], bool]) -> None:
         end = time.monotonic() + PATIENCE
@@ -115,3 +96,31 @@ class EmulatedLine:
             if time.monotonic() > end:
                 raise BoardError("the emulated board does not serve its serial port")
             os.sched_yield()
+
+
+class _EmulatedWire:
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def seed(self, seed: int) -> None:
+        self._board.seed_line(seed)
+
+    def rate(self, kind: RateKind, rate: float) -> None:
+        for direction in DIRECTIONS:
+            self._board.disturb_line(direction, kind, rate)
+
+    def burst(self, rate: float, bits: int) -> None:
+        for direction in DIRECTIONS:
+            self._board.burst_line(direction, rate, bits)
+
+    def stall(self, seconds: float) -> None:
+        for direction in DIRECTIONS:
+            self._board.stall_line(direction, seconds)
+
+    def cut(self, cut: bool) -> None:
+        for direction in DIRECTIONS:
+            self._board.cut_line(direction, cut)
+
+    def clean(self) -> None:
+        for direction in DIRECTIONS:
+            self._board.clean_line(direction)

@@ -12,11 +12,12 @@ from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
 from robot_runtime.comm_test.document import CommTest
 from robot_runtime.comm_test.line import StoppedError
 from robot_runtime.comm_test.results import CellResult
-from robot_runtime.comm_test.runner import Phase, Runner
+from robot_runtime.comm_test.runner import BOOTLOADER, Phase, Runner
+from robot_runtime.comm_test.upload import UploadError, avrdude_version
 from robot_runtime.link.port import PortError
 from robot_runtime.simulation.board import BoardError
 
-TROUBLE = (BuildError, BoardError, PortError)
+TROUBLE = (BuildError, UploadError, BoardError, PortError)
 """What may end a test before it is complete; the texts say why."""
 
 
@@ -61,9 +62,17 @@ class EmulatedLab:
         program = self._build / "board"
         if not program.exists():
             raise BoardError(f"there is no emulated board at {program}; `make firmware` builds it")
+        bootloader = self._build / BOOTLOADER
+        if not bootloader.exists():
+            raise BoardError(f"there is no boot loader at {bootloader}; `make firmware` builds it")
         builder = Builder(self._build / "comm_test")
         self._runner = Runner(builder, program, os.cpu_count() or 1, self._stop)
-        tools = {"compiler": builder.compiler, "emulated board": hash_file(program)}
+        tools = {
+            "compiler": builder.compiler,
+            "avrdude": avrdude_version(),
+            "boot loader": hash_file(bootloader),
+            "emulated board": hash_file(program),
+        }
         return builder.firmware_hash, tools, f"{_host()}, emulated board"
 
     def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:

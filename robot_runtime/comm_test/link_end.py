@@ -7,9 +7,8 @@ the board sends numbers too, once all of those are there.
 """
 
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME
 from robot_runtime.comm_test.framings import Sequence
-from robot_runtime.comm_test.line import Line
+from robot_runtime.comm_test.line import BITS_PER_BYTE, Line
 from robot_runtime.comm_test.results import Cell, CellResult, Counts, Finding, LinkCellResult
 from robot_runtime.link.session import Session, Stage
 from robot_runtime.packets import Packet, RequestResult, TestMsg, TestResult
@@ -61,7 +60,8 @@ class _LinkCell:
         self._read = 0
 
     def run(self) -> CellResult:
-        self._line.wait(START_TIME)
+        self._line.wait(self._line.start_time)
+        self._line.disturb(self._test.faults)
         while self._answer is None and not self._hopeless():
             self._give()
             self._line.wait(self._pause())

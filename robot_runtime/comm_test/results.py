@@ -1,6 +1,7 @@
 """What a cell of a communication test counted, and what that means in words."""
 
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal
 
 Direction = Literal["to_board", "to_host", "both"]
@@ -31,12 +32,53 @@ class Counts:
 
 
 @dataclass(frozen=True, slots=True)
+class FaultCounts:
+    """What the test let befall the line, both directions together; `cuts` are bytes lost while it was cut."""
+
+    bit_errors: int = 0
+    drops: int = 0
+    doubles: int = 0
+    inserts: int = 0
+    bursts: int = 0
+    cuts: int = 0
+    stalls: int = 0
+
+    @classmethod
+    def add_up(cls, counts: Mapping[str, int]) -> "FaultCounts":
+        """From counters whose names begin with the direction, as the emulated board has them."""
+        return cls(
+            **{
+                field.name: counts[f"to_board_{field.name}"] + counts[f"from_board_{field.name}"]
+                for field in fields(cls)
+            }
+        )
+
+    @property
+    def words(self) -> str:
+        """For a person; "" where nothing befell it."""
+        words = (
+            (self.bit_errors, "wrong bits"),
+            (self.bursts, "bursts of errors"),
+            (self.drops, "dropped bytes"),
+            (self.doubles, "doubled bytes"),
+            (self.inserts, "bytes put in"),
+            (self.cuts, "bytes lost while it was cut"),
+            (self.stalls, "stalls"),
+        )
+        return ", ".join(f"{count} {what}" for count, what in words if count)
+
+
+NO_FAULT_COUNTS = FaultCounts()
+
+
+@dataclass(frozen=True, slots=True)
 class LineErrors:
-    """What happened on the wire below the programs, as the emulated board's UARTs saw it."""
+    """What happened on the wire below the programs, as the UARTs saw it where they can be asked."""
 
     framing_board: int = 0
     framing_host: int = 0
     overruns: int = 0
+    faults: FaultCounts = NO_FAULT_COUNTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +145,7 @@ class CellResult:
             **asdict(self.counts),
             "rate": self.rate,
             "answered": self.board is not None,
-            "bytes_lost": self.lost_to_board + self.lost_to_host,
+            "bytes_lost": max(self.lost_to_board, 0) + max(self.lost_to_host, 0),
             "line_errors": self.line.framing_board + self.line.framing_host,
             "uart_overruns": self.line.overruns,
             "repeated": self.repeated,
@@ -113,16 +155,22 @@ class CellResult:
         }
 
     def _remarks(self) -> list[str]:
-        return []
+        faults = self.line.faults.words
+        return [f"on the line there were {faults}"] if faults else []
+
+    @property
+    def harmed(self) -> bool:
+        """Whether the test let something befall the line that changes bytes."""
+        return replace(self.line.faults, stalls=0) != NO_FAULT_COUNTS
 
     def _findings(self) -> list[Finding]:
         findings = []
         if self.board is None:
             findings.append(("lost result", "the chip did not answer when it was asked for its counts"))
         if self.direction != "to_host" and self.board:
-            findings += _explain(self.board, self.expected, self.lost_to_board, "the chip")
+            findings += _explain(self.board, self.expected, self.lost_to_board, "the chip", self.harmed)
         if self.direction != "to_board":
-            findings += _explain(self.host, self.expected, self.lost_to_host, "the host")
+            findings += _explain(self.host, self.expected, self.lost_to_host, "the host", self.harmed)
         if self.line.framing_board or self.line.framing_host:
             where = f"{self.line.framing_board} at the chip, {self.line.framing_host} at the host"
             findings.append(("line", f"stop bits were not where they belong, {where}"))
@@ -156,12 +204,14 @@ class LinkCellResult(CellResult):
         return findings
 
     def _remarks(self) -> list[str]:
-        remarks = [f"frames sent again: {self.repeated}"] if self.repeated else []
+        remarks = CellResult._remarks(self)
+        if self.repeated:
+            remarks.append(f"frames sent again: {self.repeated}")
         damaged = self.counts.checksum_errors
         return [*remarks, f"damaged frames thrown away: {damaged}"] if damaged else remarks
 
 
-def _explain(counts: Counts, expected: int, lost: int, who: str) -> list[Finding]:
+def _explain(counts: Counts, expected: int, lost: int, who: str, harmed: bool) -> list[Finding]:
     findings = []
     missing = f"{expected - counts.right} of {expected} numbers did not reach {who}"
     if lost > 0 and counts.ring_full:
@@ -176,6 +226,7 @@ def _explain(counts: Counts, expected: int, lost: int, who: str) -> list[Finding
         findings.append(("lost bytes", f"{lost} bytes did not reach {who}; {missing}"))
     if counts.framing_errors:
         why = "bytes of theirs were missing" if lost > 0 else "a byte within was the end mark \\n"
+        why = "the line had harmed them, or a byte within was the end mark \\n" if harmed else why
         findings.append(
             ("framing error", f"messages of the wrong length at {who}: {counts.framing_errors}; {why}")
         )

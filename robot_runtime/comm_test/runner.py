@@ -1,8 +1,9 @@
 """Runs a test's cells on the emulated board, in emulated time; the same test gives the same bytes.
 
-A cell: compile, start the board with the sketch, write the numbers with the Pi's delay after each, wait until
-the chip must have emptied its ring, and ask for the result. The wait keeps the question from being lost in a
-full ring, so that the answer tells of the numbers and not of itself.
+A cell: compile, start a board with an empty flash memory, upload the sketch through its boot loader, write
+the numbers with the Pi's delay after each, wait until the chip must have emptied its ring, and ask for the
+result. The wait keeps the question from being lost in a full ring, so that the answer tells of the numbers
+and not of itself.
 """
 
 import tempfile
@@ -10,19 +11,25 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
 from pathlib import Path
-from threading import Event, Lock
+from threading import Event, Lock, Semaphore
 from typing import Literal
 
 from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.document import CommTest
-from robot_runtime.comm_test.emulated_line import BITS_PER_BYTE, START_TIME, EmulatedLine
+from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.framings import ANSWER_BYTES, STREAM_FRAMINGS, find_answer
-from robot_runtime.comm_test.line import Line, check
+from robot_runtime.comm_test.line import BITS_PER_BYTE, Line, check
 from robot_runtime.comm_test.link_end import estimate_link_seconds, run_link_cell
 from robot_runtime.comm_test.results import RING_BYTES, Cell, CellResult, Counts
+from robot_runtime.comm_test.upload import upload_paused
+from robot_runtime.simulation.board import BoardProcess
 
 Phase = Literal["compile", "upload", "run"]
 Tell = Callable[[int, Phase], None]
+BOOTLOADER = "firmware/optiboot.hex"
+"""In the folder of all that is built."""
+UPLOADS_AT_ONCE = 2
+"""For every cell that is computed; an upload waits about 1 s for avrdude, a cell computes 1 to 10 s."""
 LOOP_TIME = 0.003
 """s that a message costs the sketch beyond its delay and the line; `delay` is up to 1 ms late."""
 PATIENCE = 0.05
@@ -31,22 +38,27 @@ QUESTIONS = 3
 
 
 class Runner:
-    """Runs tests on `program`, the emulated board, with sketches that `builder` makes.
+    """Runs tests on `program`, the emulated board in the folder of all that is built, with sketches that
+    `builder` makes, until `stop` is set.
 
-    `at_once` cells run at the same time, each on a board of its own, until `stop` is set.
+    `computing` cells are computed at the same time, each on a board of its own; others upload meanwhile,
+    which is mostly waiting.
     """
 
-    def __init__(self, builder: Builder, program: Path, at_once: int, stop: Event | None = None) -> None:
+    def __init__(self, builder: Builder, program: Path, computing: int, stop: Event | None = None) -> None:
         self._builder = builder
         self._program = program
-        self._at_once = at_once
+        self._options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused", "--with-parent")
+        self._at_once = computing + UPLOADS_AT_ONCE * computing
         self._stop = stop or Event()
         self._building = Lock()
+        self._computing = Semaphore(computing)
 
     def run(self, test: CommTest, tell: Tell = lambda _number, _phase: None) -> Iterator[CellResult]:
         """The cells of the grid, in its order; `tell` is called by several threads.
 
-        Whoever stops asking has cancelled. Raises BuildError, BoardError, PortError, and StoppedError.
+        Whoever stops asking has cancelled. Raises BuildError, BoardError, UploadError, PortError, and
+        StoppedError.
         """
 
         def run_one(number: int, cell: Cell) -> CellResult:
@@ -67,10 +79,16 @@ class Runner:
             product = self._builder.build(test, cell.baud, cell.arduino_delay)
         with (
             tempfile.TemporaryDirectory(prefix="mucat-") as folder,
-            EmulatedLine(self._program, product.elf, Path(folder), cell.baud, self._stop) as line,
+            BoardProcess(
+                self._program, None, Path(folder) / "tty", Path(folder) / "socket", *self._options
+            ) as process,
+            process.connect() as board,
         ):
-            tell("run")
-            return run_cell(test, cell, line)
+            tell("upload")
+            upload_paused(product.hex, process.tty, board, self._stop)
+            with self._computing, EmulatedLine(board, process.tty, cell.baud, self._stop) as line:
+                tell("run")
+                return run_cell(test, cell, line)
 
 
 def run_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
@@ -79,7 +97,8 @@ def run_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
         return run_link_cell(test, cell, line)
     framing = STREAM_FRAMINGS[test.framing]
     messages = [framing.message(number) for number in range(test.from_val, test.to_val)]
-    line.wait(START_TIME)
+    line.wait(line.start_time)
+    line.disturb(test.faults)
     for message in messages if test.direction != "to_host" else messages[:1]:
         line.write(message)
         line.wait(cell.pi_delay)
@@ -115,7 +134,7 @@ def estimate_seconds(test: CommTest, cell: Cell) -> float:
 
 
 def _let_the_board_finish(test: CommTest, cell: Cell, line: Line, message_bytes: int) -> None:
-    line.wait(line.busy)
+    line.drain()
     each = cell.arduino_delay + LOOP_TIME
     to_read = ceil(RING_BYTES / message_bytes)
     to_send = 0
@@ -126,10 +145,14 @@ def _let_the_board_finish(test: CommTest, cell: Cell, line: Line, message_bytes:
 
 
 def _ask(request: bytes, cell: Cell, line: Line) -> tuple[Counts | None, int]:
+    # On a line that is left alone, and whatever harmed bytes have made the chip answer before: so the answer
+    # tells of the numbers.
+    line.calm()
+    before = len(line.heard)
     for _ in range(QUESTIONS):
         line.write(request)
         line.wait(line.busy + cell.arduino_delay + ANSWER_BYTES * line.byte_time + PATIENCE)
-        found = find_answer(line.heard)
-        if found:
-            return found
+        if found := find_answer(line.heard[before:]):
+            counts, at = found
+            return counts, before + at
     return None, len(line.heard)

@@ -131,6 +131,10 @@ class Board:
         """Pull the reset pin."""
         self._order("reset")
 
+    def power(self) -> None:
+        """Take the power away and give it back: it begins anew, but for flash memory and EEPROM."""
+        self._order("power")
+
     def load(self, elf: Path) -> None:
         """Upload another program and reset. Raises BoardError where it is none."""
         self._order(f"load {elf}")

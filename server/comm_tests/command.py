@@ -6,7 +6,7 @@ import signal
 import sqlite3
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -95,7 +95,11 @@ def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
             "The emulated robot's board runs only while the server does. Start the test from the page, or "
             "leave --place out."
         )
-    with claim(settings.data):
+    with ExitStack() as claimed:
+        try:
+            claimed.enter_context(claim(settings.data))
+        except SetupError as problem:
+            raise SetupError(f"{problem} Beside a running server, start the test from its page.") from problem
         prepare(settings.data)
         with closing(Store(settings.data.database)) as store:
             return asyncio.run(_perform(text, tests, place, settings, Runs(store)))
@@ -117,15 +121,13 @@ async def _perform(text: str, tests: list[CommTest], place: Place, settings: Set
     board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
     lab = Lab(settings, runs, SteadyClock(), progress.tell, board.lend)
     loop = asyncio.get_running_loop()
-    cancelling: list[asyncio.Task[None]] = []
     for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, lambda: cancelling.append(loop.create_task(lab.cancel())))
+        loop.add_signal_handler(number, lab.cancel)
     try:
         first = await lab.start(text, place)
     except Refused as problem:
         raise SetupError(str(problem)) from problem
     await lab.wait()
-    await asyncio.gather(*cancelling)
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
 

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager, suppress
 from dataclasses import dataclass, field
-from signal import SIGTERM
+from signal import SIGKILL, SIGTERM
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -32,8 +32,8 @@ log = logging.getLogger(__name__)
 LINE_BYTES_MAX = 100_000
 WORDS_KEPT = 5
 """Lines that are no JSON are the last words of a process that fails."""
-CANCEL_SECONDS = 90.0
-"""After which a cancelled process is killed; it may have to bring the robot's firmware back."""
+CANCEL_SECONDS = 45.0
+"""After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
 
 
 class LabError(Exception):
@@ -114,17 +114,18 @@ class Lab:
         if self._task is not None:
             await asyncio.wait([self._task])
 
-    async def cancel(self) -> None:
-        """End what runs, in order; the cells that are finished are kept."""
+    def cancel(self) -> None:
+        """Let what runs come to its end soon, in order; the cells that are finished are kept."""
         self._cancelled = True
-        if self._process is not None:
-            self._process.signal(SIGTERM)
-        if self.busy:
-            assert self._task is not None
-            _, late = await asyncio.wait([self._task], timeout=CANCEL_SECONDS)
-            if late and self._process is not None:
-                self._process.close()
-                await self.wait()
+        process = self._process
+        if process is not None:
+            process.signal(SIGTERM)
+            asyncio.get_running_loop().call_later(CANCEL_SECONDS, process.signal, SIGKILL)
+
+    async def close(self) -> None:
+        """Cancel what runs, and wait for its end."""
+        self.cancel()
+        await self.wait()
 
     async def _run(self, tests: list[CommTest], text: str, place: Place, began: asyncio.Future[int]) -> None:
         weights = [[estimate_seconds(test, cell) for cell in test.cells] for test in tests]

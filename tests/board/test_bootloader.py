@@ -12,10 +12,12 @@ import serial
 
 from robot_runtime.link.framing import Decoder
 from robot_runtime.packets import Hello
-from robot_runtime.simulation.board import Board, BoardError, BoardProcess
+from robot_runtime.simulation.board import STILL_WATER, Board, BoardError, BoardProcess
+from robot_runtime.simulation.sensors import Reading
+from robot_runtime.simulation.simulator import FinMotion
 from tests.board.host import BAUD
-from tests.board.monitor import Monitor
-from tests.board.rig import PROGRAM, ROOT, SKETCHES, Rig, build, wait_for
+from tests.board.monitor import REFUSED_ADDRESS, Monitor
+from tests.board.rig import PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for
 
 OPTIBOOT = ROOT / "build/firmware/optiboot.hex"
 ROBOT = ROOT / "build/firmware/robot.hex"
@@ -198,3 +200,38 @@ def test_a_file_that_is_no_boot_loader_is_refused(tmp_path: Path, text: str, mes
     with pytest.raises(BoardError, match=message) as refusal:
         BoardProcess(PROGRAM, None, tmp_path / "tty", tmp_path / "board", "--bootloader", str(file))
     assert "\n" not in str(refusal.value)
+
+
+def test_power_off_and_on_leaves_only_the_memories(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        fresh = rig.board.stats()
+        Monitor(rig).boot()
+        Monitor(rig).write_eeprom(5, 0x5A)
+        rig.board.disturb_line("to_board", "drop", 1.0)
+        rig.board.fault("imu", "absent")
+        rig.exchange(b"lost", 0.5)
+        rig.board.reset()
+        rig.board.power()
+        rig.port.close()
+        rig.port = Port(rig.process.tty, rig.board, BOOT_BAUD)
+        assert rig.board.stats() == fresh
+        monitor = Monitor(rig)
+        assert monitor.boot() == 0  # from the boot loader, at once
+        assert monitor.read_eeprom(5) == 0x5A
+        assert monitor.transfer(0x69, b"\x75", 1)[0] != REFUSED_ADDRESS
+
+
+def test_the_water_stays_when_the_power_goes(tmp_path: Path) -> None:
+    with both(tmp_path) as rig:
+        asked = []
+
+        def feel(motion: FinMotion) -> Reading:
+            asked.append(motion)
+            return STILL_WATER
+
+        rig.board.attach(0.01, feel)
+        rig.board.run(0.055)
+        assert len(asked) == 5
+        rig.board.power()
+        rig.board.run(0.035)
+        assert len(asked) == 8

@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 from websockets.asyncio.client import ClientConnection, connect
 
+from robot_runtime.errors import Refused
 from server.app import create_app
 from server.assembly import Assembly
 from server.bridge import RuntimeSilent
@@ -41,12 +42,12 @@ class Served:
         await until(lambda: self.runtime.is_heard(topic), f"somebody to listen to {topic}")
 
     async def reached(self) -> None:
-        """Wait until the runtime's end can be asked."""
+        """Wait until the runtime's end can be asked, and may be."""
         async with asyncio.timeout(SECONDS):
             while True:
                 try:
                     return await self.assembly.bridge.command("there", {})
-                except RuntimeSilent:
+                except (RuntimeSilent, Refused):
                     await asyncio.sleep(0.005)
 
 

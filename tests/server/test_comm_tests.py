@@ -1,23 +1,30 @@
 """`mucat commtest`, from the document to the export, on the emulated board."""
 
+import asyncio
 import csv
+import fcntl
 import io
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 from contextlib import closing
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from robot_runtime.comm_test.document import read_document
 from robot_runtime.comm_test.results import Cell, CellResult, Counts, LineErrors
 from server.cli import main
 from server.comm_tests import tables
 from server.comm_tests.reference import read_table
 from server.comm_tests.runs import Runs
+from server.comm_tests.shipped import THESIS, import_samples, shipped_documents
+from server.schema import prepare
 from server.settings import Settings
 from server.store import Store
 from tests.board.rig import ROOT, build
@@ -34,6 +41,8 @@ ENTRY: dict[str, Any] = {
     "expected": 12,
     "arduinodelay": [0.1],
 }
+
+LOST = CellResult(Cell(9600, 0.5, 1.0), "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -114,6 +123,18 @@ def test_what_cannot_be_done_is_said(
     assert len(capsys.readouterr().out.splitlines()) == 1
 
 
+def test_beside_a_running_server_the_page_is_the_place(
+    settings: Settings, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = write(tmp_path, ENTRY)
+    with settings.data.lock.open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert main(["commtest", "run", document, *options]) == 1
+        assert "start the test from its page" in capsys.readouterr().err
+    assert main(["commtest", "run", document, "--place", "robot", *options]) == 1
+    assert "runs only while the server does" in capsys.readouterr().err
+
+
 def test_a_damaged_database_is_told_of(
     settings: Settings, options: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,24 +167,118 @@ def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[st
 
 def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
     runs = Runs(store)
-    number = runs.start(make_test(), "firmware", {})
-    runs.mark_interrupted()
-    other = runs.start(make_test(), "firmware", {})
-    assert [(run.id, run.state) for run in runs.list()] == [(other, "running"), (number, "interrupted")]
+
+    async def scenario() -> tuple[int, int]:
+        killed = await begin(runs)
+        await runs.mark_interrupted()
+        return killed, await begin(runs)
+
+    killed, other = asyncio.run(scenario())
+    newest, oldest = runs.summaries()
+    assert [(newest.id, newest.state), (oldest.id, oldest.state)] == [
+        (other, "running"),
+        (killed, "interrupted"),
+    ]
+    assert oldest.problem
 
 
 def test_a_lost_result_is_kept_as_such(store: Store) -> None:
     runs = Runs(store)
-    number = runs.start(make_test(), "firmware", {})
-    cell = Cell(9600, 0.5, 1.0)
-    lost = CellResult(cell, "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
-    runs.add(number, 0, lost)
+
+    async def scenario() -> int:
+        number = await begin(runs)
+        await runs.add(number, 0, LOST.values)
+        return number
+
+    number = asyncio.run(scenario())
     (kept,) = runs.cells(number)
     assert (kept.rate, kept.answered, kept.line_errors) == (0.0, False, 7)
     assert kept.causes == "lost result, line"
     run = runs.find(number)
     assert run is not None
     assert "9600 baud, Arduino 0.5 s, Pi 1 s: lost result" in tables.show_run(run, [kept])
+    whole = runs.whole(run)
+    assert (whole.cells_done, whole.rate_mean, whole.rate_min) == (1, 0.0, 0.0)
+    assert whole.results[0].causes == ["lost result", "line"]
+
+
+async def begin(runs: Runs) -> int:
+    return await runs.start(make_test(), "emulated", "firmware", {}, "host")
+
+
+def test_what_is_no_cell_is_not_stored(store: Store) -> None:
+    runs = Runs(store)
+
+    async def scenario() -> None:
+        number = await begin(runs)
+        with pytest.raises(ValueError, match="rate"):
+            await runs.add(number, 0, {"baud": 9600, "rate": "all"})
+
+    asyncio.run(scenario())
+    assert runs.cells(1) == []
+
+
+def test_runs_of_the_version_before_are_kept(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        # As version 0002 left them.
+        for table, column in (("run", "place"), ("run", "sample"), ("cell", "repeated")):
+            database.execute(f"ALTER TABLE comm_test_{table} DROP COLUMN {column}")
+        columns = "name, document, framing, direction, cells, firmware, tools, host, started, state, problem"
+        values = "'old', '{}', 'thesis', 'to_board', 1, 'f', '{}', 'h', 1.0, 'complete', ''"
+        database.execute(f"INSERT INTO comm_test_run ({columns}) VALUES ({values})")
+        database.execute("UPDATE alembic_version SET version_num = '0002'")
+        database.commit()
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        (run,) = Runs(store).summaries()
+    assert (run.name, run.place, run.sample) == ("old", "emulated", "")
+
+
+def test_samples_come_once_and_a_broken_one_costs_only_itself(
+    store: Store, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    runs = Runs(store)
+    good = {
+        "id": 7,
+        "name": "kept",
+        "framing": "plain",
+        "direction": "both",
+        "firmware": "f",
+        "host": "h",
+        "document": {"id": 1},
+        "tools": {"compiler": "c"},
+        "started": 1.0,
+        "ended": 2.0,
+        "state": "complete",
+        "problem": "",
+        "cells": [{"number": 0, **LOST.values}],
+    }
+    (tmp_path / "good.json").write_text(json.dumps(good), encoding="utf-8")
+    (tmp_path / "cut.json").write_text('{"name": ', encoding="utf-8")
+    (tmp_path / "list.json").write_text("[]", encoding="utf-8")
+    (tmp_path / "empty.json").write_text(json.dumps(good | {"cells": [{}]}), encoding="utf-8")
+    for _ in range(2):
+        asyncio.run(import_samples(runs, tmp_path))
+    (run,) = runs.summaries()
+    assert (run.sample, run.name, run.cells, run.cells_done) == ("good", "kept", 1, 1)
+    for name in ("cut", "list", "empty"):
+        assert f"{name}.json cannot be read" in caplog.text
+
+
+def test_what_ships_can_be_read_and_run(store: Store) -> None:
+    first, *others = shipped_documents()
+    assert (first.name, first.text) == ("figure10", THESIS.read_text(encoding="utf-8"))
+    assert {document.name for document in others} >= {"plain", "robot", "both-ways", "noisy-line", "quick"}
+    for document in (first, *others):
+        assert read_document(document.text)
+    runs = Runs(store)
+    asyncio.run(import_samples(runs))
+    shipped = sorted((files("server.comm_tests") / "samples").iterdir(), key=lambda file: file.name)
+    names = [file.name.removesuffix(".json") for file in shipped if file.name.endswith(".json")]
+    assert names
+    assert sorted(run.sample for run in runs.summaries()) == names
+    assert all(run.cells == run.cells_done for run in runs.summaries())
 
 
 def test_the_thesis_s_tables_are_whole() -> None:

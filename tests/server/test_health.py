@@ -112,6 +112,29 @@ def test_a_part_that_ended_has_failed_whatever_was_heard(bench: Bench) -> None:
     assert bench.status == "failed"
 
 
+def test_what_is_lent_is_absent_and_not_failed(bench: Bench) -> None:
+    bench.run_all()
+    bench.clock.forward(60)
+    bench.watch.see(truth_block(0))
+    bench.parts["runtime"].pause("The board is lent.")
+    for name in ("runtime", "link", "board"):
+        assert (bench.state(name), bench.text(name)) == ("absent", "The board is lent.")
+    assert bench.status == "ok"
+    bench.parts["board"].problem = "has ended"
+    bench.parts["board"]._set("failed")
+    assert bench.state("board") == "failed"
+
+
+def test_a_board_without_its_firmware_is_told_until_it_answers(bench: Bench) -> None:
+    bench.run_all()
+    bench.clock.forward(60)
+    bench.watch.firmware_away = "The firmware is not on the board."
+    bench.hear(0, connected=False, connection="no answer")
+    assert (bench.state("link"), bench.text("link")) == ("failed", "The firmware is not on the board.")
+    bench.hear(1)
+    assert (bench.state("link"), bench.text("link")) == ("ok", "connected")
+
+
 def test_a_real_robot_has_no_simulator(settings: Settings, store: Store) -> None:
     bench = Bench(replace(settings, mode="robot"), store, "runtime")
     bench.run_all()

@@ -184,6 +184,26 @@ def test_a_missing_program_is_told_and_the_others_run(tmp_path: Path) -> None:
     run(crew, scenario)
 
 
+def test_what_is_paused_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        before = crew.process("engine")
+        await crew.parts.pause("engine", "It is lent.")
+        await crew.parts.pause("sail", "There is none.")
+        assert not before.is_running()
+        assert (crew.part("engine").state, crew.part("engine").problem) == ("paused", "It is lent.")
+        crew.parts.start()
+        await asyncio.sleep(0)
+        assert crew.part("engine").state == "paused"
+        crew.parts.resume("engine")
+        await until(lambda: crew.part("engine").pid, "the next start")
+        assert crew.told == []
+
+    run(crew, scenario)
+
+
 def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
@@ -201,6 +221,7 @@ def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(set
     commands = {command.name: command for command in plan(settings)}
     assert list(commands) == ["board", "runtime", "simulator"]
     assert all(command.arguments[-1] == "--with-parent" for command in commands.values())
+    assert str(settings.build / "firmware/optiboot.hex") in commands["board"].arguments
     assert commands["runtime"].needs == (settings.data.board_tty,)
     assert str(settings.data.board_tty) in commands["runtime"].arguments
     assert "--port" not in plan(replace(settings, mode="robot"))[0].arguments

@@ -15,7 +15,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel what runs
-         * @description The cells that are finished are kept; answers once everything has ended.
+         * @description The cells that are finished are kept. Its end is told on the live socket.
          */
         post: operations["cancelTestRun"];
         delete?: never;

@@ -78,6 +78,7 @@ def _run(name: str, runner: Runner, firmware: str, tools: dict[str, str]) -> dic
         "host": "emulated board",
         "started": started,
         "ended": time.time(),
+        "place": "emulated",
         "state": "complete",
         "problem": "",
         "sample": name,

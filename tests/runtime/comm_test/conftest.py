@@ -39,6 +39,7 @@ def builder() -> Builder:
 @pytest.fixture(scope="session")
 def program() -> Path:
     build(ROOT / "firmware/emulator")
+    build(ROOT / "firmware/bootloader")
     return PROGRAM
 
 

@@ -1,5 +1,6 @@
 """The sketch is compiled as the firmware is, once for each set of inputs."""
 
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -35,12 +36,14 @@ def test_every_parameter_makes_another_product_and_none_the_same(builder: Builde
         builder.build(make_test(), 2400, 0.1),
         builder.build(make_test(), 9600, 0.0),
         builder.build(make_test(framing="plain"), 9600, 0.1),
+        builder.build(make_test(framing="robot"), 9600, 0.1),
+        builder.build(make_test(framing="robot"), 2400, 0.1),
         builder.build(make_test(direction="both"), 9600, 0.1),
         builder.build(make_test(from_val=2), 9600, 0.1),
         builder.build(make_test(to_val=100), 9600, 0.1),
     ]
-    assert len({product.inputs for product in [first, *others]}) == 7
-    assert len({product.hex.read_bytes() for product in [first, *others]}) == 7
+    assert len({product.inputs for product in [first, *others]}) == 9
+    assert len({product.hex.read_bytes() for product in [first, *others]}) == 9
 
 
 def test_another_source_is_another_firmware(
@@ -58,6 +61,21 @@ def test_another_source_is_another_firmware(
     with pytest.raises(BuildError, match="broken"):
         broken.build(make_test(), 9600, 0.0)
     assert list((tmp_path / "made").iterdir()) == []
+
+
+def test_another_library_is_another_firmware(
+    builder: Builder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    library = tmp_path / "src"
+    shutil.copytree(module.LIBRARY, library)
+    monkeypatch.setattr(module, "LIBRARY", library)
+    assert Builder(tmp_path / "made").firmware_hash == builder.firmware_hash
+    (library / "link/baud.h").write_text("#error broken\n")
+    broken = Builder(tmp_path / "made")
+    assert broken.firmware_hash != builder.firmware_hash
+    with pytest.raises(BuildError, match="broken"):
+        broken.build(make_test(framing="robot"), 9600, 0.0)
+    broken.build(make_test(framing="plain"), 9600, 0.0)
 
 
 def test_a_compiler_that_is_not_there_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,12 +1,14 @@
 """The test document: the thesis's own runs, and every mistake is told where it is."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from robot_runtime.comm_test.document import CommTest, DocumentError, chip_baud, read_document
+from robot_runtime.comm_test.faults import Faults
 from robot_runtime.comm_test.results import Cell
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -47,6 +49,16 @@ def test_the_sketch_s_own_path_framing_and_direction(path: str) -> None:
     assert (test.framing, test.direction) == ("plain", "both")
 
 
+def test_faults_are_read_and_what_was_stored_can_be_read_again() -> None:
+    wanted = {"seed": 7, "bit_errors": 1e-3, "insert": 0.1, "burst": [1e-4, 20], "stall": [2, 0.25]}
+    (test,) = read_document(changed(faults=wanted))
+    assert test.faults == Faults(seed=7, bit_errors=1e-3, insert=0.1, burst=(1e-4, 20), stall=(2.0, 0.25))
+    assert read_document(json.dumps([asdict(test)])) == [test]
+    (clean,) = read_document(THESIS)
+    assert clean.faults == Faults()
+    assert read_document(json.dumps([asdict(clean)])) == [clean]
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -78,9 +90,30 @@ def test_the_sketch_s_own_path_framing_and_direction(path: str) -> None:
         ({"to_val": 1}, "to_val: 1 must be above from_val, 1"),
         ({"to_val": 20000}, "to_val: 20000 must be above from_val, 1, by 1 to 5000"),
         ({"expected": 99}, "expected: 99 numbers, but from_val 1 up to, and without, to_val 101 are 100"),
-        ({"framing": "morse"}, "framing: 'morse' must be one of plain, thesis"),
+        ({"framing": "morse"}, "framing: 'morse' must be one of plain, thesis, robot"),
+        ({"framing": "robot", "baud_rate": [600]}, "baud_rate[0]: 600 is not a baud rate of this framing"),
         ({"framing": ["plain"]}, "framing: ['plain'] must be one of"),
         ({"direction": "up"}, "direction: 'up' must be one of to_board, to_host, both"),
+        ({"faults": 3}, "faults: it must be an object in braces"),
+        ({"faults": {"noise": 1}}, "faults.noise: there is no such fault; known are seed, bit_errors"),
+        ({"faults": {"seed": -1}}, "faults.seed: -1 is not a whole number"),
+        ({"faults": {"seed": 1.0}}, "faults.seed: 1.0 is not a whole number"),
+        ({"faults": {"bit_errors": 0.2}}, "faults.bit_errors: 0.2 is not a rate from 0 to 0.1"),
+        ({"faults": {"drop": "1"}}, "faults.drop: '1' is not a rate"),
+        ({"faults": {"double": True}}, "faults.double: True is not a rate"),
+        ({"faults": {"insert": float("nan")}}, "faults.insert: nan is not a rate"),
+        ({"faults": {"burst": 0.1}}, "faults.burst: it must be a list of two numbers, a rate and a length"),
+        ({"faults": {"burst": [0.11, 8]}}, "faults.burst[0]: 0.11 is not a rate"),
+        ({"faults": {"burst": [0.1, 0]}}, "faults.burst[1]: 0 is not a whole number of bits"),
+        ({"faults": {"burst": [0.1, 1.5]}}, "faults.burst[1]: 1.5 is not a whole number of bits"),
+        ({"faults": {"stall": [1]}}, "faults.stall: it must be a list of two numbers, how often"),
+        ({"faults": {"stall": [0, 0.1]}}, "faults.stall[0]: 0 is not a time from 0.05 to 3600 seconds"),
+        (
+            {"faults": {"stall": [2, 2]}},
+            "faults.stall[1]: 2 is not a time above 0 and below faults.stall[0], 2",
+        ),
+        ({"faults": {"cut": [2, 0]}}, "faults.cut[1]: 0 is not a time"),
+        ({"faults": {"cut": [2, "1"]}}, "faults.cut[1]: '1' is not a time"),
         ({"framing": "plain", "to_val": 256, "expected": 255}, "to_val: 256 is not a whole number"),
     ],
 )

@@ -21,7 +21,7 @@ def test_it_tells_of_every_step_and_the_cells_in_order(builder: Builder, run: Ru
     started, ended = events[0], [event for event in events if event["event"] == "ended"]
     assert (started["event"], started["test"], started["firmware"]) == ("started", 0, builder.firmware_hash)
     assert started["tools"]["compiler"] == builder.compiler
-    assert {"emulated board"} <= started["tools"].keys()
+    assert {"emulated board", "avrdude", "boot loader"} <= started["tools"].keys()
     assert started["host"].startswith(platform.node())
     assert ended == [{"event": "ended", "test": test, "state": "complete", "problem": ""} for test in (0, 1)]
     cells = [event for event in events if event["event"] == "cell"]
@@ -29,7 +29,7 @@ def test_it_tells_of_every_step_and_the_cells_in_order(builder: Builder, run: Ru
     assert [cell["values"] for cell in cells[:4]] == [result.values for result in run(**changes)]
     for number in range(4):
         told = [event for event in events if event["test"] == 0 and event.get("number") == number]
-        assert [event.get("phase", "done") for event in told] == ["compile", "run", "done"]
+        assert [event.get("phase", "done") for event in told] == ["compile", "upload", "run", "done"]
 
 
 def test_a_bad_document_is_refused_with_every_problem() -> None:

@@ -11,7 +11,7 @@ from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.link_end import GREETING_PATIENCE, estimate_link_seconds
 from robot_runtime.comm_test.results import CellResult, Counts
 from robot_runtime.comm_test.runner import Runner, run_cell
-from robot_runtime.simulation.board import Board
+from robot_runtime.simulation.board import Board, BoardProcess
 from tests.runtime.comm_test.conftest import Run, make_test
 
 DIRECTIONS = ("to_board", "to_host", "both")
@@ -40,7 +40,11 @@ def run_harmed(builder: Builder, program: Path, tmp_path: Path) -> RunHarmed:
         test = make_test(framing="robot", **changes)
         (cell,) = test.cells
         product = builder.build(test, baud_of_sketch, cell.arduino_delay)
-        with HarmedLine(program, product.elf, tmp_path, cell.baud) as line:
+        with (
+            BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+            process.connect() as board,
+            HarmedLine(board, process.tty, cell.baud) as line,
+        ):
             line.harm, line.harm_at = harm, harm_at
             return run_cell(test, cell, line)
 

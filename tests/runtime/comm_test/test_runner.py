@@ -9,6 +9,7 @@ from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.results import Cell, Counts
 from robot_runtime.comm_test.runner import Runner, run_cell
+from robot_runtime.simulation.board import BoardProcess
 from tests.runtime.comm_test.conftest import Run, make_test
 
 RING = 63
@@ -80,7 +81,11 @@ def test_a_board_that_does_not_understand_is_a_lost_result(
 ) -> None:
     test, cell = make_test(baud_rate=(9600,)), Cell(9600, 0.0, 0.0)
     product = builder.build(test, 19200, 0.0)
-    with EmulatedLine(program, product.elf, tmp_path, cell.baud) as line:
+    with (
+        BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+        process.connect() as board,
+        EmulatedLine(board, process.tty, cell.baud) as line,
+    ):
         result = run_cell(test, cell, line)
     assert (result.board, result.rate, result.causes[0]) == (None, 0.0, "lost result")
     assert "line" in result.causes

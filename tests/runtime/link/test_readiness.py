@@ -70,3 +70,14 @@ def test_held_frames_are_not_sent_again() -> None:
     sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
     sender.channel.receive(told(0, 0b1), sender.now)
     assert 1 not in [number for _, number, _ in sender.run(0.06)]
+
+
+def test_what_was_dropped_goes_out_as_soon_as_there_is_room() -> None:
+    sender = Sender()
+    first = sender.run(0.04)
+    sender.channel.receive(told(0, NOT_READY), sender.now)
+    sender.run(0.045)
+    sender.channel.receive(told(0, 0), sender.now)
+    # Long before any of them would be taken for lost.
+    again = sender.run(0.06)
+    assert [number for _, number, _ in again[:2]] == [number for _, number, _ in first[:2]] == [0, 1]
