@@ -4,6 +4,7 @@ import {
   change,
   changeFault,
   faultText,
+  faultWords,
   listText,
   numberFields,
   numbersOf,
@@ -88,6 +89,8 @@ describe('the form', () => {
     expect(changeFault({ faults: { drop: 0.01, seed: 3 } }, 'insert', 0.1)).toEqual({ drop: 0.01, seed: 3, insert: 0.1 });
     expect(faultText({ faults: { burst: [0.001, 8] } }, 'burst', 1)).toBe('8');
     expect(faultText({ faults: { drop: 0.01 } }, 'drop')).toBe('0.01');
+    expect(faultWords({ faults: { seed: 1, bit_errors: 0.001, stall: [2, 0.3] } })).toBe('flipped bits 0.001, a stall of 0.3 s every 2 s');
+    expect(faultWords({})).toBe('');
     expect(faultText({}, 'drop')).toBe('');
     expect(faultText({ faults: 'none' }, 'stall', 0)).toBe('');
   });
@@ -99,13 +102,15 @@ describe('problems', () => {
       'test 1: delay[1]: -1 is not a delay from 0 to 10 seconds',
       'test 1: expected: 5 numbers, but from_val 1 up to, and without, to_val 3 are 2',
       'test 1: faults.bit_errors: 2 is above 0.1',
+      'test 1: faults.stall[1]: 9 is above 1',
       'test 1: it must be an object in braces',
       'test 12: name: it is missing',
       'the document has 600 cells; at most 500 can be run at once',
     ];
     const first = problemsByField(problems, 0);
-    expect([...first.keys()]).toEqual(['delay', 'expected', 'faults', '']);
-    expect(first.get('faults')).toEqual(['bit_errors: 2 is above 0.1']);
+    expect([...first.keys()]).toEqual(['delay', 'expected', 'faults.bit_errors', 'faults.stall', '']);
+    expect(first.get('faults.bit_errors')).toEqual(['2 is above 0.1']);
+    expect(first.get('faults.stall')).toEqual(['entry 2: 9 is above 1']);
     expect(first.get('delay')).toEqual(['entry 2: -1 is not a delay from 0 to 10 seconds']);
     expect(first.get('expected')?.[0]).toContain('but from_val 1');
     expect([...problemsByField(problems, 11).keys()]).toEqual(['name']);

@@ -43,6 +43,7 @@ def place_of(row: list[str]) -> Place:
     return int(row[0]), float(row[1]), float(row[2])
 
 
+@pytest.mark.timeout(2 * SWEEP_MS // 1000)
 def test_the_thesis_example(page: Page, tmp_path: Path) -> None:
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))

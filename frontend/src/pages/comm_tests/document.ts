@@ -109,19 +109,43 @@ export function faultText(test: Fields, name: string, place?: number): string {
   return one === undefined || one === null ? '' : entryText(one);
 }
 
-/** `words` with what their field's name goes on with: [1] is the second entry of a list, .drop a field within. */
-function placed(rest: string, words: string): string {
-  const [, entry] = /^\[(\d+)\]$/.exec(rest) ?? [];
-  if (entry !== undefined) return `entry ${Number(entry) + 1}: ${words}`;
-  return rest === '' ? words : `${rest.replace(/^\./, '')}: ${words}`;
+const FAULTS: Readonly<Record<string, (value: string, second: string) => string>> = {
+  bit_errors: (rate) => `flipped bits ${rate}`,
+  drop: (rate) => `dropped bytes ${rate}`,
+  double: (rate) => `doubled bytes ${rate}`,
+  insert: (rate) => `inserted bytes ${rate}`,
+  burst: (rate, bits) => `bursts ${rate} of ${bits} bits`,
+  stall: (every, seconds) => `a stall of ${seconds} s every ${every} s`,
+  cut: (every, seconds) => `cut for ${seconds} s every ${every} s`,
+};
+
+/** Whether the field beside which `FaultFields` tells of a problem is of this name. */
+export function isFault(name: string): boolean {
+  return ['faults', 'faults.seed', ...Object.keys(FAULTS).map((one) => `faults.${one}`)].includes(name);
 }
 
-/** Problems of the test at `index`, without its number, by the field that they name; '' where they name none. */
+/** What a test does to its line, in words; '' where nothing. */
+export function faultWords(test: Fields): string {
+  return Object.entries(FAULTS)
+    .map(([name, say]) => {
+      const pair = Array.isArray(isFields(test.faults) ? test.faults[name] : undefined);
+      const first = faultText(test, name, pair ? 0 : undefined);
+      return first === '' ? '' : say(first, faultText(test, name, 1));
+    })
+    .filter((words) => words !== '')
+    .join(', ');
+}
+
+/**
+ * Problems of the test at `index`, without its number, by the field that they name: delay, faults.drop; '' where
+ * they name none.
+ */
 export function problemsByField(problems: readonly string[], index: number): ReadonlyMap<string, readonly string[]> {
   const found = new Map<string, string[]>();
   for (const problem of problems) {
-    const [, test, field = '', rest = '', words = ''] = /^test (\d+): (?:(\w+)([\w.[\]]*): )?(.*)$/s.exec(problem) ?? [];
-    if (Number(test) === index + 1) found.set(field, [...(found.get(field) ?? []), placed(rest, words)]);
+    const [, test, field = '', entry, words = ''] = /^test (\d+): (?:(\w+(?:\.\w+)?)(?:\[(\d+)\])?: )?(.*)$/s.exec(problem) ?? [];
+    const placed = entry === undefined ? words : `entry ${Number(entry) + 1}: ${words}`;
+    if (Number(test) === index + 1) found.set(field, [...(found.get(field) ?? []), placed]);
   }
   return found;
 }
