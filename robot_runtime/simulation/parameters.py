@@ -99,8 +99,9 @@ class Parameters:
     """m, of the pressure sensor in the body; the IMU is at the centre of mass. Assumed: on the back."""
     pressure: Quality = Quality(noise=42.0, walk=1.0, step=0.67)
     """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048, which
-    takes a quarter of the samples; step one count of its 24-bit converter. Walk assumed, within a factor of five: temperature and gel. No offset, as
-    the firmware takes the surface as its zero. The emulated part adds its 4.5 ms of conversion."""
+    takes a quarter of the samples; step one count of its 24-bit converter. Walk assumed, within a factor of
+    five: temperature and gel. No offset, as the firmware takes the surface as its zero. The emulated part
+    adds its 4.5 ms of conversion."""
     gyroscope: Quality = Quality(latency=0.005, noise=2e-4, bias=2e-3, walk=2e-5, step=pi / 180 / 65.536)
     """rad/s. MPU-6050: noise of its class (by the data sheet up to 7e-4 behind the 44 Hz filter); latency of
     that filter 4.8 ms, step at ±500 °/s, both data sheet. Bias and walk assumed, after a calibration at rest:

@@ -1,18 +1,24 @@
 """The robot's firmware, on the emulated board, swims in the simulated water with sound and broken sensors."""
 
 import math
+import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import fmean
 
 import pytest
 
-from robot_runtime.packets import Beacon, Depth, Imu, Motor, Navigation
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.messages import Messages
+from robot_runtime.packets import Beacon, Depth, Imu, Motor, Navigation, SensorFault
+from robot_runtime.simulation.board import STILL_WATER, Board, BoardError
 from robot_runtime.simulation.faults import Fault
 from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.simulation.process import Process
 from robot_runtime.simulation.simulator import Simulator
 from tests.board.host import TICK, Robot, all_of, last, start
-from tests.board.rig import ROOT, build
+from tests.board.rig import ROOT, build, wait_for
 
 PERIOD = 0.005
 DOWN = Navigation(x=0.0, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -20,6 +26,15 @@ FLAPS_TICKS = 154
 """Two flaps at 1.3 Hz."""
 SENSOR_HEIGHT = 0.05
 """m from the hull's centre to the pressure sensor above it."""
+
+
+@pytest.fixture
+def messages() -> Iterator[Messages]:
+    with (
+        tempfile.TemporaryDirectory() as folder,  # short enough for the name of a Unix socket
+        Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made,
+    ):
+        yield made
 
 
 @pytest.fixture
@@ -84,3 +99,40 @@ def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simu
     loud = all_of(robot.listen(1.0), Imu)
     assert 0.9 < max(abs(part) for packet in loud for part in packet.rate) < 1.1
     assert not last(robot.listen(0.3), Beacon).right
+
+
+@pytest.mark.usefixtures("built")
+def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
+    tmp_path: Path, water: Simulator, messages: Messages
+) -> None:
+    build(ROOT / "firmware", "robot")
+    with start("robot", tmp_path) as rig:
+        process = Process(water, rig.process.socket, messages, SimulatedClock())
+        thread = threading.Thread(target=process.run)
+        thread.start()
+        try:
+            wait_for(lambda: is_wet(rig.board), "the water")
+            robot = Robot(rig)
+            robot.listen(1.0)
+            assert robot.status().faults == 0
+            for sensor, fault in (
+                ("accelerometer", SensorFault.IMU),
+                ("encoder2", SensorFault.FIN_BACK_LEFT),
+            ):
+                messages.ask("simulator/fault", {"sensor": sensor, "kind": "bus"})
+                assert robot.status().faults == fault
+                messages.ask("simulator/fault", {"sensor": sensor, "kind": "none"})
+                robot.listen(0.5)
+                assert robot.status().faults == 0
+        finally:
+            process.end()
+            thread.join()
+
+
+def is_wet(board: Board) -> bool:
+    """Whether another connection is the water by now."""
+    try:
+        board.sense(STILL_WATER)
+    except BoardError:
+        return True
+    return False
