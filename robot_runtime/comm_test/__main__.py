@@ -1,5 +1,7 @@
 """The lab as a process: runs the tests of a document from its standard input, and tells how it goes.
 
+On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again.
+
 On its standard output are JSON objects, one to a line; docs/communication.md lists them.
 """
 
@@ -11,8 +13,8 @@ from pathlib import Path
 from threading import Event
 
 from robot_runtime.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
-from robot_runtime.comm_test.lab import TROUBLE, EmulatedLab, RobotLab, Teller, run_tests
-from robot_runtime.comm_test.reset_pin import find_reset
+from robot_runtime.comm_test.lab import TROUBLE, EmulatedLab, Lab, RobotLab, Teller, run_tests, upload_to
+from robot_runtime.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.lifetime import end_with_parent
 
 REFUSED = 2
@@ -24,8 +26,8 @@ def main() -> int:
     """Run the document. Exit status: 0 if every test is complete, 1 if one is not, 2 if it is refused."""
     parser = _parser()
     arguments = parser.parse_args()
-    if not arguments.restore and not arguments.where:
-        parser.error("--where or --restore is needed")
+    if not arguments.restore and not (arguments.where and arguments.build):
+        parser.error("--where and --build, or --restore, are needed")
     if (arguments.restore or arguments.where == "robot") and not (arguments.port and arguments.reset):
         parser.error("the robot's board needs --port and --reset")
     if arguments.with_parent:
@@ -41,25 +43,23 @@ def main() -> int:
     except DocumentError as problem:
         teller.tell("refused", problems=problem.problems)
         return REFUSED
-    try:
-        lab = _robot(arguments, stop) if arguments.where == "robot" else EmulatedLab(arguments.build, stop)
-        if arguments.where == "emulated":
-            os.nice(NICENESS)
-        return 0 if run_tests(tests, lab, teller, stop) else 1
-    except TROUBLE as problem:
-        sys.exit(f"comm_test: the robot's firmware is not on its board: {problem}")
-
-
-def _robot(arguments: argparse.Namespace, stop: Event) -> RobotLab:
-    pull = find_reset(arguments.reset)
-    return RobotLab(arguments.build, arguments.port, pull, arguments.reset == "dtr", stop)
+    lab: Lab = EmulatedLab(arguments.build, stop)
+    if arguments.where == "emulated":
+        os.nice(NICENESS)
+    else:
+        try:
+            pull = find_reset(arguments.reset)
+        except ResetError as problem:
+            sys.exit(f"comm_test: {problem}")
+        lab = RobotLab(arguments.build, arguments.port, pull, arguments.reset == "dtr", stop)
+    return 0 if run_tests(tests, lab, teller, stop) else 1
 
 
 def _restore(arguments: argparse.Namespace) -> int:
     try:
-        _robot(arguments, Event()).close()
+        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Event())
     except TROUBLE as problem:
-        sys.exit(f"comm_test: the robot's firmware is not on its board: {problem}")
+        sys.exit(f"comm_test: {problem}")
     return 0
 
 
@@ -76,11 +76,10 @@ def _parser() -> argparse.ArgumentParser:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--build", type=Path, required=True, help="the folder of everything that is built")
+    parser.add_argument("--build", type=Path, help="the folder of everything that is built")
     parser.add_argument("--where", choices=["emulated", "robot"], help="where the cells run")
-    parser.add_argument("--restore", action="store_true", help="only upload the robot's firmware")
+    parser.add_argument("--restore", type=Path, metavar="HEX", help="only upload the robot's firmware")
     parser.add_argument("--port", help="the robot's serial port")
-    parser.add_argument("--baud-robot", type=int, metavar="B", help="the baud of the robot's firmware")
     parser.add_argument("--reset", metavar="SPEC", help="gpio:CHIP:LINE, board:SOCKET or dtr")
     parser.add_argument("--with-parent", action="store_true", help="end, in order, when the parent ends")
     return parser

@@ -25,8 +25,6 @@ from robot_runtime.simulation.board import BoardError
 TROUBLE = (BuildError, UploadError, ResetError, BoardError, PortError)
 """What may end a test before it is complete; the texts say why."""
 
-FIRMWARE = "firmware/robot.hex"
-"""In the folder of all that is built."""
 SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
 """s until a sketch listens after its upload, and after a reset, when the boot loader listens first."""
 ATTEMPTS = 3
@@ -48,16 +46,13 @@ class Teller:
 
 
 class Lab(Protocol):
-    """A place for tests, which `close` leaves as it was. All methods raise the errors in TROUBLE."""
+    """A place for tests. All methods raise the errors in TROUBLE."""
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
         """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""
 
     def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
         """The cells of a test, in order. Raises StoppedError too."""
-
-    def close(self) -> None:
-        """Leave the place as it was."""
 
 
 class EmulatedLab:
@@ -91,12 +86,12 @@ class EmulatedLab:
         assert self._runner
         return self._runner.run(test, tell)
 
-    def close(self) -> None:
-        """Every board has ended with its cell."""
-
 
 class RobotLab:
-    """The robot's own board at `port`, in real time, cell by cell; it gets its firmware back at the end."""
+    """The robot's own board at `port`, in real time, cell by cell.
+
+    In the end the board holds the last sketch; `upload_to` brings the robot's firmware back.
+    """
 
     def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Event) -> None:
         self._build = build
@@ -120,7 +115,7 @@ class RobotLab:
             tell(number, "compile")
             product = self._builder.build(test, cell.baud, cell.arduino_delay)
             tell(number, "upload")
-            self._upload(product.hex, self._stop)
+            upload_to(self._port, self._pull, product.hex, self._stop)
             tell(number, "run")
             with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
                 proxy = Path(folder) if test.faults != Faults(seed=test.faults.seed) else None
@@ -128,29 +123,24 @@ class RobotLab:
                     result = run_cell(test, cell, line)
             yield result
 
-    def close(self) -> None:
-        """Upload the robot's firmware, whatever has been before and whoever wants to stop."""
-        self._upload(self._build / FIRMWARE, Event())
 
-    def _upload(self, program: Path, stop: Event) -> None:
-        # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
-        for left in reversed(range(ATTEMPTS)):
-            self._pull()
-            try:
-                upload(program, self._port, BOOT_BAUD, stop)
-                return
-            except UploadError as problem:
-                if not left:
-                    raise
-                print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
+def upload_to(port: str, pull: Pull, program: Path, stop: Event) -> None:
+    """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TROUBLE."""
+    # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
+    for left in reversed(range(ATTEMPTS)):
+        pull()
+        try:
+            upload(program, port, BOOT_BAUD, stop)
+            return
+        except UploadError as problem:
+            if not left:
+                raise
+            print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
 
 
 def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Event) -> bool:
     """Run tests one after the other up to the first that does not come to its end; whether all did."""
-    try:
-        return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
-    finally:
-        lab.close()
+    return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
 
 
 def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Event) -> bool:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
+from robot_runtime.firmware import firmware_path
 from server.bridge import Bridge, RuntimeSilent
 from server.health import Watch
 from server.logs import PartLog
@@ -45,7 +46,7 @@ class Board:
         self._port, reset = link.port, link.reset
         if settings.mode == "emulated":
             self._port, reset = str(folder.board_tty), f"board:{folder.board_socket}"
-        self._arguments = ["--port", self._port, "--baud-robot", str(link.baud), "--reset", reset]
+        self._arguments = ["--port", self._port, "--reset", reset]
 
     @property
     def away(self) -> bool:
@@ -89,8 +90,9 @@ class Board:
     async def _upload(self) -> str:
         """What went wrong, in words; empty where the firmware is there."""
         output = PartLog(self._settings.data.logs / "restore.log")
-        command = [sys.executable, "-m", "robot_runtime.comm_test", "--restore", "--with-parent"]
-        command += ["--build", str(self._settings.build), *self._arguments]
+        firmware = firmware_path(self._settings.build, self._settings.link.baud, ".hex")
+        command = [sys.executable, "-m", "robot_runtime.comm_test", "--restore", str(firmware)]
+        command += ["--with-parent", *self._arguments]
         try:
             async with asyncio.timeout(PORT_SECONDS):
                 while not Path(self._port).exists():

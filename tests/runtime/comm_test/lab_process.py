@@ -54,14 +54,17 @@ def read_until(output: IO[bytes] | None, **wanted: Any) -> list[Event]:
 def run_lab(document: bytes, *options: str) -> tuple[int, list[Event]]:
     """Its exit status and all that it told."""
     with lab(document, *options) as process:
-        told, errors = process.communicate(timeout=LIMIT)
-    assert errors == b""
-    return process.returncode, [json.loads(line) for line in told.splitlines()]
+        return _rest(process)
 
 
 def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
     """SIGTERM: its exit status and what it tells from then on."""
     process.send_signal(signal.SIGTERM)
+    return _rest(process)
+
+
+def _rest(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
     told, errors = process.communicate(timeout=LIMIT)
-    assert errors == b""
+    # An upload in real time may have to be tried again where the computer is busy.
+    assert [line for line in errors.splitlines() if not line.endswith(b"; trying again")] == []
     return process.returncode, [json.loads(line) for line in told.splitlines()]

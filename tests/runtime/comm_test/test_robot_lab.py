@@ -1,7 +1,7 @@
 """The lab on the robot's own board, in real time; an emulated board at 1x plays the Arduino."""
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,39 +19,51 @@ from tests.runtime.comm_test.conftest import make_test
 from tests.runtime.comm_test.lab_process import cancel, lab, read_until, run_lab, write_document
 
 SHORT = make_test(framing="plain", to_val=21, expected=20)
-StartBoard = Callable[..., BoardProcess]
+ROBOT = ROOT / "build/firmware/robot.hex"
 
 
 @pytest.fixture
 def arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
     """A board with the robot's firmware and a boot loader; opening its port resets it, as on many boards."""
-    build(ROOT / "firmware", "robot")
-    elf = ROOT / "build/firmware/robot.elf"
-    options = ("--bootloader", str(program.parent / BOOTLOADER), "--reset-on-open")
-    with BoardProcess(program, elf, tmp_path / "tty", tmp_path / "socket", *options) as process:
+    with start_board(program, tmp_path, "--reset-on-open") as process:
         yield process
 
 
+@pytest.fixture
+def bare_arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+    """The same, whose reset pin has to be pulled, as on the robot."""
+    with start_board(program, tmp_path) as process:
+        yield process
+
+
+def start_board(program: Path, folder: Path, *options: str) -> BoardProcess:
+    build(ROOT / "firmware", "robot")
+    bootloader = ("--bootloader", str(program.parent / BOOTLOADER))
+    return BoardProcess(
+        program, ROBOT.with_suffix(".elf"), folder / "tty", folder / "socket", *bootloader, *options
+    )
+
+
 def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
-    return ("--port", str(arduino.tty), "--baud-robot", str(BAUD), "--reset", reset)
+    return ("--port", str(arduino.tty), "--reset", reset)
 
 
-def check_firmware(arduino: BoardProcess) -> None:
-    """The robot's firmware says HELLO once the boot loader has waited in vain."""
+def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
+    """The robot's firmware is uploaded, and says HELLO once the boot loader has waited in vain."""
+    assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
     decoder = Decoder()
     said: list[int] = []
     with serial.Serial(str(arduino.tty), BAUD, timeout=10) as port:
+        find_reset(reset)()
         while Hello.type not in said:
             heard = port.read_until(b"\0")
             assert heard, said
             said += [type_ for frame in decoder.feed(heard) for type_, _ in frame.messages]
 
 
-@pytest.mark.parametrize("pulled", [False, True])
-def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess, pulled: bool) -> None:
-    reset = f"board:{arduino.socket}" if pulled else "dtr"
+def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:
     faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
-    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino, reset))
+    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino))
     assert (status, [event["state"] for event in events if event["event"] == "ended"]) == (
         0,
         ["complete"] * 2,
@@ -60,7 +72,15 @@ def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess, pulled: bo
     assert (clean["rate"], clean["bytes_read"]) == (1.0, 40)
     assert harmed["answered"]
     assert harmed["bytes_lost"] > 0
-    check_firmware(arduino)
+    check_restored(arduino)
+
+
+def test_a_board_whose_reset_pin_is_pulled(bare_arduino: BoardProcess) -> None:
+    reset = f"board:{bare_arduino.socket}"
+    linked = make_test(framing="robot", direction="both", to_val=21, expected=20)
+    status, events = run_lab(write_document(linked), "--where", "robot", *place(bare_arduino, reset))
+    assert (status, [event["values"]["rate"] for event in events if event["event"] == "cell"]) == (0, [1.0])
+    check_restored(bare_arduino, reset)
 
 
 def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) -> None:
@@ -69,7 +89,7 @@ def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) 
         read_until(process.stdout, event="phase", phase="run")
         status, events = cancel(process)
     assert (status, events[-1]["state"]) == (1, "cancelled")
-    check_firmware(arduino)
+    check_restored(arduino)
 
 
 def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: BoardProcess) -> None:
@@ -78,8 +98,7 @@ def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino:
         with arduino.connect() as board:
             wait_for(lambda: board.stats()["bytes_to_board"] > 600, "the first pages")
         process.send_signal(signal.SIGKILL)
-    assert run_lab(b"", "--restore", *place(arduino)) == (0, [])
-    check_firmware(arduino)
+    check_restored(arduino)
 
 
 @pytest.mark.parametrize("spec", ["", "gpio", "gpio:4", "gpio:/dev/gpiochip0:x", "board:", "dtr:", "rts"])
