@@ -14,6 +14,10 @@ from robot_runtime.simulation.simulator import FinMotion, Simulator
 from tests.runtime.simulation.harness import QUIET, STILL
 
 PERIOD = 0.005
+SET: dict[str, Question] = {
+    "current": {"north": 0.3, "east": 0, "down": 0, "turning": 0.5},
+    "waves": {"amplitude": 0.05, "period": 2, "direction": 0},
+}
 Ask = Callable[..., None]
 
 
@@ -172,12 +176,22 @@ def test_bus_errors_name_the_boards_devices(simulator: Simulator, ask: Ask) -> N
 def test_after_a_reset_the_same_bytes_come_again() -> None:
     simulator = Simulator(Parameters(), seed=9)
     known = changes(simulator)
-    known["waves"]({"amplitude": 0.05, "period": 2, "direction": 0})
-    known["fault"]({"sensor": "pressure", "kind": "spike", "share": 0.2, "size": 100})
+    rest(simulator, 1)
+    known["current"](SET["current"])
+    known["waves"](SET["waves"])
+    known["fault"]({"sensor": "pressure", "kind": "spike", "share": 0.2, "size": 5000})
+    rest(simulator, 1)
     known["reset"]({})
     first = rest(simulator, 5)
+    assert max(reading.pressure for reading in first) > 105000
+    east = simulator.truth().position[1]
     known["reset"]({})
     assert rest(simulator, 5) == first
+    fresh = Simulator(Parameters(), seed=9)
+    for name in ("waves", "current"):
+        changes(fresh)[name](SET[name])
+    rest(fresh, 5)
+    assert fresh.truth().position[1] == pytest.approx(east, abs=1e-12)
     other = Simulator(Parameters(), seed=10)
     assert rest(other, 5) != first
 
