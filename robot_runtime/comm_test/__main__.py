@@ -10,10 +10,10 @@ import os
 import signal
 import sys
 from pathlib import Path
-from threading import Event
 
 from robot_runtime.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
 from robot_runtime.comm_test.lab import TROUBLE, EmulatedLab, Lab, RobotLab, Teller, run_tests, upload_to
+from robot_runtime.comm_test.line import Stop
 from robot_runtime.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.lifetime import end_with_parent
 
@@ -34,7 +34,7 @@ def main() -> int:
         end_with_parent()
     if arguments.restore:
         return _restore(arguments)
-    stop = Event()
+    stop = Stop()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
     teller = Teller(sys.stdout)
@@ -57,7 +57,7 @@ def main() -> int:
 
 def _restore(arguments: argparse.Namespace) -> int:
     try:
-        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Event())
+        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Stop())
     except TROUBLE as problem:
         sys.exit(f"comm_test: {problem}")
     return 0

@@ -7,11 +7,10 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-from threading import Event
 from typing import get_args
 
 from robot_runtime.comm_test.faults import RateKind
-from robot_runtime.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, check
+from robot_runtime.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, Stop, check
 from robot_runtime.comm_test.results import FaultCounts, LineErrors
 from robot_runtime.link.port import Port
 from robot_runtime.simulation.board import Board, BoardError, LineDirection
@@ -30,10 +29,10 @@ class EmulatedLine(Line):
 
     start_time = 0.02
 
-    def __init__(self, board: Board, tty: Path, baud: int, stop: Event | None = None) -> None:
+    def __init__(self, board: Board, tty: Path, baud: int, stop: Stop | None = None) -> None:
         super().__init__(baud)
         self._board = board
-        self._stop = stop or Event()
+        self._stop = stop or Stop()
         self._port = Port(str(tty), baud)
         try:
             self._wait_for(lambda: self._count("baud_host") == baud)

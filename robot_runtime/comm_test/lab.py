@@ -7,13 +7,13 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from threading import Event, Lock
+from threading import Lock
 from typing import Any, Protocol, TextIO
 
 from robot_runtime.comm_test.builder import Builder, BuildError, hash_file
 from robot_runtime.comm_test.document import CommTest
 from robot_runtime.comm_test.faults import Faults
-from robot_runtime.comm_test.line import StoppedError, check
+from robot_runtime.comm_test.line import Stop, StoppedError, check
 from robot_runtime.comm_test.port_line import PortLine
 from robot_runtime.comm_test.reset_pin import Pull, ResetError
 from robot_runtime.comm_test.results import CellResult
@@ -58,7 +58,7 @@ class Lab(Protocol):
 class EmulatedLab:
     """Boards of the lab's own, in emulated time, as many at once as there are cores."""
 
-    def __init__(self, build: Path, stop: Event) -> None:
+    def __init__(self, build: Path, stop: Stop) -> None:
         self._build = build
         self._stop = stop
         self._runner: Runner | None = None
@@ -93,7 +93,7 @@ class RobotLab:
     In the end the board holds the last sketch; `upload_to` brings the robot's firmware back.
     """
 
-    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Event) -> None:
+    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Stop) -> None:
         self._build = build
         self._port = port
         self._pull = pull
@@ -124,7 +124,7 @@ class RobotLab:
             yield result
 
 
-def upload_to(port: str, pull: Pull, program: Path, stop: Event) -> None:
+def upload_to(port: str, pull: Pull, program: Path, stop: Stop) -> None:
     """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TROUBLE."""
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
     for left in reversed(range(ATTEMPTS)):
@@ -138,12 +138,12 @@ def upload_to(port: str, pull: Pull, program: Path, stop: Event) -> None:
             print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
 
 
-def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Event) -> bool:
+def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Stop) -> bool:
     """Run tests one after the other up to the first that does not come to its end; whether all did."""
     return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
 
 
-def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Event) -> bool:
+def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Stop) -> bool:
     state, problem = "complete", ""
     try:
         firmware, tools, host = lab.prepare()

@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from threading import Event
 from typing import Self
 
 from robot_runtime.comm_test.faults import Faults, Moment, Wire
@@ -19,7 +18,25 @@ class StoppedError(Exception):
     """Somebody has asked that the test end before it is complete."""
 
 
-def check(stop: Event) -> None:
+class Stop:
+    """Whether somebody has asked for the end. Signal handlers may set it.
+
+    An Event would not do: a second signal may interrupt the handler of the first while that has its lock.
+    """
+
+    def __init__(self) -> None:
+        self._set = False
+
+    def set(self) -> None:
+        """Ask for the end."""
+        self._set = True
+
+    def is_set(self) -> bool:
+        """Whether it was asked for."""
+        return self._set
+
+
+def check(stop: Stop) -> None:
     """Raises StoppedError once `stop` is set."""
     if stop.is_set():
         raise StoppedError("it was cancelled")

@@ -3,10 +3,9 @@
 import time
 from contextlib import ExitStack
 from pathlib import Path
-from threading import Event
 
 from robot_runtime.comm_test.faults import RateKind
-from robot_runtime.comm_test.line import Line, check
+from robot_runtime.comm_test.line import Line, Stop, check
 from robot_runtime.comm_test.results import FaultCounts, LineErrors
 from robot_runtime.link.fault_line import DIRECTIONS, FaultLine
 from robot_runtime.link.port import Port
@@ -24,7 +23,7 @@ class PortLine(Line):
 
     start_time = 0.0
 
-    def __init__(self, path: str, baud: int, boot_time: float, stop: Event, folder: Path | None) -> None:
+    def __init__(self, path: str, baud: int, boot_time: float, stop: Stop, folder: Path | None) -> None:
         super().__init__(baud)
         self._stop = stop
         self._faulty: FaultLine | None = None

@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
 from pathlib import Path
-from threading import Event, Lock, Semaphore
+from threading import Lock, Semaphore
 from typing import Literal
 
 from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.document import CommTest
 from robot_runtime.comm_test.emulated_line import EmulatedLine
 from robot_runtime.comm_test.framings import ANSWER_BYTES, STREAM_FRAMINGS, find_answer
-from robot_runtime.comm_test.line import BITS_PER_BYTE, Line, check
+from robot_runtime.comm_test.line import BITS_PER_BYTE, Line, Stop, check
 from robot_runtime.comm_test.link_end import estimate_link_seconds, run_link_cell
 from robot_runtime.comm_test.results import RING_BYTES, Cell, CellResult, Counts
 from robot_runtime.comm_test.upload import upload_paused
@@ -45,12 +45,12 @@ class Runner:
     which is mostly waiting.
     """
 
-    def __init__(self, builder: Builder, program: Path, computing: int, stop: Event | None = None) -> None:
+    def __init__(self, builder: Builder, program: Path, computing: int, stop: Stop | None = None) -> None:
         self._builder = builder
         self._program = program
         self._options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused", "--with-parent")
         self._at_once = computing + UPLOADS_AT_ONCE * computing
-        self._stop = stop or Event()
+        self._stop = stop or Stop()
         self._building = Lock()
         self._computing = Semaphore(computing)
 

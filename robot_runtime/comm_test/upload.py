@@ -6,9 +6,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from threading import Event
 
-from robot_runtime.comm_test.line import check
+from robot_runtime.comm_test.line import Stop, check
 from robot_runtime.simulation.board import Board
 
 BOOT_BAUD = 115200
@@ -36,7 +35,7 @@ def avrdude_version() -> str:
 
 
 def upload(
-    program: Path, port: str, baud: int, stop: Event, attend: Callable[[], None] = lambda: None
+    program: Path, port: str, baud: int, stop: Stop, attend: Callable[[], None] = lambda: None
 ) -> None:
     """Write an Intel HEX file into the flash memory of a chip whose boot loader listens, and verify it.
 
@@ -68,7 +67,7 @@ def upload(
         raise UploadError(f"avrdude could not upload {program.name} through {port}: {words}")
 
 
-def upload_paused(program: Path, tty: Path, board: Board, stop: Event) -> None:
+def upload_paused(program: Path, tty: Path, board: Board, stop: Stop) -> None:
     """The same for a paused board with a boot loader, whose time passes only while there is something to do.
 
     avrdude waits by its own clock, for about a second in all; here the boot loader's patience, 1 s, does not
@@ -92,7 +91,7 @@ def _traffic(board: Board) -> tuple[float, ...]:
     return tuple(stats[name] for name in ("bytes_from_host", "bytes_to_board", "bytes_to_host"))
 
 
-def _wait(avrdude: subprocess.Popen[bytes], stop: Event, attend: Callable[[], None]) -> int | None:
+def _wait(avrdude: subprocess.Popen[bytes], stop: Stop, attend: Callable[[], None]) -> int | None:
     """Its exit status; None where it takes too long."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:

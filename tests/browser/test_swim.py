@@ -98,12 +98,14 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
 
 
 def wait_for_rest(page: Page) -> None:
-    """Wait until all four fins show the same angle for half a second."""
+    """Wait until no fin moves by more than a degree for half a second; encoders are never quite still."""
     page.wait_for_function(
         """() => {
-            const now = [...document.querySelectorAll('.angle')].map((one) => one.textContent).join();
-            if (now !== globalThis.fins) { globalThis.fins = now; globalThis.since = performance.now(); }
-            return now !== '' && performance.now() - globalThis.since > 500;
+            const shown = [...document.querySelectorAll('.angle')].map((one) => one.textContent);
+            const now = shown.map((text) => parseInt(text.replace('−', '-')));
+            const moved = (angle, fin) => !(Math.abs(angle - globalThis.fins?.[fin]) <= 1);
+            if (now.some(moved)) { globalThis.fins = now; globalThis.since = performance.now(); }
+            return now.length === 4 && performance.now() - globalThis.since > 500;
         }""",
         timeout=5_000,
     )

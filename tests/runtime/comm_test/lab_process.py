@@ -59,7 +59,9 @@ def run_lab(document: bytes, *options: str) -> tuple[int, list[Event]]:
 
 def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
     """SIGTERM: its exit status and what it tells from then on."""
-    process.send_signal(signal.SIGTERM)
+    # The end of a parent with threads sends several.
+    for _ in range(20):
+        process.send_signal(signal.SIGTERM)
     return _rest(process)
 
 

@@ -3,15 +3,15 @@
 import signal
 from collections.abc import Iterator
 from pathlib import Path
+from time import monotonic
 
 import pytest
-import serial
 
 from robot_runtime.comm_test.faults import Faults
 from robot_runtime.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.comm_test.runner import BOOTLOADER
-from robot_runtime.link.framing import Decoder
-from robot_runtime.packets import Hello
+from robot_runtime.link.port import Port
+from robot_runtime.link.session import Session, Stage
 from robot_runtime.simulation.board import BoardProcess
 from tests.board.host import BAUD
 from tests.board.rig import ROOT, build, wait_for
@@ -49,16 +49,15 @@ def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
 
 
 def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
-    """The robot's firmware is uploaded, and says HELLO once the boot loader has waited in vain."""
+    """The robot's firmware is uploaded, and answers a greeting once the boot loader has waited in vain."""
     assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
-    decoder = Decoder()
-    said: list[int] = []
-    with serial.Serial(str(arduino.tty), BAUD, timeout=10) as port:
-        find_reset(reset)()
-        while Hello.type not in said:
-            heard = port.read_until(b"\0")
-            assert heard, said
-            said += [type_ for frame in decoder.feed(heard) for type_, _ in frame.messages]
+    session = Session(1, BAUD)
+    with Port(str(arduino.tty), BAUD) as port:
+        while session.stage is not Stage.ESTABLISHED:
+            port.write(session.poll(monotonic()))
+            if port.wait(session.due() - monotonic()):
+                list(session.receive(port.read(), monotonic()))
+            assert session.stage is not Stage.REFUSED
 
 
 def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:

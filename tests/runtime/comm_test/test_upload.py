@@ -2,14 +2,13 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from threading import Event
 
 import pytest
 
 from robot_runtime.comm_test import upload as module
 from robot_runtime.comm_test.builder import Builder
 from robot_runtime.comm_test.emulated_line import EmulatedLine
-from robot_runtime.comm_test.line import StoppedError
+from robot_runtime.comm_test.line import Stop, StoppedError
 from robot_runtime.comm_test.results import Cell, CellResult
 from robot_runtime.comm_test.runner import BOOTLOADER, run_cell
 from robot_runtime.comm_test.upload import UploadError, avrdude_version, upload_paused
@@ -44,12 +43,12 @@ def test_avrdude_says_which_it_is() -> None:
 def test_how_an_upload_went_leaves_no_trace(builder: Builder, empty: Empty) -> None:
     process, board = empty
     product = builder.build(TEST, CELL.baud, 0.0)
-    upload_paused(product.hex, process.tty, board, Event())
+    upload_paused(product.hex, process.tty, board, Stop())
     first = run_there(empty)
     assert first.rate == 1.0
-    upload_paused(product.hex, process.tty, board, Event())
+    upload_paused(product.hex, process.tty, board, Stop())
     board.run(0.3)  # the sketch runs, and counts its start in the EEPROM
-    upload_paused(product.hex, process.tty, board, Event())
+    upload_paused(product.hex, process.tty, board, Stop())
     again = run_there(empty)
     assert again == first
 
@@ -60,7 +59,7 @@ def test_a_host_that_thinks_for_long_finds_the_boot_loader_waiting(
     # Much longer between two looks than between two of avrdude's commands.
     monkeypatch.setattr(module, "LOOK", 0.05)
     process, board = empty
-    upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Event())
+    upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Stop())
     assert board.stats()["time"] < 3.0
     assert run_there(empty).rate == 1.0
 
@@ -74,13 +73,13 @@ def test_a_board_without_a_boot_loader_is_told_in_avrdudes_words(
         process.connect() as board,
         pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: .*not in sync") as told,
     ):
-        upload_paused(product.hex, process.tty, board, Event())
+        upload_paused(product.hex, process.tty, board, Stop())
     assert "\n" not in str(told.value)
 
 
 def test_an_upload_can_be_cancelled(builder: Builder, empty: Empty) -> None:
     process, board = empty
-    stop = Event()
+    stop = Stop()
     stop.set()
     with pytest.raises(StoppedError):
         upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, stop)
