@@ -1,9 +1,11 @@
+// Styles first: what a component says of itself goes before what holds for all.
+import './styles/tokens.css';
+import './styles/base.css';
+import './styles/listing.css';
 import { mount } from 'svelte';
 import App from './App.svelte';
 import { Live } from './live/live.svelte';
 import { Router } from './router.svelte';
-import './styles/tokens.css';
-import './styles/base.css';
 import { Theme } from './theme.svelte';
 
 const place = document.getElementById('page');
