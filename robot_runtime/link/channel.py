@@ -16,8 +16,8 @@ nothing better to do.
 Frames are as long as noise lets them be. It destroys long frames more often, and what a frame carries beside
 its messages weighs more in short ones. Where errors are independent the sum is least where the share of
 frames lost is the share of those 7 bytes in a frame: about a quarter at 26 bytes, a ninth at 64. So a lost
-frame makes the next ones shorter by eight times as much as another makes them longer, which is in balance
-where one in nine is lost: from there on frames are short.
+frame makes the next ones shorter by four times as much as another makes them longer, which is in balance
+where one in five is lost.
 
 A receiver may have no room to hold a frame out of order. It then drops it and does not name it, and it goes
 out again as a lost one. The frame that the receiver waits for is never taken for held.
@@ -63,7 +63,7 @@ _LIMIT_MIN = 16
 """Bytes of messages in a frame that may always be."""
 _LIMIT_LOSS = 8
 """Bytes by which frames get shorter where one is lost."""
-_LIMIT_GAIN = 1
+_LIMIT_GAIN = 2
 """Bytes by which they get longer where one arrives at once."""
 _FRAME_OVERHEAD = 7
 _BITS_PER_BYTE = 10

@@ -21,7 +21,7 @@ constexpr uint16_t kCredit = 5 * kFrameBytesMax;
 // As in robot_runtime/link/channel.py.
 constexpr uint8_t kLimitMin = 16;
 constexpr uint8_t kLimitLoss = 8;
-constexpr uint8_t kLimitGain = 1;
+constexpr uint8_t kLimitGain = 2;
 
 bool is_before(uint8_t order, uint8_t other) { return static_cast<int8_t>(order - other) < 0; }
 
