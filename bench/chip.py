@@ -31,10 +31,14 @@ _DRAIN = 60.0
 def measure() -> dict[str, float]:
     """Payload bytes of the slower direction as a share of baud/10; nothing lost, doubled or out of order.
 
-    `bench/link_speed` on the emulated board has the firmware's link, with its window of four and its queue of
-    224 bytes, and does nothing else; the host's end is the product's `Channel`. Both always have something to
-    say: lines of text whose payload, with time, level and length, is 6 or 18 bytes. Bit errors are those of
-    the wire, start and stop bits too. The host looks at its port every four characters.
+    `bench/link_speed` on the emulated board has the firmware's link, with its queue of 228 bytes and room for
+    158 of frames out of order, and does nothing else; the host's end is the product's `Channel`. Both always
+    have something to say: lines of text whose payload, with time, level and length, is 6 or 18 bytes. The
+    host looks at its port every four characters.
+
+    Bit errors are those of the wire, start and stop bits too. Where 1 in 1000 is wrong, 53 % of the longest
+    frames survive, which would make 0.44, and 77 % of those with one line of 18 bytes, which would make 0.53,
+    or 0.49 where the acknowledgement of held frames travels with each.
     """
     figures = {
         f"link.goodput_chip.{baud}.{size}": goodput(baud, size) for baud in _BAUDS for size in _PAYLOADS

@@ -10,17 +10,24 @@ repeated. Every frame tells which reliable frame its sender waits for. One that 
 says which, in an ACKNOWLEDGE beside its other messages. A line keeps its order: what was sent before a frame
 that has arrived, and has not arrived itself, is lost and goes out again at once (as in RFC 8985). Where no
 news comes at all, the timeout of `RoundTrip` sends it again, for as long as it takes. Where the window is
-full and more waits, a frame without news goes out again after little more than a mean round trip: the line
-has nothing better to do.
+full and more waits, a frame without news goes out again after one and a half mean round trips: the line has
+nothing better to do.
 
-A receiver may have no room to hold frames out of order. It then drops them and says ACKNOWLEDGE never, and
-the timers make of it what is called go-back-n.
+Frames are as long as noise lets them be. It destroys long frames more often, and what a frame carries beside
+its messages weighs more in short ones. Where errors are independent the sum is least where the share of
+frames lost is the share of those 7 bytes in a frame: about a quarter at 26 bytes, a ninth at 64. So a lost
+frame makes the next ones shorter by four times as much as another makes them longer, which is in balance
+where one in five is lost.
+
+A receiver may have no room to hold a frame out of order. It then drops it and does not name it, and it goes
+out again as a lost one. The frame that the receiver waits for is never taken for held.
 
 A receiver that has no room even for the next frame drops it and says so (Receive Not Ready, as in HDLC).
 Nothing more is sent then until it says otherwise, but for the oldest frame now and then, in case that was
 not heard.
 
-Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while.
+Acknowledgements travel with whatever goes the other way, or alone when nothing does for a short while. Where
+messages wait that may not go they do so at once: the line is free, and the other end may wait for them.
 
 The line's pace is respected: a frame is handed over when the one before it has gone, so that what is urgent
 never waits behind more than one frame. Unreliable messages go first, but never twice while reliable ones
@@ -50,8 +57,14 @@ EXPIRY = 0.3
 _ACKNOWLEDGE_DELAY = 0.005
 _PROBE = 1.0
 """s between two tries at a receiver that has no room."""
-_STALLED_WAIT = 1.25
+_STALLED_WAIT = 1.5
 """Mean round trips."""
+_LIMIT_MIN = 16
+"""Bytes of messages in a frame that may always be."""
+_LIMIT_LOSS = 8
+"""Bytes by which frames get shorter where one is lost."""
+_LIMIT_GAIN = 2
+"""Bytes by which they get longer where one arrives at once."""
 _FRAME_OVERHEAD = 7
 _BITS_PER_BYTE = 10
 _NEVER = float("inf")
@@ -73,7 +86,10 @@ class Counters:
 
 @dataclass(slots=True)
 class _Flight:
-    """A reliable frame that is not acknowledged; `order` counts every transmission of the channel."""
+    """A reliable frame that is not acknowledged; `order` counts every transmission of the channel.
+
+    Copies from `first_order` to `order` may have arrived; those before are known to be lost.
+    """
 
     messages: list[bytes]
     sent: float
@@ -99,7 +115,7 @@ class Channel:
         packets: Mapping[int, type[Packet]] = PACKETS,
     ) -> None:
         self.counters = counters or Counters()
-        self.round_trip = RoundTrip()
+        self.round_trip = RoundTrip(baud)
         self.credit = credit
         self.key = key
         self._packets = packets
@@ -108,6 +124,7 @@ class Channel:
         self._waiting: deque[bytes] = deque()
         self._flights: deque[_Flight] = deque()
         self._base = 0
+        self._limit = MESSAGES_BYTES_MAX
         self._order = 0
         self._newest_order = -1
         self._ready = True
@@ -220,12 +237,12 @@ class Channel:
         return in_flight == 0 or in_flight + size <= self.credit
 
     def _gather(self, take: bool) -> list[bytes]:
-        """As many of the waiting messages as fit a frame beside what is to be acknowledged."""
-        room = MESSAGES_BYTES_MAX - len(self._acknowledge_held())
+        """As many of the waiting messages as fit a frame beside what is to be acknowledged; one at least."""
+        room = min(self._limit, MESSAGES_BYTES_MAX - len(self._acknowledge_held()))
         chosen: list[bytes] = []
         for message in self._waiting:
             room -= len(message)
-            if room < 0:
+            if room < 0 and chosen:
                 break
             chosen.append(message)
         if take:
@@ -258,7 +275,10 @@ class Channel:
         for place, flight in enumerate(self._repeatable()):
             if flight.held or not ((flight.lost and self._ready) or now >= flight.sent + wait):
                 continue
-            flight.sent, flight.order, flight.lost = now, self._next_order(), False
+            flight.sent, flight.order = now, self._next_order()
+            if flight.lost:
+                flight.first_order, flight.lost = flight.order, False
+            self._limit = max(self._limit - _LIMIT_LOSS, _LIMIT_MIN)
             self.counters.frames_repeated += 1
             return self._frame(place)
         return b""
@@ -298,6 +318,8 @@ class Channel:
         for _ in range(count):
             self._note_arrival(self._flights.popleft(), now)
         self._base = expected
+        if self._flights:
+            self._flights[0].held = False
         for place, flight in enumerate(self._flights):
             if place > 0 and held >> (place - 1) & 1 and not flight.held:
                 self._note_arrival(flight, now)
@@ -315,13 +337,15 @@ class Channel:
     def _note_arrival(self, flight: _Flight, now: float) -> None:
         if flight.held:
             return
-        # Of a frame sent more than once nobody knows which copy arrived: the first is the safe guess.
+        # Nobody knows which of several copies arrived: the first is the safe guess.
         self._newest_order = max(self._newest_order, flight.first_order)
+        self._limit = min(self._limit + _LIMIT_GAIN, MESSAGES_BYTES_MAX)
         if flight.order == flight.first_order:
             self.round_trip.measure(now - flight.sent)
 
     def _take_reliable(self, frame: Frame, now: float) -> list[Frame]:
-        self._acknowledge_at = min(self._acknowledge_at, now + _ACKNOWLEDGE_DELAY)
+        delay = 0.0 if self._waiting else _ACKNOWLEDGE_DELAY
+        self._acknowledge_at = min(self._acknowledge_at, now + delay)
         ahead = (frame.number - self._expected) % RELIABLE_NUMBERS
         if ahead >= WINDOW or frame.number in self._held:
             self.counters.frames_duplicate += 1

@@ -43,7 +43,7 @@ def test_boots_disarmed_without_motor_power_and_says_hello(robot: Robot) -> None
     assert not armed(robot)
     assert not robot.power
     greeting = robot.last(Hello)
-    assert (greeting.definitions, greeting.epoch, greeting.credit) == (DEFINITIONS_HASH, 1, 255)
+    assert (greeting.definitions, greeting.epoch, greeting.credit) == (DEFINITIONS_HASH, 1, 320)
     robot.greet()
     robot.run(300)
     assert "boot 1, power on" in robot.texts

@@ -69,7 +69,7 @@ class RobotEnd {
 
   void poll() {
     do {
-      link_.set_ready(held_ + NUMBERS_PER_FRAME <= NUMBERS_MAX);
+      set_ready();
     } while (take_frame());
     const uint16_t now = mucat::board::milliseconds();
     link_.step(now);
@@ -84,9 +84,13 @@ class RobotEnd {
     mucat::Message message;
     while (valid && link_.next(&message)) {
       handle(message);
+      // Frames that came before their turn may follow at once.
+      set_ready();
     }
     return valid;
   }
+
+  void set_ready() { link_.set_ready(held_ + NUMBERS_PER_FRAME <= NUMBERS_MAX); }
 
   void handle(const mucat::Message &message) {
     switch (message.type) {

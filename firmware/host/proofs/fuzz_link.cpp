@@ -218,14 +218,14 @@ class Play {
   void check() {
     host::Board& board = host::the_board;
     insist(board.overwritten == 0);
-    insist(board.waiting.size() <= board::kLineCredit);
+    insist(board.waiting.size() <= board::kLineRoom);
     for (uint8_t byte : board.to_host) listener_.hear(byte);
     board.to_host.clear();
   }
 
   void greet(uint8_t epoch) {
     FramePacker packer;
-    const Hello hello = {kDefinitionsHash, epoch, board::kLineCredit};
+    const Hello hello = {kDefinitionsHash, epoch, board::kLineRoom};
     packer.add(Hello::kType, &hello, sizeof hello);
     tell(close(&packer, 0, 0, kOpen));
   }

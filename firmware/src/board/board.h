@@ -22,7 +22,8 @@ void rest();
 void feed_watchdog();
 
 // The serial line. Reading and writing never wait.
-constexpr uint8_t kLineCredit = 255;
+// Bytes that wait for the main loop or for the line, at most.
+constexpr uint8_t kLineRoom = 255;
 bool read_line(uint8_t* byte);
 uint8_t line_room();
 void write_line(const uint8_t* bytes, uint8_t size);

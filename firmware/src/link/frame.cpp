@@ -82,6 +82,20 @@ bool FrameDecoder::next(Message* message) {
   return true;
 }
 
+bool FrameDecoder::has(uint8_t type) const {
+  for (uint8_t at = kControlBytes; at < messages_end_;
+       at += message_bytes_at(block_ + at, messages_end_ - at)) {
+    if (block_[at] == type) return true;
+  }
+  return false;
+}
+
+void FrameDecoder::put_back(const uint8_t* content, uint8_t size) {
+  memcpy(block_, content, size);
+  messages_end_ = size;
+  cursor_ = kControlBytes;
+}
+
 void FramePacker::add(uint8_t type, const void* payload, uint8_t payload_size) {
   block_[size_] = type;
   memcpy(block_ + size_ + 1, payload, payload_size);

@@ -61,6 +61,13 @@ class FrameDecoder {
   bool feed(uint8_t byte);
   // The frame's next message; false after the last.
   bool next(Message* message);
+  // Whether the frame has a message of this type.
+  bool has(uint8_t type) const;
+  // Takes a frame that was received before, without its CRC, in place of the last one.
+  void put_back(const uint8_t* content, uint8_t size);
+  // The frame without its CRC: control byte and messages, where it is reliable.
+  const uint8_t* content() const { return block_; }
+  uint8_t content_bytes() const { return messages_end_; }
   // A reliable frame's number.
   uint8_t number() const { return block_[0] >> 4; }
   uint8_t acknowledged() const { return block_[0] & 15; }
@@ -90,7 +97,8 @@ class FrameDecoder {
 class FramePacker {
  public:
   bool fits(uint8_t payload_size) const {
-    return size_ + 1 + payload_size <= kControlBytes + kMessagesBytesMax;
+    const bool reliable = !empty() && is_reliable(block_[kControlBytes]);
+    return size_ + payload_size < kControlBytes + (reliable ? kReliableMessagesBytesMax : kMessagesBytesMax);
   }
   // Only where it fits.
   void add(uint8_t type, const void* payload, uint8_t payload_size);

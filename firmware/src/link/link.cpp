@@ -12,14 +12,25 @@ constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
 // No more waits than leaves within a tick, or a frame.
 constexpr uint16_t kBytesPerTick = kBaud / 1000;
 constexpr uint8_t kCalmRoom =
-    board::kLineCredit - (kBytesPerTick < kFrameBytesMax ? kBytesPerTick : kFrameBytesMax);
+    board::kLineRoom - (kBytesPerTick < kFrameBytesMax ? kBytesPerTick : kFrameBytesMax);
+
+// More than the ring holds, since the decoder empties it: only a main loop that stays away for as long as 255
+// bytes take on the line loses any. Four of the longest frames are under way until the word of the first is
+// back, and the fifth while that word is lost.
+constexpr uint16_t kCredit = 5 * kFrameBytesMax;
+// As in robot_runtime/link/channel.py.
+constexpr uint8_t kLimitMin = 16;
+constexpr uint8_t kLimitLoss = 8;
+constexpr uint8_t kLimitGain = 2;
+
+bool is_before(uint8_t order, uint8_t other) { return static_cast<int8_t>(order - other) < 0; }
 
 }  // namespace
 
 bool Link::receive() {
   for (uint8_t byte; board::read_line(&byte);) {
     if (decoder_.feed(byte)) {
-      fresh_ = false;
+      fresh_ = put_back_ = false;
       if (in_session()) {
         take_acknowledgement();
         if (decoder_.reliable()) take_number();
@@ -33,16 +44,25 @@ bool Link::receive() {
 }
 
 bool Link::next(Message* message) {
-  while (decoder_.next(message)) {
-    if (message->type == Hello::kType || message->type == Stop::kType) return true;
-    if (!in_session()) continue;
-    if (message->type == Acknowledge::kType) {
-      take_held(message->payload[0]);
-    } else if (fresh_ || !is_reliable(message->type)) {
-      return true;
+  do {
+    while (decoder_.next(message)) {
+      if (message->type == Hello::kType || message->type == Stop::kType) return true;
+      if (!in_session()) continue;
+      if (message->type == Acknowledge::kType) {
+        if (!put_back_) take_held(message->payload[0]);
+      } else if (fresh_ || !is_reliable(message->type)) {
+        return true;
+      }
     }
-  }
+  } while (next_held());
   return false;
+}
+
+bool Link::next_held() {
+  if (!fresh_ || !ready_ || !held_.take(expected_, &decoder_)) return false;
+  put_back_ = true;
+  expected_ = (expected_ + 1) & kNumberMask;
+  return true;
 }
 
 void Link::answer(const Hello& hello, uint16_t epoch) {
@@ -59,7 +79,11 @@ void Link::begin(uint32_t key) {
   in_flight_ = 0;
   messages_bytes_ = 0;
   base_ = 0;
+  order_ = 0;
+  newest_order_ = 0;
+  limit_ = kReliableMessagesBytesMax;
   expected_ = 0;
+  held_.clear();
   acknowledge_ = false;
   refused_ = false;
   tell_ready_ = false;
@@ -76,9 +100,18 @@ void Link::set_ready(bool ready) {
 void Link::take_number() {
   if (!acknowledge_) heard_ms_ = board::milliseconds();
   acknowledge_ = true;
-  fresh_ = ready_ && decoder_.number() == expected_;
-  if (!ready_) refused_ = tell_ready_ = true;
-  if (fresh_) expected_ = (expected_ + 1) & kNumberMask;
+  if (!ready_) {
+    refused_ = tell_ready_ = true;
+    return;
+  }
+  const uint8_t ahead = (decoder_.number() - expected_) & kNumberMask;
+  fresh_ = ahead == 0;
+  if (fresh_) {
+    held_.forget(expected_);
+    expected_ = (expected_ + 1) & kNumberMask;
+  } else if (ahead < kWindow && !decoder_.has(Start::kType)) {
+    held_.keep(decoder_);
+  }
 }
 
 void Link::take_acknowledgement() {
@@ -89,32 +122,55 @@ void Link::take_acknowledgement() {
   for (uint8_t i = 0; i < count; ++i) {
     const Flight& flight = flights_[i];
     bytes += flight.bytes;
-    // By Karn's rule: of a frame sent twice nobody knows which copy was heard.
-    if (!flight.again && !flight.held) {
-      round_trip_.measure(static_cast<uint16_t>(board::milliseconds()) - flight.sent_ms);
-    }
+    if (!flight.held) note_arrival(flight);
   }
   queue_.drop(bytes);
   messages_bytes_ -= bytes;
   in_flight_ -= count;
   for (uint8_t i = 0; i < in_flight_; ++i) flights_[i] = flights_[i + count];
+  note_losses();
 }
 
 void Link::take_held(uint8_t held) {
-  uint8_t missing = in_flight_;
-  for (uint8_t i = in_flight_; i-- > 1;) {
-    if (!(held >> (i - 1) & 1)) continue;
-    flights_[i].held = true;
-    if (missing == in_flight_) missing = i;
+  if (decoder_.acknowledged() != base_) return;  // an old one
+  for (uint8_t i = 1; i < in_flight_; ++i) {
+    Flight& flight = flights_[i];
+    if (flight.held || !(held >> (i - 1) & 1)) continue;
+    note_arrival(flight);
+    flight.held = true;
   }
-  if (missing == in_flight_) return;
-  // A repeated one may be on its way after the later one: only its timer tells.
-  for (uint8_t i = 0; i < missing; ++i) flights_[i].lost = !flights_[i].held && !flights_[i].again;
+  note_losses();
+}
+
+void Link::note_arrival(const Flight& flight) {
+  // Nobody knows which of several copies arrived: the first is the safe guess.
+  if (is_before(newest_order_, flight.first_order)) newest_order_ = flight.first_order;
+  limit_ = limit_ + kLimitGain < kReliableMessagesBytesMax ? limit_ + kLimitGain : kReliableMessagesBytesMax;
+  if (flight.order == flight.first_order) {
+    round_trip_.measure(static_cast<uint16_t>(board::milliseconds()) - flight.sent_ms);
+  }
+}
+
+void Link::note_losses() {
+  for (uint8_t i = 0; i < in_flight_; ++i) {
+    Flight& flight = flights_[i];
+    if (!flight.held && is_before(flight.order, newest_order_)) flight.lost = true;
+  }
 }
 
 void Link::put(uint8_t type, const void* payload, uint8_t size) {
   if (!packer_.fits(size)) flush();
   packer_.add(type, payload, size);
+}
+
+void Link::flush() {
+  add_held();
+  flush(key_);
+}
+
+// Tells what is held beside the messages of the frame in the making, where there is room.
+void Link::add_held() {
+  if (held_.any() && !packer_.empty() && packer_.fits(sizeof(Acknowledge))) send(state());
 }
 
 void Link::flush(uint32_t key) {
@@ -137,7 +193,7 @@ void Link::write(uint16_t number, uint32_t key) {
 
 void Link::greet(uint16_t epoch) {
   flush();
-  send(Hello{kDefinitionsHash, epoch, board::kLineCredit});
+  send(Hello{kDefinitionsHash, epoch, kCredit});
   if (board::line_room() < packer_.line_bytes()) {
     packer_.clear();
   } else {
@@ -154,30 +210,38 @@ bool Link::calm() { return board::line_room() >= kCalmRoom; }
 
 void Link::step(uint16_t now_ms) {
   if (!calm()) return;
-  const bool late = acknowledge_ && static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs;
-  if (!tell_ready_ && (repeat(now_ms) || start_flight(now_ms) || !late)) return;
+  if (!tell_ready_) {
+    const uint16_t bytes = bytes_in_flight();
+    if (repeat(now_ms, round_trip_.timeout(bytes)) || start_flight(now_ms)) return;
+    const bool stalled = queue_.more_than(messages_bytes_);
+    if (stalled && repeat(now_ms, round_trip_.stalled_timeout(bytes))) return;
+    const bool late = static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs;
+    if (!acknowledge_ || !(stalled || late)) return;
+  }
   acknowledge();
 }
 
 void Link::acknowledge() {
   tell_ready_ = false;
-  send(Acknowledge{refused_ ? kNotReady : uint8_t{0}});
-  flush();
+  send(state());
+  flush(key_);
 }
 
 uint16_t Link::bytes_in_flight() const { return messages_bytes_ + in_flight_ * kFrameOverhead; }
 
-bool Link::repeat(uint16_t now_ms) {
-  const uint16_t timeout = round_trip_.timeout(bytes_in_flight());
+bool Link::repeat(uint16_t now_ms, uint16_t timeout) {
   uint8_t offset = 0;
   for (uint8_t i = 0; i < in_flight_; ++i) {
     Flight& flight = flights_[i];
     const bool late = static_cast<uint16_t>(now_ms - flight.sent_ms) >= timeout;
     if (!flight.held && (flight.lost || late)) {
       pack(offset, flight.bytes);
+      add_held();
       flight.sent_ms = now_ms;
-      flight.again = true;
+      flight.order = ++order_;
+      if (flight.lost) flight.first_order = flight.order;
       flight.lost = false;
+      limit_ = limit_ > kLimitMin + kLimitLoss ? limit_ - kLimitLoss : kLimitMin;
       ++repeated_;
       write((base_ + i) & kNumberMask, key_);
       return true;
@@ -190,23 +254,26 @@ bool Link::repeat(uint16_t now_ms) {
 bool Link::start_flight(uint16_t now_ms) {
   if (in_flight_ == kWindow) return false;
   if (in_flight_ > 0 && bytes_in_flight() + kFrameBytesMax > credit_) return false;
-  const uint8_t bytes = pack(messages_bytes_, MessageQueue::kBytes);
+  const uint8_t room = kReliableMessagesBytesMax - (held_.any() ? 1 + sizeof(Acknowledge) : 0);
+  const uint8_t bytes = pack(messages_bytes_, limit_ < room ? limit_ : room);
   if (bytes == 0) return false;
-  flights_[in_flight_] = Flight{now_ms, bytes, false, false, false};
+  add_held();
+  ++order_;
+  flights_[in_flight_] = Flight{now_ms, bytes, order_, order_, false, false};
   write((base_ + in_flight_) & kNumberMask, key_);
   ++in_flight_;
   messages_bytes_ += bytes;
   return true;
 }
 
-// Puts the messages from there on into the frame in the making, up to that many bytes or as many as fit;
+// Puts the messages from there on into the frame in the making, up to that many bytes but one at least;
 // returns their bytes.
 uint8_t Link::pack(uint8_t offset, uint8_t limit) {
   uint8_t packed = 0;
   uint8_t message[kReliableBytesMax];
   while (packed < limit) {
     const uint8_t size = queue_.peek(offset + packed, message);
-    if (size == 0 || !packer_.fits(size - 1)) break;
+    if (size == 0 || (packed > 0 && packed + size > limit)) break;
     packer_.add(message[0], message + 1, size - 1);
     packed += size;
   }

@@ -2,11 +2,15 @@
 //
 // Telemetry is sent once. Lines of text and all else that is queued are reliable, and arrive exactly once and
 // in order: they stay in their queue until they are acknowledged, and the queue is the only store of what is
-// in flight. Up to four reliable frames are, of several messages each, numbered modulo 16, and no more bytes
-// than the host can take in. A frame that the host says is missing goes out again at once, and any other
-// after the timeout of RoundTrip, for as long as it takes. Of the host's reliable frames only the next in
-// order is taken: there is no room to hold others. What is taken is acknowledged by the next frame of
-// telemetry, or by a frame of its own.
+// in flight. Up to seven reliable frames are, of several messages each, numbered modulo 16, and no more bytes
+// than the host can take in. A line keeps its order: what was sent before a frame that has arrived, and has
+// not arrived itself, is lost and goes out again at once. Any other does after the timeout of RoundTrip, for
+// as long as it takes, or where the line would idle after one and a half mean round trips. Frames are as
+// long as noise lets them be; robot_runtime/link/channel.py, the other end, has the theory.
+//
+// Of the host's reliable frames the next in order is taken. Later ones are held as far as there is room, and
+// the host is told which; never START, since a STOP must be able to make it void as long as it is not taken.
+// What is taken is acknowledged by the next frame of telemetry, or by a frame of its own.
 //
 // A session begins with a HELLO that carries another epoch than the last. Its frames have a key made of both
 // epochs, so that none from before a restart is believed. Of open frames only HELLO and STOP are taken then.
@@ -16,6 +20,7 @@
 #include "board/board.h"
 #include "link/debug.h"
 #include "link/frame.h"
+#include "link/held_frames.h"
 #include "link/message_queue.h"
 #include "link/round_trip.h"
 #include "packets.gen.h"
@@ -46,7 +51,7 @@ class Link {
   }
   // Closes the frame in the making. Where the line has no room for it, it is dropped: what it held is old by
   // the time there is.
-  void flush() { flush(key_); }
+  void flush();
 
   // Whether what is sent now is on the line soon.
   static bool calm();
@@ -71,13 +76,15 @@ class Link {
   uint16_t lines_lost() const { return lines_lost_; }
 
  private:
-  static constexpr uint8_t kWindow = 4;
+  static constexpr uint8_t kWindow = 7;
   struct Flight {
     uint16_t sent_ms;
     uint8_t bytes;  // of messages
-    bool again;     // sent more than once
-    bool held;      // the host has it, but not one before it
-    bool lost;      // the host has a later one
+    // Of every transmission. Copies from the first to the last may have arrived; those before are lost.
+    uint8_t first_order;
+    uint8_t order;
+    bool held : 1;  // the host has it, but not one before it
+    bool lost : 1;  // the host has what was sent later
   };
 
   void begin(uint32_t key);
@@ -88,29 +95,39 @@ class Link {
   void take_number();
   void take_acknowledgement();
   void take_held(uint8_t held);
+  bool next_held();
+  Acknowledge state() const { return Acknowledge{refused_ ? kNotReady : held_.after(expected_)}; }
+  void note_arrival(const Flight& flight);
+  void note_losses();
+  void add_held();
   uint16_t bytes_in_flight() const;
-  bool repeat(uint16_t now_ms);
+  bool repeat(uint16_t now_ms, uint16_t timeout);
   bool start_flight(uint16_t now_ms);
   uint8_t pack(uint8_t offset, uint8_t limit);
 
   FrameDecoder decoder_;
   FramePacker packer_;
   MessageQueue queue_;
+  HeldFrames held_;
   RoundTrip round_trip_;
   Flight flights_[kWindow];
   uint32_t key_ = kOpen;
   uint16_t credit_ = kFrameBytesMax;
-  uint16_t number_ = 0;         // of the next unreliable frame
-  uint16_t repeated_ = 0;       // reliable frames
-  uint16_t lines_lost_ = 0;     // for want of room
-  uint8_t in_flight_ = 0;       // reliable frames
-  uint8_t messages_bytes_ = 0;  // of messages in flight
-  uint8_t base_ = 0;            // number of the oldest in flight
-  uint8_t expected_ = 0;        // number of the host's next reliable frame
+  uint16_t number_ = 0;                        // of the next unreliable frame
+  uint16_t repeated_ = 0;                      // reliable frames
+  uint16_t lines_lost_ = 0;                    // for want of room
+  uint8_t in_flight_ = 0;                      // reliable frames
+  uint8_t messages_bytes_ = 0;                 // of messages in flight
+  uint8_t base_ = 0;                           // number of the oldest in flight
+  uint8_t order_ = 0;                          // of the newest transmission
+  uint8_t newest_order_ = 0;                   // of what has arrived
+  uint8_t limit_ = kReliableMessagesBytesMax;  // bytes of messages in a new frame
+  uint8_t expected_ = 0;                       // number of the host's next reliable frame
   bool ready_ = true;
   bool refused_ = false;     // a reliable frame since it was last ready
   bool tell_ready_ = false;  // whether it is, with the next step
   bool fresh_ = false;       // the received frame's reliable messages are new
+  bool put_back_ = false;    // it was held: what it acknowledges is old
   bool acknowledge_ = false;
   uint16_t heard_ms_ = 0;
 };

@@ -1,11 +1,14 @@
 #include "link/round_trip.h"
 
 #include "link/baud.h"
+#include "packets.gen.h"
 
 namespace mucat {
 namespace {
 
-constexpr uint16_t kCapMs = 100;
+constexpr uint16_t airtime_ms(uint16_t bytes) { return bytes * 10000UL / kBaud; }
+
+constexpr uint16_t kCapMs = 100 + airtime_ms(2 * kFrameBytesMax);
 // A pause of the host's may be long; the mean must not overflow.
 constexpr uint16_t kLongestMs = 4000;
 
@@ -26,8 +29,13 @@ void RoundTrip::measure(uint16_t ms) {
 
 uint16_t RoundTrip::timeout(uint16_t bytes_in_flight) const {
   const uint16_t wait = measured_ ? (mean_ >> 3) + deviation_ : kCapMs;
-  const uint16_t airtime = bytes_in_flight * 10000UL / kBaud;
-  return (wait < kCapMs ? wait : kCapMs) + airtime;
+  return (wait < kCapMs ? wait : kCapMs) + airtime_ms(bytes_in_flight);
+}
+
+uint16_t RoundTrip::stalled_timeout(uint16_t bytes_in_flight) const {
+  const uint16_t wait = timeout(bytes_in_flight);
+  const uint16_t trip = ((mean_ + (mean_ >> 1)) >> 3) + 1;
+  return measured_ && trip < wait ? trip : wait;
 }
 
 }  // namespace mucat

@@ -6,6 +6,7 @@ import pytest
 
 from robot_runtime.link.channel import WINDOW, Channel
 from robot_runtime.link.framing import Decoder
+from robot_runtime.link.round_trip import RoundTrip
 from robot_runtime.packets import Heartbeat, encode
 from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
 
@@ -75,7 +76,7 @@ def test_a_quiet_good_line_repeats_nothing() -> None:
 def test_a_dead_line_gives_nothing_up_and_is_asked_again_and_again() -> None:
     channel = Channel(115_200, 4096, KEY, packets=PACKETS)
     channel.queue(numbered(6, 1)[0])
-    sent = [step * 0.01 for step in range(6000) if channel.poll(step * 0.01)]
+    sent = [step * 0.003 for step in range(20_000) if channel.poll(step * 0.003)]
     waits = [later - earlier for earlier, later in pairwise(sent)]
     assert len(sent) > 500
     assert max(waits) <= 0.12
@@ -113,3 +114,30 @@ def test_a_message_that_is_replaced_never_arrives() -> None:
     channel.replace(old, new)
     line.run(1.0)
     assert [payload for _, payload in line.ends[1].heard] == [new[1:], other[1:], new[1:]]
+
+
+def test_the_cap_of_the_timeout_leaves_the_other_end_the_time_for_its_own_frames() -> None:
+    # 64 bytes of theirs were under way, and 64 bring the word, at 1200 baud.
+    trip = RoundTrip(1200)
+    assert trip.timeout(0.5) == pytest.approx(0.1 + 2 * 64 * 10 / 1200 + 0.5)
+    for _ in range(20):
+        trip.measure(30.0)
+    assert trip.timeout(0.5) == pytest.approx(0.1 + 2 * 64 * 10 / 1200 + 0.5)
+
+
+def test_frames_get_shorter_where_they_are_lost_and_longer_where_they_are_not() -> None:
+    line = Line(115_200, Noise(bits=1e-3))
+    for message in numbered(18, 20_000):
+        line.ends[0].channel.queue(message)
+    counters = line.ends[0].channel.counters
+    sizes = []
+    for noise in (Noise(bits=1e-3), Noise()):
+        for wire in line.wires:
+            wire._noise = noise
+        line.run(line.now + 1.0)
+        sent, frames = counters.bytes_sent, counters.frames_sent
+        line.run(line.now + 2.0)
+        sizes.append((counters.bytes_sent - sent) / (counters.frames_sent - frames))
+    # One message of 18 bytes makes 26, and three make the longest frame.
+    assert sizes[0] < 36
+    assert sizes[1] > 63

@@ -81,3 +81,12 @@ def test_what_was_dropped_goes_out_as_soon_as_there_is_room() -> None:
     # Long before any of them would be taken for lost.
     again = sender.run(0.06)
     assert [number for _, number, _ in again[:2]] == [number for _, number, _ in first[:2]] == [0, 1]
+
+
+def test_what_it_had_while_it_was_not_ready_is_sent_again_where_it_waits_for_that() -> None:
+    sender = Sender()
+    sender.run(0.04)
+    sender.channel.receive(told(0, NOT_READY | 0b1), sender.now)
+    # It has the second, and waits for it all the same: it had no room to take it out.
+    sender.channel.receive(told(1, 0), sender.now)
+    assert 1 in [number for _, number, _ in sender.run(0.06)]
