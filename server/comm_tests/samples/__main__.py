@@ -5,7 +5,6 @@ Needs the emulated board of `make firmware`. Takes a few minutes a run.
 
 import argparse
 import json
-import os
 import platform
 import sys
 import time
@@ -13,10 +12,11 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.comm_test.builder import SKETCHES, Builder, hash_file
+from robot_runtime.comm_test.builder import SKETCHES
 from robot_runtime.comm_test.document import CommTest, read_document
-from robot_runtime.comm_test.results import CellResult, Direction
-from robot_runtime.comm_test.runner import Runner
+from robot_runtime.comm_test.lab import EmulatedLab
+from robot_runtime.comm_test.line import Stop
+from robot_runtime.comm_test.results import Direction
 from server import VERSION
 
 FOLDER = Path(__file__).parent
@@ -38,18 +38,10 @@ def main() -> int:
     unknown = [name for name in names if name not in SAMPLES]
     if unknown:
         parser.error(f"no sample {', '.join(unknown)}; there are {', '.join(SAMPLES)}")
-    program = BUILD / "board"
-    builder = Builder(BUILD / "comm_test")
-    runner = Runner(builder, program, os.cpu_count() or 1)
-    tools = {
-        "compiler": builder.compiler,
-        "emulated board": hash_file(program),
-        "mucat": VERSION,
-        "python": platform.python_version(),
-    }
+    lab = EmulatedLab(BUILD, Stop())
     for name in names or SAMPLES:
         began = time.monotonic()
-        run = _run(name, runner, builder.firmware_hash, tools)
+        run = _run(name, lab)
         _write(FOLDER / f"{name}.json", run)
         rates = [cell["rate"] for cell in run["cells"]]
         took = time.monotonic() - began
@@ -61,12 +53,14 @@ def main() -> int:
     return 0
 
 
-def _run(name: str, runner: Runner, firmware: str, tools: dict[str, str]) -> dict[str, Any]:
+def _run(name: str, lab: EmulatedLab) -> dict[str, Any]:
     framing, direction, title = SAMPLES[name]
     (thesis,) = read_document((SKETCHES / "comm_test/figure10.json").read_text(encoding="utf-8"))
     test: CommTest = replace(thesis, name=title, framing=framing, direction=direction)
+    firmware, tools, _host = lab.prepare()
     started = time.time()
-    cells = [{"number": number, **_cell(result)} for number, result in enumerate(runner.run(test))]
+    results = lab.run(test, lambda _number, _phase: None)
+    cells = [{"number": number, **result.values} for number, result in enumerate(results)]
     return {
         "name": title,
         "document": asdict(test),
@@ -74,7 +68,7 @@ def _run(name: str, runner: Runner, firmware: str, tools: dict[str, str]) -> dic
         "direction": direction,
         "cells": cells,
         "firmware": firmware,
-        "tools": tools,
+        "tools": tools | {"mucat": VERSION, "python": platform.python_version()},
         "host": "emulated board",
         "started": started,
         "ended": time.time(),
@@ -82,22 +76,6 @@ def _run(name: str, runner: Runner, firmware: str, tools: dict[str, str]) -> dic
         "state": "complete",
         "problem": "",
         "sample": name,
-    }
-
-
-def _cell(result: CellResult) -> dict[str, Any]:
-    return {
-        **asdict(result.cell),
-        "rate": result.rate,
-        "answered": result.board is not None,
-        **asdict(result.counts),
-        "bytes_lost": result.lost_to_board + result.lost_to_host,
-        "line_errors": result.line.framing_board + result.line.framing_host,
-        "uart_overruns": result.line.overruns,
-        "repeated": result.repeated,
-        "seconds": result.seconds,
-        "causes": ", ".join(result.causes),
-        "explanation": result.explanation,
     }
 
 
