@@ -28,14 +28,15 @@ SET_POINT = Range(0, 10)
 VISION_RATE = Range(2, 30)
 """Hz; slower, and what was seen would be stale before the next look."""
 
-_CHIP_CLOCK = 16_000_000
-_BAUD_ERROR_MAX = 0.025
+CHIP_CLOCK = 16_000_000
+"""Hz."""
+BAUD_ERROR_MAX = 0.025
 """Of one end alone; firmware/src/board/avr/line.cpp refuses the same."""
 
 
 def _chip_baud(baud: int) -> float:
     """The nearest speed, bit/s, of the ATmega328P's UART with 8 or 16 samples a bit (data sheet, 20.3.1)."""
-    made = (_CHIP_CLOCK / (samples * max(round(_CHIP_CLOCK / (samples * baud)), 1)) for samples in (8, 16))
+    made = (CHIP_CLOCK / (samples * max(round(CHIP_CLOCK / (samples * baud)), 1)) for samples in (8, 16))
     return min(made, key=lambda one: abs(one - baud))
 
 
@@ -57,10 +58,10 @@ class LinkConfig:
 
     def __post_init__(self) -> None:
         made = _chip_baud(self.baud)
-        if abs(made / self.baud - 1) > _BAUD_ERROR_MAX:
+        if abs(made / self.baud - 1) > BAUD_ERROR_MAX:
             raise ConfigError(
                 f"link.baud is {self.baud}; the chip at 16 MHz makes {made:.0f} of it, "
-                f"{made / self.baud - 1:+.1%}, and the line needs it within {_BAUD_ERROR_MAX:.1%}"
+                f"{made / self.baud - 1:+.1%}, and the line needs it within {BAUD_ERROR_MAX:.1%}"
             )
 
 

@@ -13,21 +13,19 @@ from typing import Any, get_args
 from robot_runtime.comm_test.faults import RATE_KINDS, Faults
 from robot_runtime.comm_test.framings import FRAMINGS
 from robot_runtime.comm_test.results import Cell, Direction
+from robot_runtime.config import BAUD_ERROR_MAX, CHIP_CLOCK
 
 DOCUMENT_BYTES_MAX = 1_000_000
 CELLS_MAX = 500
 NUMBERS_MAX = 5000
 DELAY_MAX = 10.0
 """s."""
-BAUD_ERROR_MAX = 0.025
 FAULT_RATE_MAX = 0.1
 BURST_BITS_MAX = 10_000
 PERIOD_MIN, PERIOD_MAX = 0.05, 3600.0
 """s between two stalls, or two cuts, from beginning to beginning."""
 SEED_MAX = 2**32 - 1
 NAME_CHARACTERS_MAX = 200
-CLOCK = 16_000_000
-"""Hz."""
 SLOWEST_DIVISOR = 4095
 SKETCH = "comm_test/comm_test.ino"
 THESIS_SKETCH = re.compile(r"micro_cat_test/arduino/(test_\d+)/\1\.ino")
@@ -103,12 +101,12 @@ def read_document(text: str) -> list[CommTest]:
 
 def chip_baud(baud: int) -> float:
     """What the chip's UART makes of a baud rate, bit/s, as the Arduino core sets it up; 0 where it cannot."""
-    divisor = (CLOCK // 4 // baud - 1) // 2
+    divisor = (CHIP_CLOCK // 4 // baud - 1) // 2
     step = 8
     if divisor > SLOWEST_DIVISOR or baud == 57600:
-        divisor = (CLOCK // 8 // baud - 1) // 2
+        divisor = (CHIP_CLOCK // 8 // baud - 1) // 2
         step = 16
-    return CLOCK / (step * (divisor + 1)) if 0 <= divisor <= SLOWEST_DIVISOR else 0.0
+    return CHIP_CLOCK / (step * (divisor + 1)) if 0 <= divisor <= SLOWEST_DIVISOR else 0.0
 
 
 class _Reader:
@@ -235,7 +233,7 @@ class _Reader:
         bauds: list[int] = []
         lowest, highest = FRAMINGS[framing].bauds
         for place, value in enumerate(self._list("baud_rate")):
-            if type(value) is not int or not 1 <= value <= CLOCK:
+            if type(value) is not int or not 1 <= value <= CHIP_CLOCK:
                 self.problems.append(f"baud_rate[{place}]: {value!r} is not a baud rate")
                 continue
             if not lowest <= value <= highest:
