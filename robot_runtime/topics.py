@@ -66,6 +66,8 @@ TOPICS: tuple[Topic, ...] = (
     Topic(19, "event", Kind.DOCUMENTS, samples.Event, "what happened, told by the runtime"),
     Topic(20, "notice", Kind.DOCUMENTS, samples.Event, "what happened, told by the server"),
     Topic(32, "picture", Kind.PICTURE, None, "the camera's picture as the vision node saw it"),
+    Topic(33, "observer", Kind.PICTURE, None, "the simulated scene as a bystander sees it"),
+    Topic(34, "thumbnail", Kind.PICTURE, None, "a small picture of the camera's, for recordings"),
 )
 BY_NAME = {topic.name: topic for topic in TOPICS}
 BY_ID = {topic.id: topic for topic in TOPICS}

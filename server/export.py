@@ -5,34 +5,19 @@ import io
 import json
 import re
 import zipfile
-import zlib
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any, cast
 
 from sqlmodel import col, select
 
-from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, decode_documents, decode_rows, row_layout
-from server.models import Chunk, Gap, SessionRow
+from server.chunks import row_layout
+from server.models import Gap, SessionRow
+from server.recording import Recording
 from server.sessions import from_row
 from server.store import Store
 
-CHUNKS_AT_ONCE = 32
 LEVEL = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Stored:
-    """A chunk as it is read from the database."""
-
-    number: int
-    encoding: str
-    data: bytes
-
-
-class ExportError(Exception):
-    """A recording that cannot be read; the text says what is wrong."""
 
 
 class Export:
@@ -41,7 +26,7 @@ class Export:
     def __init__(self, store: Store, session: SessionRow) -> None:
         self._store = store
         self._session = session
-        self._topics: dict[str, dict[str, Any]] = json.loads(session.topics)
+        self._recording = Recording(store, session)
 
     @property
     def file_name(self) -> str:
@@ -51,14 +36,15 @@ class Export:
         return f"{started:%Y-%m-%d_%H-%M-%S}_{words or self._session.id}.zip"
 
     def stream(self) -> Iterator[bytes]:
-        """The zip file, piece by piece. Raises StoreError, ExportError."""
+        """The zip file, piece by piece. Raises StoreError, RecordingError."""
         sink = _Sink()
         with zipfile.ZipFile(cast("Any", sink), "w", zipfile.ZIP_DEFLATED, compresslevel=LEVEL) as archive:
             archive.writestr(
                 "session.json", json.dumps(self._describe(), indent=2, ensure_ascii=False) + "\n"
             )
-            for name, topic in self._topics.items():
-                if not self._any(name):
+            counts = self._recording.counts()
+            for name, topic in self._recording.topics.items():
+                if name not in counts:
                     continue
                 with archive.open(f"{name}.csv", "w") as file:
                     for lines in self._lines(name, topic):
@@ -85,21 +71,20 @@ class Export:
         described["started_steady"] = row.started_steady
         described["robot_state"] = json.loads(row.robot_state)
         described["configuration"] = row.configuration
-        described["topics"] = self._topics
+        described["topics"] = self._recording.topics
         return described
 
     def _lines(self, name: str, topic: dict[str, Any]) -> Iterator[str]:
-        rows = topic["kind"] == "rows"
-        encoding, size = (ROWS_ENCODING, topic["row_bytes"]) if rows else (DOCUMENTS_ENCODING, 0)
-        header, write = self._row_writer(topic) if rows else self._document_writer(topic)
-        yield _csv([["time [s]", "utc", *header]])
-        for chunk in self._chunks(name):
-            if chunk.encoding != encoding:
-                raise ExportError(f"chunk {chunk.number} of {name} is encoded as {chunk.encoding!r}")
-            try:
-                yield write(decode_rows(chunk.data, size) if rows else chunk.data)
-            except (ValueError, zlib.error) as problem:
-                raise ExportError(f"chunk {chunk.number} of {name} is damaged: {problem}") from problem
+        if topic["kind"] == "rows":
+            columns, write = self._row_writer(topic)
+            yield _csv([["time [s]", "utc", *columns]])
+            for rows in self._recording.rows(name):
+                yield write(rows)
+        else:
+            header = tuple(field["name"] for field in topic["fields"] if field["name"] != "time")
+            yield _csv([["time [s]", "utc", *header]])
+            for document in self._recording.documents(name):
+                yield self._line(document, header)
 
     def _row_writer(self, topic: dict[str, Any]) -> tuple[tuple[str, ...], Any]:
         layout = row_layout(topic)
@@ -113,20 +98,10 @@ class Export:
 
         return layout.columns, write
 
-    def _document_writer(self, topic: dict[str, Any]) -> tuple[tuple[str, ...], Any]:
-        columns = tuple(field["name"] for field in topic["fields"] if field["name"] != "time")
-
-        def write(data: bytes) -> str:
-            return _csv(
-                [
-                    self._since_start(document["time"]),
-                    self._utc(document["time"]),
-                    *(_cell(document.get(column)) for column in columns),
-                ]
-                for document in decode_documents(data)
-            )
-
-        return columns, write
+    def _line(self, document: dict[str, Any], columns: Sequence[str]) -> str:
+        time = document["time"]
+        cells = (_cell(document.get(column)) for column in columns)
+        return _csv([[self._since_start(time), self._utc(time), *cells]])
 
     def _since_start(self, time: float) -> str:
         return f"{time - self._session.started_steady:.6f}"
@@ -134,27 +109,6 @@ class Export:
     def _utc(self, time: float) -> str:
         moment = datetime.fromtimestamp(self._session.started + time - self._session.started_steady, UTC)
         return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
-
-    def _any(self, topic: str) -> bool:
-        query = select(Chunk.id).where(Chunk.session_id == self._session.id, Chunk.topic == topic).limit(1)
-        with self._store.read() as database:
-            return database.exec(query).first() is not None
-
-    def _chunks(self, topic: str) -> Iterator[Stored]:
-        number = -1
-        while True:
-            query = (
-                select(Chunk.number, Chunk.encoding, Chunk.data)
-                .where(Chunk.session_id == self._session.id, Chunk.topic == topic, Chunk.number > number)
-                .order_by(col(Chunk.number))
-                .limit(CHUNKS_AT_ONCE)
-            )
-            with self._store.read() as database:
-                found = [Stored(*one) for one in database.exec(query)]
-            if not found:
-                return
-            yield from found
-            number = found[-1].number
 
 
 class _Sink:

@@ -1,14 +1,24 @@
 """The database's tables. Migrations see this module alone."""
 
-from sqlmodel import Field, SQLModel, UniqueConstraint
+from uuid import uuid4
+
+from sqlmodel import Field, Index, SQLModel, UniqueConstraint
 
 
 class SessionRow(SQLModel, table=True):
-    """One recording. Times are UTC (s since 1970) and steady (s, the computer's steady clock)."""
+    """One recording. Times are UTC (s since 1970) and steady (s, the computer's steady clock).
+
+    `identifier` is the same wherever the session is imported; `boot` tells which start of the computer its
+    steady clock counts from. Origins: "operator", "arming", "scenario" (in real time), "simulated" (a
+    scenario in simulated time), "import". `scenario` is its text as TOML; `firmware` and `software` are hashes. `kept`
+    protects it from the retention rule; `deleted` is when somebody deleted it, until it is really removed.
+    """
 
     __tablename__ = "session"
+    __table_args__ = (Index("session_identifier", "identifier", unique=True),)
 
     id: int | None = Field(default=None, primary_key=True)
+    identifier: str = Field(default_factory=lambda: uuid4().hex)
     name: str
     note: str
     state: str = Field(index=True)
@@ -24,6 +34,36 @@ class SessionRow(SQLModel, table=True):
     configuration: str
     robot_state: str
     topics: str
+    boot: str = ""
+    origin: str = "operator"
+    scenario: str = ""
+    scenario_name: str = ""
+    seed: int | None = None
+    firmware: str = ""
+    software: str = ""
+    kept: bool = False
+    deleted: float | None = None
+
+
+class SessionTag(SQLModel, table=True):
+    """A word by which sessions are found together."""
+
+    __tablename__ = "session_tag"
+    __table_args__ = (UniqueConstraint("session_id", "tag", name="session_tag_place"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    session_id: int = Field(foreign_key="session.id")
+    tag: str
+
+
+class Marker(SQLModel, table=True):
+    """A moment (s, steady clock) that somebody pointed out, and when it was made (UTC, s since 1970)."""
+
+    id: int | None = Field(default=None, primary_key=True)
+    session_id: int = Field(foreign_key="session.id", index=True)
+    time: float
+    text: str
+    made: float
 
 
 class Chunk(SQLModel, table=True):
@@ -32,7 +72,10 @@ class Chunk(SQLModel, table=True):
     Times are of the first and the last sample (s, steady clock).
     """
 
-    __table_args__ = (UniqueConstraint("session_id", "topic", "number", name="chunk_place"),)
+    __table_args__ = (
+        UniqueConstraint("session_id", "topic", "number", name="chunk_place"),
+        Index("chunk_time", "session_id", "topic", "first_time"),
+    )
 
     id: int | None = Field(default=None, primary_key=True)
     session_id: int = Field(foreign_key="session.id")

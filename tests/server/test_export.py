@@ -14,9 +14,10 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.packets import Motor
 from robot_runtime.samples import Truth
 from robot_runtime.topics import BY_NAME, Block, read_rows, row
-from server.export import CHUNKS_AT_ONCE, Export, ExportError
+from server.export import Export
 from server.notices import Notices
 from server.recorder import Recorder
+from server.recording import CHUNKS_AT_ONCE, RecordingError
 from server.sessions import find_row, new_row
 from server.settings import Settings
 from server.store import Store
@@ -165,5 +166,5 @@ def test_the_file_name_is_safe(store: Store, settings: Settings) -> None:
 def test_a_damaged_chunk_is_told(store: Store, settings: Settings) -> None:
     session = record(store, settings, [depth_block(0, 2)])
     asyncio.run(store.write(lambda connection: connection.execute(text("UPDATE chunk SET data = x'00'"))))
-    with pytest.raises(ExportError, match="chunk 0 of depth is damaged"):
+    with pytest.raises(RecordingError, match="chunk 0 of depth is damaged"):
         unpack(make(store, session))

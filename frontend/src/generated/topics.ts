@@ -376,6 +376,8 @@ export const OTHER_TOPICS = {
   event: 19,
   notice: 20,
   picture: 32,
+  observer: 33,
+  thumbnail: 34,
 } as const;
 
 /** A rectangle in the picture; each number a share of the picture's width or height. */
