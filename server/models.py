@@ -10,8 +10,9 @@ class SessionRow(SQLModel, table=True):
 
     `identifier` is the same wherever the session is imported; `boot` tells which start of the computer its
     steady clock counts from. Origins: "operator", "arming", "scenario" (in real time), "simulated" (a
-    scenario in simulated time), "import". `scenario` is its text as TOML; `firmware` and `software` are hashes. `kept`
-    protects it from the retention rule; `deleted` is when somebody deleted it, until it is really removed.
+    scenario in simulated time), "import". `scenario` is its text as TOML; `firmware` and `software` are
+    hashes. `kept` protects it from the retention rule; `deleted` is when somebody deleted it, until it is
+    really removed.
     """
 
     __tablename__ = "session"

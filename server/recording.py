@@ -86,8 +86,8 @@ class Recording:
     ) -> "tuple[Floats, dict[str, Floats]]":
         """The times of a topic of rows (s, steady clock), and columns by their names, in their units.
 
-        Names are without units, such as "depth" or "position_2"; arrays have the shape (samples,). Raises KeyError on a name
-        that is not there.
+        Names are without units, such as "depth" or "position_2"; arrays have the shape (samples,). Raises
+        KeyError on a name that is not there.
         """
         import numpy as np  # only where somebody compares or exports: it costs a small computer memory
 
