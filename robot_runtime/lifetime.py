@@ -12,6 +12,8 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 
+HEARTBEAT = "heartbeat"
+"""What a server publishes every second, from the loop that also does everything else there."""
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
 _LOOK_SECONDS = 1.0

@@ -371,7 +371,9 @@ def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) 
         deck.clock.forward(4)
         await deck.recorder.flush()
         after = Deck(deck.store, deck.settings)
-        await after.recorder.recover()
+        left = await after.recorder.recover()
+        assert left is not None
+        await after.recorder.resume(left, {})
         (session,) = list_sessions(deck.store)
         assert (session.state, session.samples, session.duration) == ("interrupted", 5, 4)
         assert session.ended is not None
