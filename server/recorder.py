@@ -133,7 +133,7 @@ class Recorder:
         self._notices.tell(
             "recording",
             "caution",
-            f"The server was killed. Recording of “{row.name}” goes on after {away:.1f} s, which are fetched.",
+            f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
         )
         self._changed()
 

@@ -63,10 +63,14 @@ class Source:
     def _catch_up(self, run: str, blocks: list[Block], wanted: Mapping[str, int]) -> None:
         self._waits = True
         self._waiting.append((run, blocks))
-        self._asking = asyncio.create_task(self._ask_and_merge(wanted))
+        self._asking = asyncio.create_task(self._ask_and_merge(run, wanted))
 
-    async def _ask_and_merge(self, wanted: Mapping[str, int]) -> None:
-        self.go_on(await self._ask(wanted))
+    async def _ask_and_merge(self, run: str, wanted: Mapping[str, int]) -> None:
+        kept = await self._ask(wanted)
+        if kept is not None and kept.run != run:
+            # Another run by now, whose numbers begin anew.
+            kept = await self._ask(self.everything())
+        self.go_on(kept)
 
     def _merge(self, kept: Kept | None) -> None:
         waiting, self._waiting = self._waiting, []
