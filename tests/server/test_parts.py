@@ -18,7 +18,7 @@ from server.logs import PartLog
 from server.parts import Command, Part, Parts, plan
 from server.pidfile import end_parts, pid_file, running_parts
 from server.settings import DataFolder, Settings, make_folders
-from tests.server.waiting import until
+from tests.server.waiting import alive, until
 
 
 class Crew:
@@ -355,10 +355,3 @@ def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(set
 def test_the_board_runs_the_firmware_for_the_configured_speed(settings: Settings) -> None:
     elf = settings.build / "firmware/9600/robot.elf"
     assert str(elf) in plan(replace(settings, link=LinkConfig(baud=9600)))[0].arguments
-
-
-def alive(pid: int) -> bool:
-    try:
-        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return False
