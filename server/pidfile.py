@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import time
+from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,13 +63,13 @@ def running_parts(run: Path) -> dict[str, Running]:
     return {name: running for name, running in found.items() if running is not None}
 
 
-def end_parts(run: Path) -> None:
-    """End what a killed server has left running, and wait for it; for who works without parts."""
-    left = running_parts(run)
+def end_parts(run: Path, but: Collection[str] = ()) -> None:
+    """End what a killed server has left running, and wait for it; parts of the names in `but` stay."""
+    left = {name: running for name, running in running_parts(run).items() if name not in but}
     for running in left.values():
         _signal(running.pid, signal.SIGTERM)
     end = time.monotonic() + TERM_SECONDS
-    while running_parts(run) and time.monotonic() < end:
+    while left.keys() & running_parts(run).keys() and time.monotonic() < end:
         time.sleep(LOOK_SECONDS)
     for running in left.values():
         _signal(running.pid, signal.SIGKILL)
