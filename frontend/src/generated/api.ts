@@ -1034,6 +1034,8 @@ export interface components {
             port: string;
             /** Refusals */
             refusals: string[];
+            /** Run */
+            run: string;
             /** Set Point */
             set_point: number;
             /** Set Point Default */
