@@ -62,6 +62,7 @@ class Assembly:
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             await self.bridge.open()
+            await self.parts.end_others()
             await self._catch_up(left)
             self._tell_session()
             tasks = [
