@@ -40,6 +40,8 @@ TRIM_SECONDS = 1.0
 HEARTBEAT_SECONDS = 4.0
 """After which, and half a second, the runtime stops a robot whose server is silent: 5 s are allowed."""
 
+SIMULATOR_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
+
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
 
@@ -251,21 +253,30 @@ def plan(settings: Settings) -> list[Command]:
         # Nothing ends it but a server: it is what keeps a robot under water in hand.
         return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
     lock = ("--server-lock", str(folder.lock))
+    simulator = [sys.executable, "-m", "robot_runtime.simulation"]
+    if settings.in_the_loop:
+        simulator += ["--in-the-loop", "--connect", f"unixsock-stream/{folder.runtime_socket}"]
+    else:
+        simulator += ["--board", str(folder.board_socket)]
+        for socket in (folder.runtime_socket, folder.server_socket):
+            simulator += ["--connect", f"unixsock-stream/{socket}"]
+    simulator += ["--robot", settings.robot, *lock]
+    needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
+    water = Command("simulator", "simulator", tuple(simulator), needs)
+    if not settings.emulated_board:
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water]
     runtime += ["--port", str(folder.board_tty), *lock]
-    program, elf = build / "board", firmware_path(build, settings.link.baud, ".elf")
+    program = build / "board"
+    elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
     # The communication test uploads its sketches to this board, as to a real one.
     bootloader = build / "firmware" / "optiboot.hex"
     board = [str(program), "--elf", str(elf), "--bootloader", str(bootloader)]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
     board += ["--eeprom", str(folder.board_eeprom), *lock]
-    simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
-    for socket in (folder.runtime_socket, folder.server_socket):
-        simulator += ["--connect", f"unixsock-stream/{socket}"]
-    simulator += ["--robot", settings.robot, *lock]
     return [
         Command("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
         Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
-        Command("simulator", "simulator", tuple(simulator), (folder.board_socket, folder.runtime_socket)),
+        water,
     ]
 
 
