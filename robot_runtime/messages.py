@@ -19,6 +19,7 @@ log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
 _CLIENT_TIMEOUT_MS = 1000
+
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
 

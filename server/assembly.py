@@ -26,6 +26,7 @@ from server.settings import Settings
 from server.store import Store, StoreError
 
 HEALTH_SECONDS = 1.0
+BEAT_SECONDS = 1.0
 
 
 class Assembly:
@@ -62,11 +63,13 @@ class Assembly:
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             await self.bridge.open()
+            tasks.append(asyncio.create_task(self._beat()))
+            await self.parts.end_others()
             await self._catch_up(left)
             self._tell_session()
             if self.settings.hil.simulator == "elsewhere":
                 await self.parts.pause("simulator", SIMULATOR_ELSEWHERE)
-            tasks = [
+            tasks += [
                 asyncio.create_task(work)
                 for work in (
                     self.handover.start_parts(),
@@ -88,8 +91,10 @@ class Assembly:
 
     async def _catch_up(self, left: Left | None) -> None:
         """Take in what the parts of a killed server have sent since, before anybody is served."""
-        self.bridge.beat()
-        kept = await self.bridge.catch_up(running_parts(self.settings.data.run))
+        running = set(running_parts(self.settings.data.run))
+        if "runtime" in running and self.settings.in_the_loop:
+            running.add("simulator")  # perhaps on another computer
+        kept = await self.bridge.catch_up(running)
         if left is not None:
             found = {name: find_missing(left, SENT_BY[name], one) for name, one in kept.items()}
             await self.recorder.resume(left, found)
@@ -111,10 +116,14 @@ class Assembly:
 
     async def _tell_health(self) -> None:
         while True:
-            self.bridge.beat()
             health = self.watch.health()
             self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
             await asyncio.sleep(HEALTH_SECONDS)
+
+    async def _beat(self) -> None:
+        while True:
+            self.bridge.beat()
+            await asyncio.sleep(BEAT_SECONDS)
 
     async def _end_session(self) -> None:
         if self.recorder.session is not None:

@@ -23,7 +23,7 @@ from robot_runtime.packets import DEFINITIONS_HASH
 from robot_runtime.samples import Severity
 from server import VERSION
 from server.logs import PartLog
-from server.pidfile import pid_file
+from server.pidfile import end_parts, pid_file
 from server.process import AdoptedProcess, Process
 from server.settings import DataFolder, Settings
 
@@ -198,11 +198,16 @@ class Parts:
     """All parts of this robot, by name."""
 
     def __init__(self, commands: Sequence[Command], folder: DataFolder, clock: Clock, tell: Tell) -> None:
+        self._run = folder.run
         self._parts = {
             command.name: Part(command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, tell)
             for command in commands
         }
         self._tasks: dict[str, asyncio.Task[None]] = {}
+
+    async def end_others(self) -> None:
+        """End what a killed server has left and this one does not have, such as another mode's board."""
+        await asyncio.to_thread(end_parts, self._run, self._parts)
 
     def start(self) -> None:
         """Start everything, each as soon as what it needs is there; what is paused is not started."""
@@ -259,7 +264,7 @@ def plan(settings: Settings) -> list[Command]:
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
     water = Command("simulator", "simulator", tuple(simulator), needs)
     if not settings.emulated_board:
-        return [Command("runtime", "robot's runtime", (*runtime, *lock), made_of=runtime_files), water]
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water]
     runtime += ["--port", str(folder.board_tty), *lock]
     program = build / "board"
     elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)

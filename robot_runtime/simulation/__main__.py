@@ -37,7 +37,7 @@ def main() -> None:
         simulator = Simulator(Parameters(), arguments.seed)
         process: Process | Loop
         if arguments.in_the_loop:
-            process = Loop(simulator, messages, SteadyClock())
+            process = Loop(simulator, messages)
         else:
             process = Process(simulator, arguments.board, messages, SteadyClock())
         if arguments.server_lock is not None:

@@ -13,7 +13,7 @@ from math import pi, remainder
 from typing import Any
 
 from robot_runtime.cache import Cache
-from robot_runtime.clock import Clock
+from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
@@ -42,10 +42,10 @@ QUIET = 2.0
 class Loop:
     """Joins the simulator and a robot elsewhere. `run` returns after `end`."""
 
-    def __init__(self, simulator: Simulator, messages: Messages, clock: Clock) -> None:
+    def __init__(self, simulator: Simulator, messages: Messages) -> None:
         self._simulator = simulator
         self._messages = messages
-        cache = Cache(messages.run, clock)
+        cache = Cache(messages.run, SteadyClock())
         self._outbox = Outbox(messages.publish, messages.watched, cache)
         self._waiting: deque[bytes] = deque(maxlen=WAITING_MAX)
         self._arrived = threading.Event()

@@ -318,7 +318,13 @@ def test_a_part_that_is_paused_at_the_start_does_not_go_on_either(tmp_path: Path
     asyncio.run(scenario())
 
 
-def test_who_works_without_parts_ends_what_was_left(tmp_path: Path) -> None:
+def test_who_does_not_need_what_was_left_ends_it(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+    asyncio.run(crew.parts.end_others())
+    assert alive(left.process.pid)
+    asyncio.run(Crew(tmp_path, program("another", "")).parts.end_others())
+    assert not alive(left.process.pid)
     left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
     end_parts(tmp_path / "run")
     assert not alive(left.process.pid)

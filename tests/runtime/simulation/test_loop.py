@@ -9,7 +9,6 @@ from math import sin
 
 import pytest
 
-from robot_runtime.clock import SimulatedClock
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.packets import Motor, Sense
@@ -64,7 +63,7 @@ def robot(simulator: Simulator) -> Iterator[Robot]:
     with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
         robot = Robot(here)
         with Messages("turtle", connect=[f"unixsock-stream/{folder}/z"], client=True) as there:
-            loop = Loop(simulator, there, SimulatedClock())
+            loop = Loop(simulator, there)
             thread = threading.Thread(target=loop.run)
             thread.start()
             try:
@@ -115,7 +114,7 @@ def test_a_clock_that_stands_or_runs_back_moves_nothing(robot: Robot, simulator:
 
 def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simulator) -> None:
     with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
-        Loop(simulator, here, SimulatedClock())
+        Loop(simulator, here)
         here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
         with pytest.raises(Refused, match="has no buses"):
             here.ask("simulator/fault", {"sensor": "pressure", "kind": "bus"})
