@@ -7,7 +7,7 @@ from robot_runtime.errors import Refused
 from robot_runtime.simulation.faults import Fault, Kind
 from robot_runtime.simulation.parameters import Vector
 from robot_runtime.simulation.simulator import Simulator
-from robot_runtime.simulation.surroundings import Basin, Current, Trim, Waves
+from robot_runtime.simulation.surroundings import Basin, Current, Start, Trim, Waves
 
 Question = Mapping[str, Any]
 Change = Callable[[Question], None]
@@ -17,8 +17,8 @@ def changes(simulator: Simulator) -> dict[str, Change]:
     """What each question does. They raise Refused or ValueError, in words, and change nothing then."""
 
     def reset(question: Question) -> None:
-        _expect(question)
-        simulator.reset()
+        _expect(question, (), ("north", "east", "down", "heading"))
+        simulator.reset(Start(**_numbers(question)))
 
     def current(question: Question) -> None:
         _expect(question, ("north", "east", "down"), ("turning",))
