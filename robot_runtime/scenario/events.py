@@ -1,8 +1,10 @@
 """What can happen during a scenario: one dataclass for each `do`, with the arguments of the like-named
 command of the runtime or question to the simulator."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from math import hypot
 from typing import Annotated, Any, ClassVar, Literal
 
 from robot_runtime.config import SET_POINT, VISION_RATE, ConfigError, Range, parse, place
@@ -25,7 +27,7 @@ _LINE_NUMBERS: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Event:
+class Event(ABC):
     """Something that happens at a time (s since the start)."""
 
     do: ClassVar[str]
@@ -39,6 +41,11 @@ class Event:
         given = ((one.name, getattr(self, one.name)) for one in fields(self) if one.name != "at")
         return {name: value for name, value in given if value is not None}
 
+    @property
+    @abstractmethod
+    def words(self) -> str:
+        """What happens, in a few words."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arm(Event):
@@ -47,6 +54,11 @@ class Arm(Event):
     do = "arm"
     to = "runtime"
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return "Arm"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop(Event):
@@ -54,6 +66,11 @@ class Stop(Event):
 
     do = "stop"
     to = "runtime"
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return "STOP"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,6 +87,14 @@ class SetPoints(Event):
         if self.default is None and self.detected is None:
             raise ValueError("set_points needs default, detected or both")
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        parts = [] if self.default is None else [f"set point {self.default:g} m"]
+        parts += [] if self.detected is None else [f"{self.detected:g} m where the colour is seen"]
+        words = ", ".join(parts)
+        return words[0].upper() + words[1:]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChooseController(Event):
@@ -84,6 +109,12 @@ class ChooseController(Event):
     def __post_init__(self) -> None:
         check_controller(self.name, {self.name: self.gains})
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
+        return f"Controller {self.name}" + (f": {gains}" if gains else "")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Card(Event):
@@ -93,6 +124,11 @@ class Card(Event):
     to = "runtime"
 
     colour: Colour | None = None
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return f"{self.colour.capitalize()} card" if self.colour else "Card away"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,6 +145,13 @@ class Look(Event):
         if self.rate is None and self.colour is None:
             raise ValueError("vision needs rate, colour or both")
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        parts = [] if self.rate is None else [f"at {self.rate:g} Hz"]
+        parts += [] if self.colour is None else [f"for {self.colour}"]
+        return f"Look {' '.join(parts)}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Beacons(Event):
@@ -121,6 +164,14 @@ class Beacons(Event):
 
     def __post_init__(self) -> None:
         check_beacons(self.positions)
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        count = len(self.positions)
+        return (
+            "No light beacon" if not count else "A light beacon" if count == 1 else f"{count} light beacons"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,6 +189,12 @@ class CurrentChange(Event):
     def __post_init__(self) -> None:
         Current(self.north, self.east, self.down, self.turning)
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        speed = hypot(self.north, self.east, self.down)
+        return f"Current of {speed:.2g} m/s" if speed else "No current"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WavesChange(Event):
@@ -152,6 +209,11 @@ class WavesChange(Event):
 
     def __post_init__(self) -> None:
         Waves(self.amplitude, self.period, self.direction)
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return f"Waves of ±{100 * self.amplitude:g} cm" if self.amplitude else "No waves"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,6 +231,11 @@ class TrimChange(Event):
     def __post_init__(self) -> None:
         Trim(self.buoyancy, self.forward, self.right, self.above)
 
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return f"Trim: buoyancy {self.buoyancy:g}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorFault(Event):
@@ -185,6 +252,11 @@ class SensorFault(Event):
 
     def __post_init__(self) -> None:
         check_sensor(self.sensor, Fault(kind=self.kind, share=self.share, size=self.size, speed=self.speed))
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return f"{self.sensor.capitalize()}: {'mended' if self.kind == 'none' else self.kind}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,6 +285,14 @@ class Line(Event):
 
     @property
     def words(self) -> str:
+        """What happens, in a few words."""
+        way = "Line to the board" if self.direction == "to_board" else "Line from the board"
+        if self.kind == "cut":
+            return f"{way} {'cut' if self.on else 'whole again'}"
+        return f"{way}: {self.kind.replace('_', ' ')}"
+
+    @property
+    def command(self) -> str:
         """The command to the emulated board's socket."""
         given = [one for one in (self.rate, self.length, self.seconds) if one is not None]
         if self.on is not None:
@@ -232,6 +312,11 @@ class Mark(Event):
     def __post_init__(self) -> None:
         if not 1 <= len(self.text.strip()) <= TEXT_MAX:
             raise ValueError(f"a marker's text has 1 to {TEXT_MAX} characters")
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return self.text
 
 
 EVENTS: tuple[type[Event], ...] = (

@@ -33,6 +33,18 @@ class FinMotion(NamedTuple):
     """Whether the motors have power."""
 
 
+class Surroundings(NamedTuple):
+    """All that can be set about water, hull and sensors."""
+
+    basin: Basin
+    current: Current
+    waves: Waves
+    trim: Trim
+    beacons: tuple[Vector, ...]
+    faults: dict[str, Fault]
+    """By sensor."""
+
+
 class Simulator:
     """Body, world and sensors together. Its methods may be called from any thread."""
 
@@ -68,14 +80,16 @@ class Simulator:
             )
             return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
-    def reset(self, start: Start = FLOATING) -> None:
+    def reset(self, start: Start = FLOATING, seed: int | None = None) -> None:
         """Back to the start: time 0, at rest, by default floating and looking north, with a full battery.
 
-        The sensors' noise begins anew, too. Water, trim, beacons and faults stay as they are. Raises
-        ValueError where floor or walls are in the way.
+        The sensors' noise begins anew, too, by another `seed` where one is given. Water, trim, beacons and
+        faults stay as they are. Raises ValueError where floor or walls are in the way.
         """
         with self._lock:
             check_start(start, self._world.basin, self._parameters.size)
+            if seed is not None:
+                self._sensors.seed = seed
             self._start(start)
 
     def set_current(self, current: Current) -> None:
@@ -111,6 +125,19 @@ class Simulator:
         """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
         with self._lock:
             self._sensors.break_(sensor, fault, self._body.time)
+
+    def surroundings(self) -> Surroundings:
+        """Everything that can be set, as it is now."""
+        with self._lock:
+            world, sensors = self._world, self._sensors
+            return Surroundings(
+                world.basin,
+                world.current,
+                world.waves,
+                self._body.trim,
+                sensors.beacons,
+                dict(sensors.faults),
+            )
 
     @property
     def broken_devices(self) -> frozenset[str]:
