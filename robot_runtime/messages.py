@@ -6,6 +6,7 @@ for. Callbacks run in Zenoh's own threads.
 
 import json
 import logging
+import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
@@ -17,6 +18,8 @@ from robot_runtime.errors import Refused as Refused
 log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
+
+_REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
 
 class Subscription:
@@ -36,11 +39,14 @@ class Messages:
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
     "tcp/192.168.0.7:7447". Lost peers are tried again for ever. Raises OSError where an endpoint cannot be
     listened on.
+
+    `run` are 16 hexadecimal digits that are new in every process; they travel with all that it publishes.
     """
 
     def __init__(
         self, robot: str, listen: Sequence[str] = (), connect: Sequence[str] = (), scouting: bool = False
     ) -> None:
+        self.run = secrets.token_hex(8)
         self._prefix = f"mucat/{robot}/"
         try:
             self._session = zenoh.open(_configuration(listen, connect, scouting))
@@ -51,7 +57,7 @@ class Messages:
 
     def publish(self, name: str, payload: bytes) -> None:
         """Send to everybody who listens to `name`."""
-        self._publisher(name).put(payload)
+        self._publisher(name).put(payload, attachment=self.run)
 
     def watched(self, name: str) -> bool:
         """Whether anybody listens to `name` now."""
@@ -61,9 +67,14 @@ class Messages:
 
     def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
         """Call back with the name and the payload of everything that `pattern` ("depth", "**") matches."""
+        return self.subscribe_runs(pattern, lambda name, payload, _: callback(name, payload))
+
+    def subscribe_runs(self, pattern: str, callback: Callable[[str, bytes, str], None]) -> Subscription:
+        """As `subscribe`, with the sender's `run` as a third argument."""
 
         def receive(sample: zenoh.Sample) -> None:
-            callback(str(sample.key_expr).removeprefix(self._prefix), sample.payload.to_bytes())
+            run = sample.attachment.to_string() if sample.attachment is not None else ""
+            callback(str(sample.key_expr).removeprefix(self._prefix), sample.payload.to_bytes(), run)
 
         return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
 
@@ -85,6 +96,30 @@ class Messages:
         def reply(query: zenoh.Query) -> None:
             with query:
                 query.reply(query.key_expr, json.dumps(_outcome(handler, query)).encode())
+
+        self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
+
+    def ask_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
+        """The answer to a question, both as plain bytes; raises as `ask` does."""
+        for reply in self._session.get(self._prefix + name, payload=payload, timeout=timeout):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+            # Zenoh puts its own errors, such as a timeout, into the same place.
+            if reply.err is not None and reply.err.encoding == _REFUSAL:
+                raise Refused(reply.err.payload.to_string())
+        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+
+    def answer_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
+        """Answer `name` with the bytes that the handler returns; what it raises is told as by `answer`."""
+
+        def reply(query: zenoh.Query) -> None:
+            with query:
+                try:
+                    answer = handler(query.payload.to_bytes() if query.payload is not None else b"")
+                except Exception as problem:
+                    query.reply_err(_reason(problem, query).encode(), encoding=_REFUSAL)
+                else:
+                    query.reply(query.key_expr, answer)
 
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
@@ -111,11 +146,15 @@ def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh
         if not isinstance(question, dict):
             raise ValueError("a question must be a JSON object")
         return {"accepted": True, **(handler(question) or {})}
-    except (Refused, ValueError, TypeError) as refusal:
-        return {"accepted": False, "reason": str(refusal)}
-    except Exception:
-        log.exception("answering %s failed", query.key_expr)
-        return {"accepted": False, "reason": "an error inside the answering process; its log says more"}
+    except Exception as problem:
+        return {"accepted": False, "reason": _reason(problem, query)}
+
+
+def _reason(problem: Exception, query: zenoh.Query) -> str:
+    if isinstance(problem, Refused | ValueError | TypeError):
+        return str(problem)
+    log.error("answering %s failed", query.key_expr, exc_info=problem)
+    return "an error inside the answering process; its log says more"
 
 
 def _configuration(listen: Sequence[str], connect: Sequence[str], scouting: bool) -> zenoh.Config:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.bus import Bus
+from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
@@ -47,7 +48,8 @@ class Robot:
         self.config = config
         self.clock = clock or SteadyClock()
         self.bus = Bus()
-        self.outbox = Outbox(messages.publish, messages.watched)
+        self.cache = Cache(messages.run, self.clock)
+        self.outbox = Outbox(messages.publish, messages.watched, self.cache)
         self._messages = messages
         self._closing = False
         self._ending = threading.Event()
@@ -108,6 +110,7 @@ class Robot:
         board = self.connection.board
         return State(
             time=self.clock.now(),
+            run=self._messages.run,
             mode=self.supervisor.mode,
             armed=self.supervisor.armed,
             armed_since=self.supervisor.armed_since,

@@ -19,7 +19,7 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col
 
 from robot_runtime.clock import Clock
-from robot_runtime.topics import Block, Kind, Topic
+from robot_runtime.topics import NUMBERS, Block, Kind, Topic
 from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, encode_documents, encode_rows
 from server.models import Chunk, Gap, SessionRow
 from server.notices import Notices
@@ -35,7 +35,6 @@ PERIOD = 0.8
 PROBE_PERIODS = 5
 """Periods between attempts to write while writing fails and nothing is recorded."""
 BACKLOG_BYTES = 8_000_000
-NUMBERS = 1 << 32
 
 
 class RecordingRefused(Exception):  # noqa: N818 - it says what happened
@@ -156,7 +155,7 @@ class Recorder:
             self._gathered.runs.append(run)
         run.payloads.append(block.payload)
         run.count += block.count
-        self._expected[topic.id] = (block.first + block.count) % NUMBERS
+        self._expected[topic.id] = block.following
 
     async def run(self) -> None:
         """Commit every period, for ever; tell when it fails, and when it works again."""

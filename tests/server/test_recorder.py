@@ -13,11 +13,11 @@ from sqlmodel import col, select
 
 import server.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.topics import BY_NAME, Block
+from robot_runtime.topics import BY_NAME, NUMBERS, Block
 from server.chunks import decode_rows
 from server.models import Chunk, Gap
 from server.notices import Notices
-from server.recorder import NUMBERS, Recorder, RecordingRefused
+from server.recorder import Recorder, RecordingRefused
 from server.sessions import find_row, list_sessions, new_row
 from server.settings import Settings
 from server.store import Store, StoreError

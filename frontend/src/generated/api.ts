@@ -1001,6 +1001,8 @@ export interface components {
             port: string;
             /** Refusals */
             refusals: string[];
+            /** Run */
+            run: string;
             /** Set Point */
             set_point: number;
             /** Set Point Default */
