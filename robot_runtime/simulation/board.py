@@ -127,6 +127,10 @@ class Board:
         """Let all that befalls the line from now on follow from this number."""
         self._order(f"seed {seed}")
 
+    def line(self, command: str) -> None:
+        """Disturb the line by a command as in docs/architecture.md, `line to_board cut on`."""
+        self._order(command)
+
     def reset(self) -> None:
         """Pull the reset pin."""
         self._order("reset")
