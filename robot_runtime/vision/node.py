@@ -122,20 +122,26 @@ class Vision:
             if frame is not None:
                 self._examine(frame)
 
+    def tick(self) -> float:
+        """Look where that is due; s until it will be, 0 where it was."""
+        remaining = self._pace.remaining()
+        if remaining > 0:
+            return remaining
+        self._pace.begin()
+        try:
+            self.look()
+        except Exception:
+            log.exception("a picture could not be searched")
+        return 0.0
+
     def _run(self) -> None:
         # On pictures of this size more threads cost more than they bring, and the robot has one core.
         cv2.setNumThreads(1)
         while not self._ending:
-            remaining = self._pace.remaining()
+            remaining = self.tick()
             if remaining > 0:
                 self._wake.wait(remaining)
                 self._wake.clear()
-                continue
-            self._pace.begin()
-            try:
-                self.look()
-            except Exception:
-                log.exception("a picture could not be searched")
         self._drop_camera()
 
     def _take(self) -> Frame | None:
