@@ -1,13 +1,12 @@
 """The scenarios that there are: those that come with the program, and one's own in the data folder."""
 
 import logging
-import tomllib
 from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.errors import Refused
-from robot_runtime.scenario.document import TEXT_BYTES_MAX, Scenario, read_scenario
-from server.scenarios.shapes import ScenarioText
+from robot_runtime.scenario.document import TEXT_BYTES_MAX, Scenario, ScenarioError, read_scenario
+from server.scenarios.shapes import ScenarioText, summarize
 
 log = logging.getLogger(__name__)
 
@@ -55,11 +54,10 @@ def _own(folder: Path) -> list[tuple[Path, str]]:
 
 
 def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
-    """Its title is the file's name where the text is not even TOML: the page's check says why."""
+    """Its title is the file's name where there is something wrong with it; the check says what."""
     try:
-        title = tomllib.loads(text).get("title")
-    except (ValueError, RecursionError):
-        title = None
-    return ScenarioText(
-        name=name, title=title if isinstance(title, str) and title else name, text=text, shipped=shipped
-    )
+        summary = summarize(read_scenario(text))
+    except ScenarioError:
+        summary = None
+    title = summary.title if summary else name
+    return ScenarioText(name=name, title=title, text=text, shipped=shipped, summary=summary)

@@ -14,7 +14,7 @@ from server.bridge import Bridge, RuntimeSilent
 from server.health import Watch
 from server.parts import Parts, Tell
 from server.recorder import Recorder
-from server.scenarios.recording import describe_session, mark
+from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunCancelled, RunFailed
 from server.scenarios.surroundings import Before, Surroundings
 from server.settings import Settings
@@ -70,16 +70,15 @@ class Live:
 
     async def _record(self, run: Run) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
-        session = await self._recorder.start(row)
-        run.session, run.phase = session.id, "running"
+        session = await begin(self._recorder, self._store, run, row)
         try:
             await self._play(run, row.started_steady)
         except RunCancelled as why:
-            await mark(self._store, session.id, self._clock.now(), str(why))
+            await mark(self._store, session, self._clock.now(), str(why))
             raise
         finally:
             run.phase = "ending"
-            await _whole(self._finish(session.id))
+            await _whole(self._finish(session))
 
     async def _play(self, run: Run, began: float) -> None:
         processes = self._processes()

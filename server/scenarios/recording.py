@@ -1,12 +1,15 @@
 """The session that a run records: what it says of the scenario, and the moments that are marked in it."""
 
+import asyncio
 from time import time
 
 from sqlalchemy import insert
+from sqlmodel import col, desc, select
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from server.models import Marker, SessionRow
+from server.recorder import Recorder
 from server.scenarios.run import Run
 from server.sessions import new_row
 from server.settings import Settings
@@ -25,6 +28,21 @@ def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: st
     row.scenario_name = scenario.name
     row.seed = scenario.seed
     return row
+
+
+async def begin(recorder: Recorder, store: Store, run: Run, row: SessionRow) -> int:
+    """Record the run from now on; the session's number. Raises RecordingRefused, StoreError."""
+    session = await recorder.start(row)
+    run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)
+    run.session, run.phase = session.id, "running"
+    return session.id
+
+
+def _find_before(store: Store, name: str, session: int) -> int | None:
+    same = (col(SessionRow.scenario_name) == name, col(SessionRow.deleted).is_(None))
+    older = select(SessionRow.id).where(*same, col(SessionRow.id) < session)
+    with store.read() as database:
+        return database.exec(older.order_by(desc(col(SessionRow.id)))).first()
 
 
 async def mark(store: Store, session: int, moment: float, text: str) -> None:

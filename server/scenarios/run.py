@@ -36,6 +36,8 @@ class Run:
     phase: Phase = "waiting"
     elapsed: float = 0.0
     session: int | None = None
+    before: int | None = None
+    """The newest older session of the same scenario."""
     remarks: list[str] = field(default_factory=list)
     """What did not go as the scenario says, though the run went on."""
     _cancelled: asyncio.Event = field(default_factory=asyncio.Event)
@@ -91,6 +93,7 @@ class Run:
             title=self.scenario.title,
             place=self.place,
             session=self.session,
+            before=self.before,
             state=state,
             problem=" ".join([*([problem] if problem else []), *self.remarks]),
         )

@@ -20,6 +20,7 @@ class ScenarioText(BaseModel):
     title: str
     text: str = Field(description="TOML")
     shipped: bool
+    summary: "ScenarioSummary | None" = Field(description="null where there is something wrong with it")
 
 
 class ScenarioDocument(BaseModel):
@@ -114,6 +115,7 @@ class EndedRun(BaseModel):
     title: str
     place: Place
     session: int | None
+    before: int | None = Field(description="the newest older session of the same scenario")
     state: End
     problem: str
 

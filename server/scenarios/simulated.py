@@ -23,7 +23,7 @@ from robot_runtime.topics import Block, read_blocks
 from server.notices import Notices
 from server.parts import describe_status
 from server.recorder import Recorder
-from server.scenarios.recording import describe_session, mark
+from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunFailed
 from server.settings import Settings
 from server.store import Store
@@ -118,8 +118,7 @@ class _Playback:
                 row = describe_session(self._settings, self._clock, run, "null")
                 row.firmware = str(event.get("firmware", ""))
                 row.software = str(event.get("software", ""))
-                session = await self._recorder.start(row)
-                run.session, run.phase = session.id, "running"
+                await begin(self._recorder, self._store, run, row)
             case "marker" if run.session is not None:
                 await mark(self._store, run.session, float(event["time"]), str(event["text"]))
             case "ended":
