@@ -47,6 +47,8 @@ class Bridge:
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        self.on_stop: Callable[[], None] | None = None
+        """Called when somebody says STOP."""
         self.lent: str | None = None
         """Why nobody commands the robot now, on purpose; None where it is as always."""
         self.stopped = False
@@ -87,7 +89,17 @@ class Bridge:
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
+        if name == "stop" and self.on_stop is not None:
+            self.on_stop()
         await self._ask(f"command/{name}", payload, stop=name == "stop")
+
+    async def disarm(self) -> None:
+        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilent."""
+        await self._ask("command/stop", {}, stop=True)
+
+    async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the simulator answers. Raises Refused with its reason, or RuntimeSilent."""
+        return await self._ask(f"simulator/{name}", payload, stop=False)
 
     async def query(self, name: str) -> Mapping[str, Any]:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
@@ -117,7 +129,7 @@ class Bridge:
             if stop and self.stopped:
                 return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
-            raise RuntimeSilent(_silence(waited), waited) from problem
+            raise RuntimeSilent(_silence(name, waited), waited) from problem
         finally:
             self._asking -= not stop
 
@@ -157,7 +169,9 @@ class Bridge:
             self._deliver(blocks)
 
 
-def _silence(waited: bool) -> str:
+def _silence(name: str, waited: bool) -> str:
+    if name.startswith("simulator/"):
+        return "The simulator does not answer. The System page tells more."
     if waited:
         return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. The System page tells more."
     return "The robot's runtime is not running. The server starts it again; try again in a few seconds."

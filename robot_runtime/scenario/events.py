@@ -256,7 +256,9 @@ class SensorFault(Event):
     @property
     def words(self) -> str:
         """What happens, in a few words."""
-        return f"{self.sensor.capitalize()}: {'mended' if self.kind == 'none' else self.kind}"
+        return (
+            f"{self.sensor.replace('_', ' ').capitalize()}: {'mended' if self.kind == 'none' else self.kind}"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
