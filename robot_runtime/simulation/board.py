@@ -127,10 +127,6 @@ class Board:
         """Let all that befalls the line from now on follow from this number."""
         self.order(f"seed {seed}")
 
-    def line(self, command: str) -> None:
-        """Disturb the line by a command as in docs/architecture.md, `line to_board cut on`."""
-        self._order(command)
-
     def reset(self) -> None:
         """Pull the reset pin."""
         self.order("reset")

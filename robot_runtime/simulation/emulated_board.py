@@ -46,7 +46,7 @@ class EmulatedBoard(SteppedBoard):
 
     def line(self, command: str) -> None:
         """Disturb the line by a command such as `line to_board cut on`."""
-        self._board.line(command)
+        self._board.order(command)
 
     def seed_line(self, seed: int) -> None:
         """Let all that befalls the line follow from this number."""
