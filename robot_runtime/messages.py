@@ -18,6 +18,8 @@ log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
 
+_REFUSAL = zenoh.Encoding.TEXT_PLAIN
+
 
 class Subscription:
     """A running subscription; close it to end it."""
@@ -88,6 +90,30 @@ class Messages:
 
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
+    def ask_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
+        """The answer to a question, both as plain bytes; raises as `ask` does."""
+        for reply in self._session.get(self._prefix + name, payload=payload, timeout=timeout):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+            # Zenoh puts its own errors, such as a timeout, into the same place.
+            if reply.err is not None and reply.err.encoding == _REFUSAL:
+                raise Refused(reply.err.payload.to_string())
+        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+
+    def answer_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
+        """Answer `name` with the bytes that the handler returns; what it raises is told as by `answer`."""
+
+        def reply(query: zenoh.Query) -> None:
+            with query:
+                try:
+                    answer = handler(query.payload.to_bytes() if query.payload is not None else b"")
+                except Exception as problem:
+                    query.reply_err(_reason(problem, query).encode(), encoding=_REFUSAL)
+                else:
+                    query.reply(query.key_expr, answer)
+
+        self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
+
     def close(self) -> None:
         """Leave. An open Zenoh session keeps the interpreter alive, so this must be called."""
         self._session.close()  # type: ignore[no-untyped-call]
@@ -111,11 +137,15 @@ def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh
         if not isinstance(question, dict):
             raise ValueError("a question must be a JSON object")
         return {"accepted": True, **(handler(question) or {})}
-    except (Refused, ValueError, TypeError) as refusal:
-        return {"accepted": False, "reason": str(refusal)}
-    except Exception:
-        log.exception("answering %s failed", query.key_expr)
-        return {"accepted": False, "reason": "an error inside the answering process; its log says more"}
+    except Exception as problem:
+        return {"accepted": False, "reason": _reason(problem, query)}
+
+
+def _reason(problem: Exception, query: zenoh.Query) -> str:
+    if isinstance(problem, Refused | ValueError | TypeError):
+        return str(problem)
+    log.error("answering %s failed", query.key_expr, exc_info=problem)
+    return "an error inside the answering process; its log says more"
 
 
 def _configuration(listen: Sequence[str], connect: Sequence[str], scouting: bool) -> zenoh.Config:
