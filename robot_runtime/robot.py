@@ -70,6 +70,7 @@ class Robot:
             self._take_picture,
             self._picture_wanted,
             self.tell,
+            messages=messages,
         )
         self._configure()
         self._join()

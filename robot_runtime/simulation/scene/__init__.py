@@ -1,4 +1,4 @@
-"""What there is to see under water, rendered by MuJoCo on the CPU: for the robot's camera and for a bystander.
+"""What there is to see under water, rendered by MuJoCo: for the robot's camera and for a bystander.
 
 MuJoCo moves nothing here; the simulator's `truth` says where the robot is. This package alone needs MuJoCo,
 and no other process of the robot does.

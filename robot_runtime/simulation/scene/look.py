@@ -1,7 +1,8 @@
 """What water does to a picture: colours lost with distance, its own light, rippling light, blur, noise."""
 
 from functools import cache
-from math import exp, radians, tan
+from math import radians, tan
+from typing import Any
 
 import cv2
 import numpy as np
@@ -34,7 +35,7 @@ UPWARDS = 0.35
 SKY = 246.0
 """Of each colour, through the surface."""
 SNELL, SNELL_RIM = 0.661, 0.05
-"""Sine of the elevation above which one sees through the surface: the critical angle is 48.6° from upright."""
+"""Sine of the elevation above which one sees through the surface; the critical angle is 48.6°."""
 SURFACE_NEAR = 0.05
 """m from still water within which what is seen is the surface."""
 NOISE_SHIFT = 64
@@ -58,7 +59,7 @@ class Look:
         """Distance over depth, as depth is measured along the camera's axis."""
         self._half = (max(width // 2, 1), max(height // 2, 1))
         self._half_rays = [
-            cv2.resize(grid, self._half, interpolation=cv2.INTER_NEAREST)
+            _floats(cv2.resize(grid, self._half, interpolation=cv2.INTER_NEAREST))
             for grid in (self._right, self._down)
         ]
 
@@ -74,8 +75,8 @@ class Look:
     ) -> Picture:
         """The picture as it is seen through water; blue, green, red.
 
-        `depth` (m) is along the camera's axis. `position` (m) and `axes`, whose rows turn forward, right, down
-        of the camera into the world, say where the camera is and where it looks. `noise` is the standard
+        `depth` (m) is along the camera's axis. `position` (m) and `axes`, which turn forward, right, down of
+        the camera into the world, say where the camera is and where it looks. `noise` is the standard
         deviation of a byte.
         """
         light = self._light(depth, water, position, axes, time)
@@ -85,9 +86,9 @@ class Look:
         distance = depth * self._stretch
         planes = []
         for colour, beta, own in zip(cv2.split(picture), water.attenuation, water.glow, strict=True):
-            kept = cv2.exp(distance * np.float32(-beta))
+            kept = _floats(cv2.exp(distance * np.float32(-beta)))
             behind = glow * np.float32(own)
-            plane = cv2.multiply(colour, light, dtype=cv2.CV_32F)
+            plane = _floats(cv2.multiply(colour, light, dtype=cv2.CV_32F))
             if sky is not None:
                 plane += (np.float32(SKY) - plane) * sky
             plane -= behind
@@ -95,16 +96,14 @@ class Look:
             plane += behind
             planes.append(plane)
         # The lens, which also takes the steps from slanting edges.
-        seen = cv2.GaussianBlur(cv2.convertScaleAbs(cv2.merge(planes)), (3, 3), LENS)
-        sharp = cv2.exp(distance * np.float32(-water.scattering))
-        seen = self._blur(seen, sharp)
+        lens = cv2.GaussianBlur(cv2.convertScaleAbs(cv2.merge(planes)), (3, 3), LENS)
+        sharp = _floats(cv2.exp(distance * np.float32(-water.scattering)))
+        seen = self._blur(_bytes(lens), sharp)
         return self._grain(seen, time, noise) if noise else seen
 
-    def _light(
-        self, depth: Floats, water: Water, position: Vector, axes: Matrix, time: float
-    ) -> Floats:
+    def _light(self, depth: Floats, water: Water, position: Vector, axes: Matrix, time: float) -> Floats:
         """How much more or less light than on average falls on what is seen; 1: as much."""
-        far = cv2.resize(depth, self._half, interpolation=cv2.INTER_NEAREST)
+        far = _floats(cv2.resize(depth, self._half, interpolation=cv2.INTER_NEAREST))
         np.minimum(far, CAUSTICS_FAR, out=far)
         right, down = self._half_rays
         north, east, below = (
@@ -133,15 +132,15 @@ class Look:
         np.maximum(below, 0, out=below)
         far *= np.float32(-1 / CAUSTICS_DISTANCE)
         far -= below * np.float32(1 / CAUSTICS_DEPTH)
-        strength = cv2.exp(far) * np.minimum(below * np.float32(1 / CAUSTICS_BEGIN), 1)
+        strength = _floats(cv2.exp(far)) * np.minimum(below * np.float32(1 / CAUSTICS_BEGIN), 1)
         strength *= np.float32(water.caustics)
         light = np.float32(1) + (np.float32(1.5) * cv2.min(*layers) - np.float32(0.75)) * strength
-        return cv2.resize(light, self._size, interpolation=cv2.INTER_LINEAR).astype(np.float32, copy=False)
+        return _floats(cv2.resize(light, self._size, interpolation=cv2.INTER_LINEAR))
 
     def _up(self, axes: Matrix) -> Floats:
         """The sine of each line of sight's elevation."""
         ahead, aside, under = (np.float32(-part) for part in axes[2])
-        up: Floats = (ahead + aside * self._right + under * self._down) / self._stretch
+        up: Floats = _floats(ahead + aside * self._right + under * self._down) / self._stretch
         return up
 
     def _sky(self, up: Floats, depth: Floats, position: Vector) -> Floats | None:
@@ -150,19 +149,28 @@ class Look:
             return None
         below = position[2] - depth * self._stretch * up
         window = np.clip((up - np.float32(SNELL - SNELL_RIM)) / np.float32(2 * SNELL_RIM), 0, 1)
-        return np.where(np.abs(below) < SURFACE_NEAR, window, np.float32(0))
+        return _floats(np.where(np.abs(below) < SURFACE_NEAR, window, np.float32(0)))
 
     def _blur(self, picture: Picture, sharp: Floats) -> Picture:
         small = cv2.resize(picture, self._half, interpolation=cv2.INTER_AREA)
         soft = cv2.resize(cv2.blur(small, (BLUR, BLUR)), self._size, interpolation=cv2.INTER_LINEAR)
-        return cv2.blendLinear(picture, soft, sharp, 1 - sharp).astype(np.uint8, copy=False)
+        return _bytes(cv2.blendLinear(picture, soft, sharp, 1 - sharp))
 
     def _grain(self, picture: Picture, time: float, noise: float) -> Picture:
         """Noise of the sensor: a piece of a larger sheet, another one at each time."""
         width, height = self._size
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         grain = _sheet(width, height, noise)[y : y + height, x : x + width]
-        return cv2.add(picture, grain, dtype=cv2.CV_8U).astype(np.uint8, copy=False)
+        return _bytes(cv2.add(picture, grain, dtype=cv2.CV_8U))
+
+
+# OpenCV's stubs do not tell what type of numbers an answer has.
+def _floats(values: NDArray[Any]) -> Floats:
+    return values.astype(np.float32, copy=False)
+
+
+def _bytes(values: NDArray[Any]) -> Picture:
+    return values.astype(np.uint8, copy=False)
 
 
 @cache

@@ -78,7 +78,7 @@ def build(contents: Contents, parameters: Parameters) -> Any:
         specular=[0.25, 0.25, 0.25],
     )
     _surface(spec, contents)
-    (_pool if contents.look == "pool" else _natural)(spec, contents)
+    (_pool if contents.kind == "pool" else _natural)(spec, contents)
     _things(spec, contents)
     _robot(spec, parameters)
     return spec.compile()
@@ -97,12 +97,14 @@ def _texture(spec: Any, name: str, pixels: textures.Texture, repeat: float = 1.0
 
 
 def _surface(spec: Any, contents: Contents) -> None:
-    blue, green, red = water(contents.look, contents.turbidity).glow
+    blue, green, red = water(contents.kind, contents.place.turbidity).glow
     glow = (round(red), round(green), round(blue))
     below = _texture(spec, "below", textures.surface_below(glow), 1 / SURFACE_TEXTURE, emission=0.9)
     body = spec.worldbody.add_body(name="surface", mocap=True)
     # Turned over: a plane is seen from where its z axis points.
-    body.add_geom(type=_PLANE, size=[SURFACE, SURFACE, 1], quat=[0, 1, 0, 0], material=below, group=SURFACE_BELOW)
+    body.add_geom(
+        type=_PLANE, size=[SURFACE, SURFACE, 1], quat=[0, 1, 0, 0], material=below, group=SURFACE_BELOW
+    )
 
 
 def _pool(spec: Any, contents: Contents) -> None:
@@ -129,9 +131,7 @@ def _pool(spec: Any, contents: Contents) -> None:
     for line in range(lines):
         across = (line - (lines - 1) / 2) * LINE_APART
         end = max(north - 0.8, 0.3)
-        world.add_geom(
-            type=_BOX, size=[end, LINE_WIDTH / 2, thin], pos=[0, across, -depth], rgba=dark
-        )
+        world.add_geom(type=_BOX, size=[end, LINE_WIDTH / 2, thin], pos=[0, across, -depth], rgba=dark)
         for sign in (1, -1):
             world.add_geom(
                 type=_BOX, size=[LINE_WIDTH / 2, 0.5, thin], pos=[sign * end, across, -depth], rgba=dark
@@ -189,7 +189,8 @@ def _things(spec: Any, contents: Contents) -> None:
         blue, green, red = target.paint
         half = target.size / 2
         spec.worldbody.add_geom(
-            type=_BALL if target.shape == "ball" else _BOX, size=[half, half, half], pos=[north, -east, -down],
+            type=_BALL if target.shape == "ball" else _BOX,
+            size=[half, half, half], pos=[north, -east, -down],
             quat=[cos(0.3), 0, 0, sin(0.3)], rgba=[red / 255, green / 255, blue / 255, 1],
         )  # fmt: skip
         _rope(spec, north, east, down + half, floor, line)
@@ -221,9 +222,7 @@ def _robot(spec: Any, parameters: Parameters) -> None:
     robot.add_geom(
         type=_ELLIPSOID, size=[0.045, 0.018, 0.006], pos=[-0.01, 0, height], rgba=dark, group=ROBOT
     )
-    robot.add_camera(
-        name="nose", pos=[NOSE, 0, 0], quat=_axes((0, -1, 0), (0, 0, 1)), fovy=FIELD_OF_VIEW
-    )
+    robot.add_camera(name="nose", pos=[NOSE, 0, 0], quat=_axes((0, -1, 0), (0, 0, 1)), fovy=FIELD_OF_VIEW)
     robot.add_geom(
         name="card", type=_BOX, size=[0.001, CARD[0] / 2, CARD[1] / 2],
         pos=[NOSE + CARD_DISTANCE, 0, 0], group=CARD_HELD,
@@ -258,4 +257,4 @@ def _axes(x: tuple[float, float, float], y: tuple[float, float, float]) -> list[
     quaternion = np.empty(4)
     frame = np.column_stack((x, y, np.cross(x, y))).astype(float)
     mujoco.mju_mat2Quat(quaternion, frame.ravel())
-    return quaternion.tolist()  # type: ignore[no-any-return]
+    return quaternion.tolist()

@@ -1,7 +1,7 @@
 """The scene: told where the robot is, it gives the pictures that its camera and a bystander take."""
 
 from dataclasses import dataclass
-from math import floor
+from math import degrees, floor
 from types import TracebackType
 from typing import Any, Self
 
@@ -18,8 +18,8 @@ from robot_runtime.simulation.parameters import Parameters, Vector
 from robot_runtime.simulation.scene import model as modelling
 from robot_runtime.simulation.scene.contents import Contents
 from robot_runtime.simulation.scene.look import Look, Picture
-from robot_runtime.simulation.scene.observer import FIELD_OF_VIEW as OBSERVER_VIEW
-from robot_runtime.simulation.scene.observer import View
+from robot_runtime.simulation.scene.view import FIELD_OF_VIEW as OBSERVER_VIEW
+from robot_runtime.simulation.scene.view import View
 from robot_runtime.simulation.scene.water import NOISE, Water, water
 
 Floats = NDArray[np.float32]
@@ -74,7 +74,7 @@ class Scene:
         self._bodies = {
             name: self._model.body(name).mocapid[0]
             for name in ("surface", "ground")
-            if name != "ground" or contents.look == "natural"
+            if name != "ground" or contents.kind == "natural"
         }
         self._nose.fixedcamid = self._model.camera("nose").id
         self._card = self._model.geom("card").id
@@ -94,8 +94,8 @@ class Scene:
     ) -> Picture:
         """What somebody sees who swims along and looks at the robot, as `render_camera`."""
         self._pose(time, truth, card)
-        camera, position, axes = view.camera(truth)
-        eye = _Eye(position, axes, camera, self._groups(position, card, modelling.ROBOT))
+        position, axes = view.eye(truth)
+        eye = _Eye(position, axes, _camera(view, truth), self._groups(position, card, modelling.ROBOT))
         picture, depth = self._render(eye, width, height)
         seen = self._water.clearer(OBSERVER_CLEARER)
         return self._look(width, height, OBSERVER_VIEW).apply(
@@ -138,7 +138,7 @@ class Scene:
 
     @property
     def _water(self) -> Water:
-        return water(self.contents.look, self.contents.turbidity)
+        return water(self.contents.kind, self.contents.place.turbidity)
 
     def _look(self, width: int, height: int, field_of_view: float) -> Look:
         key = (width, height, field_of_view)
@@ -195,6 +195,18 @@ class Scene:
         near, far = modelling.NEAR, modelling.FAR
         depth = np.float32(near * far) / (cv2.flip(nearness, 0) * np.float32(far - near) + np.float32(near))
         return picture.astype(np.uint8, copy=False), depth
+
+
+def _camera(view: View, truth: Truth) -> Any:
+    """MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
+    azimuth, elevation = view.line_of_sight(truth)
+    north, east, down = truth.position
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.lookat[:] = north, -east, -down
+    camera.distance = view.distance
+    camera.azimuth, camera.elevation = -degrees(azimuth), -degrees(elevation)
+    return camera
 
 
 def _snap(value: float, period: float) -> float:

@@ -59,8 +59,9 @@ def plant(seed: int) -> tuple[Vertices, Faces]:
             out = 0.03 + lean * share**2 + 0.03 * sin(5 * share + leaf)
             half = 0.045 * sin(pi * min(0.25 + 0.75 * share, 0.97))
             x, y = out * cos(turn), out * sin(turn)
-            for side in (-half, half):
-                vertices.append((x - side * sin(turn), y + side * cos(turn), height * share))
+            vertices += [
+                (x - side * sin(turn), y + side * cos(turn), height * share) for side in (-half, half)
+            ]
         for joint in range(JOINTS - 1):
             a = first + 2 * joint
             faces += [(a, a + 1, a + 2), (a + 2, a + 1, a + 3)]

@@ -109,7 +109,8 @@ def _cloud(seed: int, smoothness: float) -> Floats:
     spectrum = white * low * frequency ** (-smoothness / 2 - 0.5)
     spectrum[0, 0] = 0.0
     noise = np.fft.irfft2(spectrum, (SIDE, SIDE))
-    return (noise / noise.std()).astype(np.float32)
+    cloud: Floats = (noise / noise.std()).astype(np.float32)
+    return cloud
 
 
 def _ripples(seed: int, cycles: float) -> Floats:
@@ -117,7 +118,8 @@ def _ripples(seed: int, cycles: float) -> Floats:
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     number = SIDE * np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     waves = np.fft.irfft2(white * np.exp(-(((number - cycles) / (0.45 * cycles)) ** 2)), (SIDE, SIDE))
-    return (waves / waves.std()).astype(np.float32)
+    ripples: Floats = (waves / waves.std()).astype(np.float32)
+    return ripples
 
 
 def _grid() -> tuple[Floats, Floats]:
@@ -126,4 +128,5 @@ def _grid() -> tuple[Floats, Floats]:
 
 
 def _bytes(values: NDArray[np.floating]) -> Texture:
-    return np.clip(values, 0, 255).astype(np.uint8)
+    texture: Texture = np.clip(values, 0, 255).astype(np.uint8)
+    return texture

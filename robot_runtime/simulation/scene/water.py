@@ -10,21 +10,23 @@ way down.
 from dataclasses import dataclass
 from typing import Literal
 
+from robot_runtime.config import Range
+
 Kind = Literal["pool", "natural"]
 Colours = tuple[float, float, float]
 """Of blue, green and red."""
 
-TURBIDITY_MAX = 20.0
-TURBIDITY_ATTENUATION = 0.2
-"""1/m that each NTU of turbidity adds to all three. Assumed, within a factor of two: particles differ."""
-TURBIDITY_HALF = 8.0
-"""NTU at which the water's own light is half that of its particles. Assumed."""
+TURBIDITY = Range(0, 1)
+TURBIDITY_ATTENUATION = 30.0
+"""1/m that a turbidity of 1 adds to all three: a black thing on pale ground is lost at 0.1 m. Chosen."""
+TURBIDITY_POWER = 3
+"""Its power that counts, so that 0.1 is hardly noticed and 0.3 is a harbour. Chosen."""
 SILT: Colours = (135.0, 132.0, 70.0)
 """The light of particles. Assumed: pale, and greenish as the water around them."""
 SCATTERING = 0.04
 """1/m, share of the light that is scattered forwards, and blurs. Assumed: a tenth of pure sea water's β."""
-TURBIDITY_SCATTERING = 0.08
-"""1/m that each NTU adds to that. Assumed."""
+TURBIDITY_SCATTERING = 0.3
+"""Share of what turbidity adds that only blurs. Assumed, within a factor of two."""
 NOISE = 2.5
 """Standard deviation of each byte of the camera's picture. Assumed: a small sensor in dim light."""
 
@@ -59,14 +61,14 @@ CLEAN = {
 
 
 def water(kind: Kind, turbidity: float) -> Water:
-    """The water of this scene with so much turbidity (NTU)."""
+    """The water of this kind of scene with so much turbidity, 0 to 1."""
     clean = CLEAN[kind]
-    share = turbidity / (turbidity + TURBIDITY_HALF)
-    blue, green, red = (beta + TURBIDITY_ATTENUATION * turbidity for beta in clean.attenuation)
-    glow = tuple(own * (1 - share) + silt * share for own, silt in zip(clean.glow, SILT, strict=True))
+    added = TURBIDITY_ATTENUATION * turbidity**TURBIDITY_POWER
+    blue, green, red = (beta + added for beta in clean.attenuation)
+    glow = tuple(own + (silt - own) * turbidity for own, silt in zip(clean.glow, SILT, strict=True))
     return Water(
         (blue, green, red),
         (glow[0], glow[1], glow[2]),
-        clean.scattering + TURBIDITY_SCATTERING * turbidity,
-        clean.caustics * (1 - share),
+        clean.scattering + TURBIDITY_SCATTERING * added,
+        clean.caustics * (1 - turbidity),
     )
