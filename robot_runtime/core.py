@@ -21,10 +21,12 @@ from robot_runtime.link.conversation import Conversation
 from robot_runtime.link.dissection import dissect
 from robot_runtime.link.pace import periods
 from robot_runtime.link.session import Message
+from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
 from robot_runtime.packets import Beacon, Debug, Depth, Imu, Motor, Navigation, Status
 from robot_runtime.samples import ControllerChoice, DebugLine, Detection, Event, Gain, Pace, Severity, State
 from robot_runtime.topics import TOPICS, Kind
+from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.node import Vision
 
 log = logging.getLogger(__name__)
@@ -45,6 +47,8 @@ _STATISTICS_EVERY = 1.0
 class Core:
     """The robot without its threads. `run` is this run's name, 16 hexadecimal digits.
 
+    Pictures come from `open_camera`, without it from the configured camera, which may ask by `messages`.
+
     `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
     That, `control_tick`, `publish_tick` and `vision.tick` may each have a thread of their own.
     """
@@ -56,7 +60,10 @@ class Core:
         run: str,
         line: Conversation,
         outbox: Outbox,
+        *,
         picture_wanted: Callable[[], bool],
+        open_camera: Callable[[], Camera] | None = None,
+        messages: Messages | None = None,
     ) -> None:
         self.config = config
         self.clock = clock
@@ -72,7 +79,14 @@ class Core:
         self.supervisor = Supervisor(clock, self.line, self.tell)
         self.control = ControlNode(self.bus, clock, self._navigate)
         self.vision = Vision(
-            config.vision, clock, self._take_detection, outbox.send_picture, picture_wanted, self.tell
+            config.vision,
+            clock,
+            self._take_detection,
+            outbox.send_picture,
+            picture_wanted,
+            self.tell,
+            open_camera,
+            messages,
         )
         self._every: list[tuple[float, Callable[[], None]]] = [
             (_STATE_EVERY, self.announce),

@@ -29,7 +29,13 @@ class Robot(Core):
         )
         outbox = Outbox(messages.publish, messages.watched, self.cache)
         super().__init__(
-            config, clock, messages.run, self.connection, outbox, lambda: messages.watched("picture")
+            config,
+            clock,
+            messages.run,
+            self.connection,
+            outbox,
+            picture_wanted=lambda: messages.watched("picture"),
+            messages=messages,
         )
 
     def answer(self) -> None:

@@ -58,7 +58,7 @@ class Bridge:
         self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
         self._rounds = False
         self._quiet = 0
-        self._pictures: Subscription | None = None
+        self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
@@ -79,13 +79,12 @@ class Bridge:
             raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
         self._messages.subscribe(STREAM, self._receive)
 
-    def watch_pictures(self, wanted: bool) -> None:
-        """Subscribe to pictures or no longer; the runtime makes them only while somebody does."""
-        if wanted and self._pictures is None:
-            self._pictures = self._messages.subscribe("picture", self._receive)
-        elif not wanted and self._pictures is not None:
-            self._pictures.close()
-            self._pictures = None
+    def watch_pictures(self, wanted: frozenset[str]) -> None:
+        """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
+        for name in self._pictures.keys() - wanted:
+            self._pictures.pop(name).close()
+        for name in wanted - self._pictures.keys():
+            self._pictures[name] = self._messages.subscribe(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
@@ -104,6 +103,15 @@ class Bridge:
     async def query(self, name: str) -> Mapping[str, Any]:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
         return await self._ask(f"query/{name}", {}, stop=False)
+
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> None:
+        """Change the simulated scene. Raises Refused with its reason, or RuntimeSilent."""
+        try:
+            await self._ask(f"scene/{name}", payload, stop=False)
+        except RuntimeSilent as problem:
+            raise RuntimeSilent(
+                "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
+            ) from problem
 
     async def close(self) -> None:
         """Leave the conversation."""

@@ -183,13 +183,16 @@ def plan(settings: Settings) -> list[Command]:
     board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
-    for socket in (folder.runtime_socket, folder.server_socket):
-        simulator += ["--connect", f"unixsock-stream/{socket}"]
-    simulator += ["--robot", settings.robot, "--with-parent"]
+    scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
+    for part in (simulator, scene):
+        for socket in (folder.runtime_socket, folder.server_socket):
+            part += ["--connect", f"unixsock-stream/{socket}"]
+        part += ["--robot", settings.robot, "--with-parent"]
     return [
         Command("board", "emulated board", tuple(board)),
         Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,)),
         Command("simulator", "simulator", tuple(simulator), (folder.board_socket, folder.runtime_socket)),
+        Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,)),
     ]
 
 
