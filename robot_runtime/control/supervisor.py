@@ -122,7 +122,7 @@ class Supervisor:
         with self._changed:
             arming = self.begin_arming()
             while not arming.over:
-                self._changed.wait_for(lambda: self._board_armed() or arming.over, ARM_WAIT)
+                self._changed.wait_for(lambda: self.board_armed or arming.over, ARM_WAIT)
                 self.go_on_arming()
             if arming.refusal:
                 raise Refused(arming.refusal)
@@ -148,7 +148,7 @@ class Supervisor:
             arming = self._arming
             if arming is None:
                 return
-            if self._board_armed():
+            if self.board_armed:
                 self.armed_since = self._clock.now()
                 self._end_arming("")
                 self._event("armed", "info", "Armed.")
@@ -173,7 +173,7 @@ class Supervisor:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
             elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
                 self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
-            elif not self.armed and self._arming is None and self._board_armed():
+            elif not self.armed and self._arming is None and self.board_armed:
                 self._line.send(Stop())
 
     def _ask_to_arm(self, arming: Arming) -> None:
@@ -189,7 +189,9 @@ class Supervisor:
             self._arming = None
         self._changed.notify_all()
 
-    def _board_armed(self) -> bool:
+    @property
+    def board_armed(self) -> bool:
+        """Whether the board says that it is armed."""
         return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)
 
     def _disarmed(self, severity: Severity, text: str) -> None:
