@@ -9,7 +9,6 @@ into a file: `u32 size | u8 kind | bytes`, little-endian. Kind 0 is a JSON objec
 import argparse
 import json
 import logging
-import os
 import signal
 import sys
 from contextlib import ExitStack
@@ -21,16 +20,12 @@ from typing import IO, Any
 
 import cv2
 
-from robot_runtime.config import LinkConfig
-from robot_runtime.firmware import firmware_path
 from robot_runtime.link.port import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
+from robot_runtime.scenario.boards import boards
 from robot_runtime.scenario.document import ScenarioError, read_scenario
 from robot_runtime.scenario.run import Run
-from robot_runtime.scenario.stage import MakeBoard
 from robot_runtime.simulation.board import BoardError
-from robot_runtime.simulation.emulated_board import EmulatedBoard
-from robot_runtime.simulation.host_board import HostBoard
 
 HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
@@ -54,19 +49,9 @@ class Messages:
         self._stream.flush()
 
 
-def boards(build: Path) -> dict[str, MakeBoard]:
-    """How each kind of board is made from what was built in this folder."""
-    elf = firmware_path(build, LinkConfig().baud, ".elf")
-    return {
-        "host": partial(HostBoard, build / "libhost_board.so"),
-        "emulated": partial(EmulatedBoard, build / "board", elf),
-    }
-
-
 def main() -> int:
     """Exit status: 2 where the scenario is refused, 1 where its board fails."""
-    build = Path(os.environ.get("MUCAT_BUILD", Path(__file__).parents[2] / "build"))
-    made = boards(build)
+    made = boards()
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.scenario", description=__doc__)
     parser.add_argument("--board", choices=sorted(made), default="host", help="what runs the firmware")
     parser.add_argument("--out", type=Path, metavar="FILE", help="write there instead of standard output")
