@@ -13,6 +13,7 @@ PARTS = (
     "firmware",
     "emulator",
     "physics",
+    "scenario",
     "codec",
     "link",
     "corruption",

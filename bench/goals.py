@@ -41,4 +41,6 @@ GOALS = {
     "link.undetected_corruptions": _most(0),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),
+    "scenario.speed_x": _least(15),
+    "scenario.speed_board_x": _least(6),
 }

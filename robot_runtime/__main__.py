@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.commands import Commands
 from robot_runtime.config import ConfigError, load
 from robot_runtime.heartbeat import Heartbeat
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
@@ -27,7 +26,7 @@ def main() -> int:
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
             robot = Robot(config, options.port or config.link.port, messages)
-            Commands(robot, messages)
+            robot.answer()
             if options.heartbeat is not None:
                 Heartbeat(robot.supervisor, messages, robot.clock, options.heartbeat).start()
             if options.server_lock is not None:

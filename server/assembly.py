@@ -22,6 +22,9 @@ from server.parts import SIMULATOR_ELSEWHERE, Command, Parts
 from server.pidfile import running_parts
 from server.recorder import Recorder, RecordingRefused
 from server.resume import Left, find_missing
+from server.scenarios.live import Live
+from server.scenarios.runs import Runs as ScenarioRuns
+from server.scenarios.simulated import Simulated
 from server.settings import Settings
 from server.store import Store, StoreError
 
@@ -47,6 +50,19 @@ class Assembly:
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
+        live = Live(
+            settings,
+            self.store,
+            self.recorder,
+            self.bridge,
+            self.watch,
+            self.parts,
+            self.clock,
+            self.notices.tell,
+        )
+        self.scenarios = ScenarioRuns(live, Simulated(settings, self.store, self.notices), self.hub.tell)
+        self.bridge.on_stop = self.scenarios.see_stop
+
     @staticmethod
     def of(connection: HTTPConnection) -> "Assembly":
         """The assembly that serves this request."""
@@ -69,6 +85,7 @@ class Assembly:
             self._tell_session()
             if self.settings.hil.simulator == "elsewhere":
                 await self.parts.pause("simulator", SIMULATOR_ELSEWHERE)
+            self.scenarios.announce()
             tasks += [
                 asyncio.create_task(work)
                 for work in (
@@ -83,6 +100,7 @@ class Assembly:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self.scenarios.close()
             await self.lab.close()
             await self.parts.stop()
             await self._end_session()
@@ -107,7 +125,9 @@ class Assembly:
             self.watch.see(block)
 
     def _board_occupied(self) -> str | None:
-        session = self.recorder.session
+        run, session = self.scenarios.active, self.recorder.session
+        if run is not None and run.place == "live":
+            return f"The scenario “{run.scenario.title}” is being run. Cancel it first."
         return None if session is None else f"“{session.name}” is being recorded. Stop the recording first."
 
     def _tell_session(self) -> None:

@@ -73,6 +73,8 @@ class Bridge:
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
+        self.on_stop: Callable[[], None] | None = None
+        """Called when somebody says STOP."""
         self.lent: str | None = None
         """Why nobody commands the robot now, on purpose; None where it is as always."""
         self.stopped = False
@@ -88,7 +90,7 @@ class Bridge:
         self._emptying = False
         self._rounds = False
         self._quiet = 0
-        self._pictures: Subscription | None = None
+        self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
@@ -124,21 +126,39 @@ class Bridge:
         """Let the runtime know that the server lives."""
         self._messages.publish(HEARTBEAT, b"")
 
-    def watch_pictures(self, wanted: bool) -> None:
-        """Subscribe to pictures or no longer; the runtime makes them only while somebody does."""
-        if wanted and self._pictures is None:
-            self._pictures = self._messages.subscribe_runs("picture", self._receive)
-        elif not wanted and self._pictures is not None:
-            self._pictures.close()
-            self._pictures = None
+    def watch_pictures(self, wanted: frozenset[str]) -> None:
+        """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
+        for name in self._pictures.keys() - wanted:
+            self._pictures.pop(name).close()
+        for name in wanted - self._pictures.keys():
+            self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
+        if name == "stop" and self.on_stop is not None:
+            self.on_stop()
         await self._ask(f"command/{name}", payload, stop=name == "stop")
+
+    async def disarm(self) -> None:
+        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilent."""
+        await self._ask("command/stop", {}, stop=True)
+
+    async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the simulator answers. Raises Refused with its reason, or RuntimeSilent."""
+        return await self._ask(f"simulator/{name}", payload, stop=False)
 
     async def query(self, name: str) -> Mapping[str, Any]:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
         return await self._ask(f"query/{name}", {}, stop=False)
+
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> None:
+        """Change the simulated scene. Raises Refused with its reason, or RuntimeSilent."""
+        try:
+            await self._ask(f"scene/{name}", payload, stop=False)
+        except RuntimeSilent as problem:
+            raise RuntimeSilent(
+                "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
+            ) from problem
 
     async def close(self) -> None:
         """Leave the conversation."""
@@ -166,7 +186,7 @@ class Bridge:
             if stop and self.stopped:
                 return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
-            raise RuntimeSilent(_silence(waited), waited) from problem
+            raise RuntimeSilent(_silence(name, waited), waited) from problem
         finally:
             self._asking -= not stop
 
@@ -244,7 +264,9 @@ class Bridge:
             self._deliver(blocks)
 
 
-def _silence(waited: bool) -> str:
+def _silence(name: str, waited: bool) -> str:
+    if name.startswith("simulator/"):
+        return "The simulator does not answer. The System page tells more."
     if waited:
         return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. The System page tells more."
     return "The robot's runtime is not running. The server starts it again; try again in a few seconds."

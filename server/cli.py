@@ -32,6 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
             return _commtest(options, settings)
+        if options.command == "scenario":
+            return _scenario(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -53,7 +55,30 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     test = commands.add_parser("commtest", help="test the serial line, on the emulated board")
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
     simulator_command.add_arguments(commands)
+    scenario = commands.add_parser("scenario", help="run experiments that are written down")
+    _add_scenario(scenario.add_subparsers(dest="action", required=True), kept)
     return parser.parse_args(arguments)
+
+
+def _add_scenario(actions: "Actions", kept: argparse.ArgumentParser) -> None:
+    actions.add_parser("list", parents=[kept], help="list the scenarios that there are")
+    check = actions.add_parser("check", parents=[kept], help="say what is wrong with a scenario")
+    check.add_argument("file", help="a TOML file, or the name of a scenario that there is")
+    run = actions.add_parser("run", parents=[kept], help="run a scenario, and record it as a session")
+    run.add_argument("file", help="a TOML file, or the name of a scenario that there is")
+    run.add_argument(
+        "--place",
+        choices=("simulated", "live"),
+        default="simulated",
+        help="in simulated time (default), or on the robot of the server that runs, in real time",
+    )
+    run.add_argument(
+        "--board",
+        choices=("host", "emulated"),
+        default="host",
+        help="in simulated time: the firmware built for this computer (default), or on the emulated board",
+    )
+    run.add_argument("--port", type=int, help="of the server that runs; default 8000, or as in robot.toml")
 
 
 def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
@@ -107,6 +132,12 @@ def _lock(handle: IO[str]) -> bool:
 
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:
     from server.comm_tests.command import perform
+
+    return perform(options, settings, _claim)
+
+
+def _scenario(options: argparse.Namespace, settings: Settings) -> int:
+    from server.scenarios.command import perform
 
     return perform(options, settings, _claim)
 

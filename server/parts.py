@@ -263,8 +263,13 @@ def plan(settings: Settings) -> list[Command]:
     simulator += ["--robot", settings.robot, *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
     water = Command("simulator", "simulator", tuple(simulator), needs)
+    scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
+    for socket in (folder.runtime_socket, folder.server_socket):
+        scene += ["--connect", f"unixsock-stream/{socket}"]
+    scene += ["--robot", settings.robot, *lock]
+    view = Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
     if not settings.emulated_board:
-        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water]
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water, view]
     runtime += ["--port", str(folder.board_tty), *lock]
     program = build / "board"
     elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
@@ -277,6 +282,7 @@ def plan(settings: Settings) -> list[Command]:
         Command("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
         Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
         water,
+        view,
     ]
 
 

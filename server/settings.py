@@ -79,6 +79,11 @@ class DataFolder:
         return self.path / "firmware-away"
 
     @property
+    def scenarios(self) -> Path:
+        """One's own scenarios."""
+        return self.path / "scenarios"
+
+    @property
     def board_eeprom(self) -> Path:
         """What the emulated board remembers without power."""
         return self.path / "board.eeprom"

@@ -12,6 +12,12 @@ export type CommTestPlace = Schemas['Start']['place'];
 export type CommTestSummary = Schemas['RunSummary'];
 export type CommTestRun = Schemas['Run'];
 export type Cell = Schemas['Cell'];
+export type ScenarioText = Schemas['ScenarioText'];
+export type ScenarioSummary = Schemas['ScenarioSummary'];
+export type ScenarioEvent = Schemas['ScenarioEvent'];
+export type ScenarioCheck = Schemas['ScenarioCheck'];
+export type ScenarioState = Schemas['ScenarioState'];
+export type ScenarioStart = Schemas['ScenarioStart'];
 export type ThesisTable = Schemas['ThesisTable'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -75,5 +81,10 @@ export const api = {
   commTestRuns: () => request<CommTestSummary[]>('GET', '/comm-tests/runs'),
   commTestRun: (id: CommTestRun['id']) => request<CommTestRun>('GET', `/comm-tests/runs/${id}`),
   commTestFile: (id: CommTestRun['id'], format: 'csv' | 'json') => `/api/comm-tests/runs/${id}/${format}`,
+  scenarios: () => request<ScenarioText[]>('GET', '/scenarios'),
+  keepScenario: (text: string) => request<ScenarioSummary>('POST', '/scenarios', { text }),
+  checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),
+  startScenario: (start: ScenarioStart) => request<Schemas['ScenarioStarted']>('POST', '/scenarios/runs', start),
+  cancelScenario: () => command('POST', '/scenarios/cancel'),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

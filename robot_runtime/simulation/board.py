@@ -101,45 +101,46 @@ class Board:
 
     def fault(self, device: str, kind: FaultKind) -> None:
         """Break a device (imu, pressure, encoder0-3, bridge0-3), or mend it. Raises BoardError."""
-        self._order(f"fault {device} {kind}")
+        self.order(f"fault {device} {kind}")
 
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
         """Let this happen to each bit (bit_errors) or character with this probability. Raises BoardError."""
-        self._order(f"line {direction} {kind} {rate!r}")
+        self.order(f"line {direction} {kind} {rate!r}")
 
     def burst_line(self, direction: LineDirection, rate: float, bits: float) -> None:
         """Let bursts begin at each bit with this probability; half of the bits in one are wrong."""
-        self._order(f"line {direction} burst {rate!r} {bits!r}")
+        self.order(f"line {direction} burst {rate!r} {bits!r}")
 
     def stall_line(self, direction: LineDirection, seconds: float) -> None:
         """Hold back what is sent for this much emulated time; nothing gets lost."""
-        self._order(f"line {direction} stall {seconds!r}")
+        self.order(f"line {direction} stall {seconds!r}")
 
     def cut_line(self, direction: LineDirection, cut: bool) -> None:
         """Cut the wire, or mend it."""
-        self._order(f"line {direction} cut {'on' if cut else 'off'}")
+        self.order(f"line {direction} cut {'on' if cut else 'off'}")
 
     def clean_line(self, direction: LineDirection) -> None:
         """End everything that disturbs it."""
-        self._order(f"line {direction} clean")
+        self.order(f"line {direction} clean")
 
     def seed_line(self, seed: int) -> None:
         """Let all that befalls the line from now on follow from this number."""
-        self._order(f"seed {seed}")
+        self.order(f"seed {seed}")
 
     def reset(self) -> None:
         """Pull the reset pin."""
-        self._order("reset")
+        self.order("reset")
 
     def power(self) -> None:
         """Take the power away and give it back: it begins anew, but for flash memory and EEPROM."""
-        self._order("power")
+        self.order("power")
 
     def load(self, elf: Path) -> None:
         """Upload another program and reset. Raises BoardError where it is none."""
-        self._order(f"load {elf}")
+        self.order(f"load {elf}")
 
-    def _order(self, command: str) -> None:
+    def order(self, command: str) -> None:
+        """Any command that is answered with a plain `ok`. Raises BoardError where it is refused."""
         self._send(command)
         self._answer("ok")
 

@@ -22,7 +22,7 @@ from robot_runtime.simulation.geometry import (
 )
 from robot_runtime.simulation.parameters import Parameters, Vector
 from robot_runtime.simulation.state import State, at_rest
-from robot_runtime.simulation.surroundings import Trim
+from robot_runtime.simulation.surroundings import FLOATING, Start, Trim
 from robot_runtime.simulation.world import World
 
 
@@ -40,10 +40,11 @@ class Body:
         self.trim = Trim(parameters.buoyancy, 0.0, 0.0, parameters.buoyancy_height)
         self.start()
 
-    def start(self) -> None:
-        """Float at rest, looking north, at time 0."""
+    def start(self, start: Start = FLOATING) -> None:
+        """Be there at rest at time 0."""
+        depth = self.world.floating_depth(self.trim.buoyancy) if start.down is None else start.down
         self.time = 0.0
-        self.state = at_rest(self.world.floating_depth(self.trim.buoyancy))
+        self.state = at_rest(depth, start.north, start.east, start.heading)
 
     def step(self, duration: float, angles: Four, speeds: Four) -> None:
         """Let `duration` (s) pass: one step of the midpoint rule (Runge-Kutta of second order).

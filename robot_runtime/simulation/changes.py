@@ -1,24 +1,29 @@
 """What may be asked of the running water, by name. Words are checked here, numbers where they go."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any, cast
 
 from robot_runtime.errors import Refused
 from robot_runtime.simulation.faults import Fault, Kind
 from robot_runtime.simulation.parameters import Vector
 from robot_runtime.simulation.simulator import Simulator
-from robot_runtime.simulation.surroundings import Basin, Current, Trim, Waves
+from robot_runtime.simulation.surroundings import Basin, Current, Start, Trim, Waves
 
 Question = Mapping[str, Any]
-Change = Callable[[Question], None]
+Change = Callable[[Question], Question | None]
 
 
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """What each question does. They raise Refused or ValueError, in words, and change nothing then."""
+    """What each question does. They raise Refused or ValueError, in words, and change nothing then.
+
+    `surroundings` changes nothing and is answered with the questions that would make everything as it is.
+    """
 
     def reset(question: Question) -> None:
-        _expect(question)
-        simulator.reset()
+        _expect(question, (), ("north", "east", "down", "heading", "seed"))
+        numbers = {name: value for name, value in question.items() if name != "seed"}
+        simulator.reset(Start(**_numbers(numbers)), _whole(question, "seed"))
 
     def current(question: Question) -> None:
         _expect(question, ("north", "east", "down"), ("turning",))
@@ -46,7 +51,19 @@ def changes(simulator: Simulator) -> dict[str, Change]:
         numbers = _numbers({name: question[name] for name in question.keys() - {"sensor", "kind"}})
         simulator.set_fault(sensor, Fault(kind=cast(Kind, kind), **numbers))
 
-    made = (reset, current, waves, trim, world, beacons, fault)
+    def surroundings(question: Question) -> Question:
+        _expect(question)
+        basin, current, waves, trim, positions, faults = simulator.surroundings()
+        return {
+            "world": _given(basin),
+            "current": _given(current),
+            "waves": _given(waves),
+            "trim": _given(trim),
+            "beacons": {"positions": positions},
+            "faults": [{"sensor": sensor, **_given(fault)} for sensor, fault in faults.items()],
+        }
+
+    made = (reset, current, waves, trim, world, beacons, fault, surroundings)
     return {change.__name__: change for change in made}
 
 
@@ -70,6 +87,17 @@ def _number(name: str, value: object) -> float:
         return float(value)
     except OverflowError:
         raise Refused(f"{name} is a number of {len(str(value))} digits; take a smaller one") from None
+
+
+def _whole(question: Question, name: str) -> int | None:
+    value = question.get(name)
+    if value is not None and type(value) is not int:
+        raise Refused(f"{name} must be a whole number, not {value!r}")
+    return value
+
+
+def _given(setting: Basin | Current | Waves | Trim | Fault) -> dict[str, Any]:
+    return {name: value for name, value in asdict(setting).items() if value is not None}
 
 
 def _text(question: Question, name: str) -> str:

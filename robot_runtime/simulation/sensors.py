@@ -38,36 +38,37 @@ class Sensors:
     def __init__(self, parameters: Parameters, world: World, seed: int) -> None:
         self._parameters = parameters
         self._world = world
-        self._seed = seed
-        self._faults = dict.fromkeys(SENSORS, SOUND)
-        self._beacons = parameters.beacons
+        self.seed = seed
+        """Of all their noise, from the next start on."""
+        self.faults = dict.fromkeys(SENSORS, SOUND)
+        self.beacons = parameters.beacons
         self.start()
 
     def start(self) -> None:
         """Begin anew at time 0, with the same readings for the same motion; beacons and faults stay."""
         self._sensors = {
-            name: Sensor(name, quality, axes, self._seed)
+            name: Sensor(name, quality, axes, self.seed)
             for name, (quality, axes) in _qualities(self._parameters).items()
         }
-        for name, fault in self._faults.items():
+        for name, fault in self.faults.items():
             self._sensors[name].break_(fault, 0.0)
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
     def break_(self, sensor: str, fault: Fault, time: float) -> None:
         """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
         check_sensor(sensor, fault)
-        self._faults[sensor] = fault
+        self.faults[sensor] = fault
         self._sensors[sensor].break_(fault, time)
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
         """Have light beacons here (m) and nowhere else. Raises ValueError; see `check_beacons`."""
         check_beacons(positions)
-        self._beacons = positions
+        self.beacons = positions
 
     @property
     def broken_devices(self) -> frozenset[str]:
         """The emulated board's devices that must not answer."""
-        return frozenset(DEVICES[name] for name, fault in self._faults.items() if fault.kind == "bus")
+        return frozenset(DEVICES[name] for name, fault in self.faults.items() if fault.kind == "bus")
 
     def read(self, time: float, state: State, acceleration: Vector, battery: float) -> Reading:
         """What they show at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
@@ -104,7 +105,7 @@ class Sensors:
         parameters = self._parameters
         best = (-1.0, -1.0)
         edge = cos(parameters.beacon_view)
-        for beacon in self._beacons:
+        for beacon in self.beacons:
             north, east, down = (a - b for a, b in zip(beacon, state.position, strict=True))
             distance = hypot(north, east, down)
             near = 1 - distance / parameters.beacon_range

@@ -11,7 +11,7 @@ from robot_runtime.simulation.fins import Fins, Four
 from robot_runtime.simulation.geometry import rotation, to_world
 from robot_runtime.simulation.parameters import Parameters, Vector
 from robot_runtime.simulation.sensors import Reading, Sensors
-from robot_runtime.simulation.surroundings import Basin, Current, Trim, Waves
+from robot_runtime.simulation.surroundings import FLOATING, Basin, Current, Start, Trim, Waves, check_start
 from robot_runtime.simulation.world import World
 
 STEP_MAX = 0.005
@@ -31,6 +31,18 @@ class FinMotion(NamedTuple):
     """H-bridge commands, -63 to 63."""
     powered: bool
     """Whether the motors have power."""
+
+
+class Surroundings(NamedTuple):
+    """All that can be set about water, hull and sensors."""
+
+    basin: Basin
+    current: Current
+    waves: Waves
+    trim: Trim
+    beacons: tuple[Vector, ...]
+    faults: dict[str, Fault]
+    """By sensor."""
 
 
 class Simulator:
@@ -68,13 +80,17 @@ class Simulator:
             )
             return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
-    def reset(self) -> None:
-        """Back to the start: time 0, at rest at the surface, looking north, with a full battery.
+    def reset(self, start: Start = FLOATING, seed: int | None = None) -> None:
+        """Back to the start: time 0, at rest, by default floating and looking north, with a full battery.
 
-        The sensors' noise begins anew, too. Water, trim, beacons and faults stay as they are.
+        The sensors' noise begins anew, too, by another `seed` where one is given. Water, trim, beacons and
+        faults stay as they are. Raises ValueError where floor or walls are in the way.
         """
         with self._lock:
-            self._start()
+            check_start(start, self._world.basin, self._parameters.size)
+            if seed is not None:
+                self._sensors.seed = seed
+            self._start(start)
 
     def set_current(self, current: Current) -> None:
         """Let the water flow so from now on."""
@@ -110,6 +126,19 @@ class Simulator:
         with self._lock:
             self._sensors.break_(sensor, fault, self._body.time)
 
+    def surroundings(self) -> Surroundings:
+        """Everything that can be set, as it is now."""
+        with self._lock:
+            world, sensors = self._world, self._sensors
+            return Surroundings(
+                world.basin,
+                world.current,
+                world.waves,
+                self._body.trim,
+                sensors.beacons,
+                dict(sensors.faults),
+            )
+
     @property
     def broken_devices(self) -> frozenset[str]:
         """The emulated board's devices that must not answer: imu, pressure, encoder0 to encoder3."""
@@ -124,8 +153,8 @@ class Simulator:
                 position=position, attitude=attitude, velocity=velocity, rate=rate, fins=self._angles
             )
 
-    def _start(self) -> None:
-        self._body.start()
+    def _start(self, start: Start = FLOATING) -> None:
+        self._body.start(start)
         self._world.set_current(self._world.current)
         self._sensors.start()
         self._battery = self._parameters.battery_full

@@ -1,5 +1,6 @@
 """Where the hull is and how it moves."""
 
+from math import cos, sin
 from typing import NamedTuple
 
 from robot_runtime.simulation.geometry import Quaternion
@@ -19,6 +20,7 @@ class State(NamedTuple):
     """rad/s, in body axes."""
 
 
-def at_rest(depth: float) -> State:
-    """Upright, looking north, at rest, at this depth (m)."""
-    return State((0.0, 0.0, depth), (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+def at_rest(depth: float, north: float = 0.0, east: float = 0.0, heading: float = 0.0) -> State:
+    """Upright and at rest at this place (m), looking this far (rad) from north to east."""
+    attitude = (cos(heading / 2), 0.0, 0.0, sin(heading / 2))
+    return State((north, east, depth), attitude, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

@@ -83,6 +83,26 @@ class Trim:
 
 
 @dataclass(frozen=True, slots=True)
+class Start:
+    """Where the hull is at time 0, at rest. Raises ValueError beyond its limits."""
+
+    north: float = 0.0
+    east: float = 0.0
+    """m, at most 1000 each."""
+    down: float | None = None
+    """m, of the centre of mass; None: it floats."""
+    heading: float = 0.0
+    """rad from north to east."""
+
+    def __post_init__(self) -> None:
+        _limit("the start's north", self.north, -FAR, FAR, "m")
+        _limit("the start's east", self.east, -FAR, FAR, "m")
+        if self.down is not None:
+            _limit("the start's down", self.down, 0.0, DEPTH_MAX, "m")
+        _limit("the start's heading", self.heading, -DIRECTION_MAX, DIRECTION_MAX, "rad")
+
+
+@dataclass(frozen=True, slots=True)
 class Basin:
     """What holds the water: a floor, and four walls or none. Raises ValueError beyond its limits."""
 
@@ -102,6 +122,16 @@ class Basin:
             _limit("a pool's width", self.width, SIDE_MIN, SIDE_MAX, "m")
 
 
+def check_start(start: Start, basin: Basin, size: Vector) -> None:
+    """Raises ValueError where a hull of this size (m) would be in the floor or in a wall."""
+    reach = max(size) / 2
+    if start.down is not None and start.down + size[2] / 2 > basin.depth:
+        raise ValueError(f"a start at {start.down:g} m is in the floor, which is at {basin.depth:g} m")
+    for name, place, side in (("north", start.north, basin.length), ("east", start.east, basin.width)):
+        if side is not None and abs(place) + reach > side / 2:
+            raise ValueError(f"a start {place:g} m {name} is in a wall, which is at {side / 2:g} m")
+
+
 def check_beacons(positions: tuple[Vector, ...]) -> None:
     """Raises ValueError on more than eight beacons, or one farther than 1000 m north, east or down."""
     if len(positions) > BEACONS_MAX:
@@ -114,3 +144,6 @@ def check_beacons(positions: tuple[Vector, ...]) -> None:
 def _limit(name: str, value: float, least: float, most: float, unit: str) -> None:
     if not least <= value <= most:
         raise ValueError(f"{name} is {value:g} {unit}; it must be between {least:g} and {most:g}")
+
+
+FLOATING = Start()

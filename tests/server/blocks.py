@@ -28,8 +28,8 @@ def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
     return Block.of(BY_NAME["debug"], len(lines), first, documents(lines))
 
 
-def picture_block(number: int, size: int = 20) -> Block:
-    return Block.of(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
+def picture_block(number: int, size: int = 20, topic: str = "picture") -> Block:
+    return Block.of(BY_NAME[topic], 1, number, row(100.0, bytes([number % 256]) * size))
 
 
 def link_block(first: int, bytes_received: int) -> Block:

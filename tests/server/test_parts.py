@@ -346,7 +346,7 @@ def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
 def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(settings: Settings) -> None:
     assert [command.name for command in plan(replace(settings, mode="robot"))] == ["runtime"]
     commands = {command.name: command for command in plan(settings)}
-    assert list(commands) == ["board", "runtime", "simulator"]
+    assert list(commands) == ["board", "runtime", "simulator", "scene"]
     lock = ("--server-lock", str(settings.data.lock))
     assert all(command.arguments[-2:] == lock for command in commands.values())
     assert str(settings.build / "firmware/optiboot.hex") in commands["board"].arguments

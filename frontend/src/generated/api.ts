@@ -348,6 +348,130 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/scenarios": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The scenarios that there are
+         * @description Those that come with the program, the thesis's own first, then those in the data folder.
+         */
+        get: operations["listScenarios"];
+        put?: never;
+        /**
+         * Keep a scenario
+         * @description Write it into the data folder under its own name, over one of that name.
+         */
+        post: operations["keepScenario"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scenarios/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel what runs
+         * @description What was recorded is kept; what waits is forgotten. Its end is told on the live socket.
+         */
+        post: operations["cancelScenario"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scenarios/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * What is wrong with a scenario
+         * @description Its problems, field by field; or what it says.
+         */
+        post: operations["checkScenario"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scenarios/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Run a scenario
+         * @description Live: at once, or refused with the reasons. In simulated time: at once, or in its turn.
+         */
+        post: operations["startScenario"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scenarios/state": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What runs
+         * @description What runs, what waits, and what ended last, as on the live socket.
+         */
+        get: operations["getScenarioState"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scene/view": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Choose the bystander's view
+         * @description Where the pictures of topic `observer` are taken from.
+         */
+        put: operations["putView"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions": {
         parameters: {
             query?: never;
@@ -456,6 +580,42 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * ActiveRun
+         * @description The run that is on; times in s of the scenario.
+         */
+        ActiveRun: {
+            /**
+             * Board
+             * @enum {string}
+             */
+            board: "host" | "emulated";
+            /** Duration */
+            duration: number;
+            /** Elapsed */
+            elapsed: number;
+            /** Events */
+            events: components["schemas"]["ScenarioEvent"][];
+            /** Name */
+            name: string;
+            next: components["schemas"]["NextEvent"] | null;
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "waiting" | "preparing" | "running" | "ending";
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "live" | "simulated";
+            /** Run */
+            run: number;
+            /** Session */
+            session: number | null;
+            /** Title */
+            title: string;
+        };
         /**
          * Card
          * @description The card before the simulated camera; null takes it away.
@@ -593,6 +753,37 @@ export interface components {
             text: string;
         };
         /**
+         * EndedRun
+         * @description The run that ended last; `session` is null where it came to no recording.
+         */
+        EndedRun: {
+            /**
+             * Before
+             * @description the newest older session of the same scenario
+             */
+            before: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "live" | "simulated";
+            /** Problem */
+            problem: string;
+            /** Run */
+            run: number;
+            /** Session */
+            session: number | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "complete" | "cancelled" | "failed";
+            /** Title */
+            title: string;
+        };
+        /**
          * Gain
          * @description One number of a controller that may be tuned.
          */
@@ -622,7 +813,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator
+             * @description server, database, runtime, link, board, simulator, scene
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */
@@ -733,6 +924,19 @@ export interface components {
             note: string;
         };
         /**
+         * NextEvent
+         * @description What happens next.
+         */
+        NextEvent: {
+            /**
+             * At
+             * @description s
+             */
+            at: number;
+            /** Words */
+            words: string;
+        };
+        /**
          * Pace
          * @description How often the board sends a topic on this line: s between two samples.
          */
@@ -756,7 +960,7 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene";
             /**
              * State
              * @enum {string}
@@ -780,6 +984,18 @@ export interface components {
         Problem: {
             /** Detail */
             detail: string;
+        };
+        /**
+         * QueuedRun
+         * @description A run that waits for its turn.
+         */
+        QueuedRun: {
+            /** Name */
+            name: string;
+            /** Run */
+            run: number;
+            /** Title */
+            title: string;
         };
         /**
          * Run
@@ -909,6 +1125,130 @@ export interface components {
              * @enum {string}
              */
             state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
+        };
+        /**
+         * ScenarioCheck
+         * @description What is wrong with a scenario, field by field; else what it says.
+         */
+        ScenarioCheck: {
+            /** Problems */
+            problems: string[];
+            summary: components["schemas"]["ScenarioSummary"] | null;
+        };
+        /**
+         * ScenarioDocument
+         * @description The text of a scenario.
+         */
+        ScenarioDocument: {
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+        };
+        /**
+         * ScenarioEvent
+         * @description Something that happens in a scenario.
+         */
+        ScenarioEvent: {
+            /**
+             * At
+             * @description s
+             */
+            at: number;
+            /** Do */
+            do: string;
+            /** Words */
+            words: string;
+        };
+        /**
+         * ScenarioStart
+         * @description A scenario that is to be run: on the running robot in real time, or in simulated time.
+         *
+         *     `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
+         */
+        ScenarioStart: {
+            /**
+             * Board
+             * @default host
+             * @enum {string}
+             */
+            board: "host" | "emulated";
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "live" | "simulated";
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+        };
+        /**
+         * ScenarioStarted
+         * @description The number of a run, from 1 since the server started.
+         */
+        ScenarioStarted: {
+            /** Run */
+            run: number;
+        };
+        /**
+         * ScenarioState
+         * @description What runs, what waits, and what ended last.
+         */
+        ScenarioState: {
+            active: components["schemas"]["ActiveRun"] | null;
+            last: components["schemas"]["EndedRun"] | null;
+            /** Queued */
+            queued: components["schemas"]["QueuedRun"][];
+        };
+        /**
+         * ScenarioSummary
+         * @description What a scenario says, in short.
+         */
+        ScenarioSummary: {
+            /** Controller */
+            controller: string;
+            /** Description */
+            description: string;
+            /**
+             * Duration
+             * @description s
+             */
+            duration: number;
+            /** Events */
+            events: components["schemas"]["ScenarioEvent"][];
+            /** Name */
+            name: string;
+            /**
+             * Scene
+             * @enum {string}
+             */
+            scene: "pool" | "natural";
+            /** Seed */
+            seed: number;
+            /** Title */
+            title: string;
+        };
+        /**
+         * ScenarioText
+         * @description A scenario; `shipped` ones come with the program, the others lie in the data folder.
+         */
+        ScenarioText: {
+            /** Name */
+            name: string;
+            /** Shipped */
+            shipped: boolean;
+            /** @description null where there is something wrong with it */
+            summary: components["schemas"]["ScenarioSummary"] | null;
+            /**
+             * Text
+             * @description TOML
+             */
+            text: string;
+            /** Title */
+            title: string;
         };
         /**
          * Session
@@ -1107,6 +1447,33 @@ export interface components {
             msg: string;
             /** Error Type */
             type: string;
+        };
+        /**
+         * View
+         * @description The bystander's view; all pages share it.
+         */
+        View: {
+            /**
+             * Azimuth
+             * @description ° of the line of sight, from heading or north
+             */
+            azimuth: number;
+            /**
+             * Distance
+             * @description m
+             */
+            distance: number;
+            /**
+             * Elevation
+             * @description ° above the robot
+             */
+            elevation: number;
+            /**
+             * Name
+             * @description follow turns with the robot, the others do not
+             * @enum {string}
+             */
+            name: "follow" | "side" | "top";
         };
         /**
          * Vision
@@ -1811,6 +2178,239 @@ export interface operations {
                 };
             };
             /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listScenarios: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenarioText"][];
+                };
+            };
+        };
+    };
+    keepScenario: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScenarioDocument"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenarioSummary"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scenario cannot be run */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    cancelScenario: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    checkScenario: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScenarioDocument"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenarioCheck"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    startScenario: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScenarioStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenarioStarted"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scenario cannot be run */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getScenarioState: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScenarioState"];
+                };
+            };
+        };
+    };
+    putView: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["View"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The scene refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scene is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scene did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;

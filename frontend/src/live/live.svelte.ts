@@ -14,7 +14,7 @@ import { calendar, SteadyClock } from './clock';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
-import type { Part, Session } from '../api';
+import type { Part, ScenarioState, Session } from '../api';
 import { readMessage, type Hello } from './messages';
 import { PERIODS, type Timed } from './periods';
 import { LiveSocket } from './socket';
@@ -60,6 +60,8 @@ export class Live {
   readonly gaps = new Gaps();
   readonly stop: Stop;
   readonly commTest = new CommTestWatch();
+  /** null until the server has said whether a scenario runs */
+  scenario = $state.raw<ScenarioState | null>(null);
 
   /** counts frames in which something new is to be drawn, and the slower beat at which digits are read */
   #detected: number[] = [];
@@ -163,6 +165,7 @@ export class Live {
     if (message.op === 'hello') this.#greet(message);
     else if (message.op === 'health') this.parts = message.parts;
     else if (message.op === 'session') this.recording = message.recording;
+    else if (message.op === 'scenario') this.scenario = message;
     else if (message.op === 'comm_test') this.commTest.take(message.active, message.cell);
     else if (message.op === 'error') this.serverError = message.text;
     else if (message.op === 'pong') this.#socket.answered(message.id);

@@ -1,5 +1,5 @@
 /** The text messages of the live socket. */
-import type { Cell, Part, Session } from '../api';
+import type { Cell, Part, ScenarioState, Session } from '../api';
 
 export interface Hello {
   op: 'hello';
@@ -35,11 +35,12 @@ export type ServerMessage =
   | { op: 'health'; parts: Part[] }
   | { op: 'session'; recording: Session | null }
   | { op: 'comm_test'; active: CommTestActive | null; cell: (Cell & { run: number }) | null }
+  | ({ op: 'scenario' } & ScenarioState)
   | { op: 'error'; text: string }
   | { op: 'dropped'; topic: string; count: number }
   | { op: 'pong'; id: number };
 
-const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'comm_test', 'error', 'dropped', 'pong']);
+const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'comm_test', 'scenario', 'error', 'dropped', 'pong']);
 
 /** The message in `text`; null where this page does not know its operation. */
 export function readMessage(text: string): ServerMessage | null {

@@ -199,7 +199,7 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
 @pytest.mark.parametrize(
     ("name", "question", "words"),
     [
-        ("reset", {"depth": 1}, "takes nothing, not depth"),
+        ("reset", {"depth": 1}, "takes nothing and perhaps down, east, heading, north, seed, not depth"),
         ("waves", {"amplitude": 0.1, "period": 2}, "takes amplitude, direction, period, not"),
         ("waves", {"amplitude": "high", "period": 2, "direction": 0}, "amplitude must be a number"),
         ("waves", {"amplitude": True, "period": 2, "direction": 0}, "amplitude must be a number"),

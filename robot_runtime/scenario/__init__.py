@@ -1,0 +1,1 @@
+"""Experiments as documents: what the water, the robot and the operator do, second by second."""

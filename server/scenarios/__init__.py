@@ -1,0 +1,1 @@
+"""Scenarios: those there are, and running them, on the running robot or in simulated time."""

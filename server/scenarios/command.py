@@ -1,0 +1,175 @@
+"""`mucat scenario`: list, check and run scenarios from a shell.
+
+In simulated time a scenario is run here, where no server works on the data folder; else by that server, as
+are those that run live.
+"""
+
+import argparse
+import asyncio
+import json
+import signal
+import sys
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack, closing
+from pathlib import Path
+from time import sleep
+from typing import Any
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.errors import Refused
+from robot_runtime.scenario.document import Scenario, ScenarioError, read_scenario
+from server.notices import Notices
+from server.scenarios.library import list_scenarios
+from server.scenarios.runs import Runs
+from server.scenarios.shapes import EndedRun, ScenarioStart, ScenarioState, summarize
+from server.scenarios.simulated import Simulated
+from server.schema import prepare
+from server.settings import DataFolder, Settings, SetupError
+from server.store import Store, StoreError
+
+Claim = Callable[[DataFolder], AbstractContextManager[None]]
+ASK_SECONDS = 5.0
+LOOK_SECONDS = 0.25
+
+
+def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
+    """Do what the command line says. Exit status: 1 where a run did not come to its end.
+
+    Raises SetupError, with a line for a person, where it cannot be done.
+    """
+    if options.action == "list":
+        for one in list_scenarios(settings.data.scenarios):
+            _say(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
+        return 0
+    text, scenario = _read(options.file, settings.data.scenarios)
+    if options.action == "check":
+        _say(_describe(scenario))
+        return 0
+    wanted = ScenarioStart(text=text, place=options.place, board=options.board)
+    with ExitStack() as claimed:
+        if options.place == "simulated" and _enter(claimed, claim(settings.data)):
+            return _conclude(_run_here(wanted, settings))
+    return _conclude(_run_there(wanted, f"http://{settings.host}:{settings.port}/api/scenarios"))
+
+
+def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
+    """Whether the data folder could be had; where not, a server works on it, or will say what is wrong."""
+    try:
+        claimed.enter_context(claim)
+    except SetupError:
+        return False
+    return True
+
+
+def _read(file: str, own: Path) -> tuple[str, Scenario]:
+    there = {one.name: one.text for one in list_scenarios(own)}
+    try:
+        text = there[file] if file in there else Path(file).read_text(encoding="utf-8")
+        return text, read_scenario(text)
+    except (OSError, UnicodeDecodeError) as problem:
+        known = ", ".join(there)
+        raise SetupError(f"{file} cannot be read: {problem}. Scenarios that there are: {known}") from problem
+    except ScenarioError as problem:
+        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
+
+
+def _describe(scenario: Scenario) -> str:
+    summary = summarize(scenario)
+    events = [f"{event.at:8.1f} s  {event.words}" for event in summary.events]
+    return "\n".join([f"{summary.title}: {summary.duration:g} s, seed {summary.seed}", *events])
+
+
+def _run_here(wanted: ScenarioStart, settings: Settings) -> EndedRun:
+    prepare(settings.data)
+    try:
+        with closing(Store(settings.data.database)) as store:
+            return asyncio.run(_simulate(wanted, settings, store))
+    except StoreError as problem:
+        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
+
+
+async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
+    told = _Progress()
+    simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
+    runs = Runs(simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message)))
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
+    try:
+        runs.start(wanted.text, wanted.place, wanted.board)
+    except Refused as problem:
+        raise SetupError(str(problem)) from problem
+    await runs.wait()
+    last = runs.state().last
+    assert last is not None
+    return last
+
+
+def _run_there(wanted: ScenarioStart, address: str) -> EndedRun:
+    """Ask the server that runs; Ctrl-C cancels the run there."""
+    told = _Progress()
+    number = _ask(f"{address}/runs", wanted.model_dump())["run"]
+    try:
+        while True:
+            state = ScenarioState.model_validate(_ask(f"{address}/state"))
+            told.tell(state)
+            if state.last is not None and state.last.run >= number:
+                return state.last
+            sleep(LOOK_SECONDS)
+    except KeyboardInterrupt:
+        _ask(f"{address}/cancel", {})
+        raise SetupError("The run was cancelled; what was recorded is kept.") from None
+
+
+def _ask(address: str, body: dict[str, Any] | None = None) -> Any:
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(address, data, {"content-type": "application/json"})
+    try:
+        with urllib.request.urlopen(request, timeout=ASK_SECONDS) as answer:
+            text = answer.read()
+    except urllib.error.HTTPError as problem:
+        raise SetupError(_detail(problem.read())) from problem
+    except OSError as problem:
+        raise SetupError(
+            f"No server answers at {address}: {problem}. Start it with `mucat run`, or name its --port."
+        ) from problem
+    return json.loads(text) if text else None
+
+
+def _detail(body: bytes) -> str:
+    try:
+        return str(json.loads(body)["detail"])
+    except (ValueError, KeyError, TypeError):
+        return "The server refused, and gave no reason."
+
+
+def _conclude(last: EndedRun) -> int:
+    words = f"{last.title}: {last.state}. {last.problem}".strip()
+    _say(words if last.session is None else f"{words} Session {last.session}.")
+    return 0 if last.state == "complete" else 1
+
+
+class _Progress:
+    """Writes each event as the run reaches it."""
+
+    def __init__(self) -> None:
+        self._run: int | None = None
+        self._told = 0
+
+    def tell(self, state: ScenarioState) -> None:
+        """What is new in it."""
+        active = state.active
+        if active is None or active.phase not in ("running", "ending"):
+            return
+        if active.run != self._run:
+            self._run, self._told = active.run, 0
+            _say(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
+        past = [event for event in active.events if event.at <= active.elapsed]
+        for event in past[self._told :]:
+            _say(f"{event.at:8.1f} s  {event.words}")
+        self._told = len(past)
+
+
+def _say(words: str) -> None:
+    print(words, file=sys.stdout, flush=True)  # noqa: T201 - a command line speaks

@@ -1,0 +1,164 @@
+"""Sets up the running robot and its water for a scenario, and puts back what was there before."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.errors import Refused
+from robot_runtime.scenario.document import Scenario
+from robot_runtime.scenario.events import Event, Line
+from robot_runtime.simulation.board import Board, BoardError
+from robot_runtime.simulation.surroundings import Trim
+from server.bridge import Bridge, RuntimeSilent
+
+Question = Mapping[str, Any]
+STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
+DIRECTIONS = ("to_board", "from_board")
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """How everything was: the runtime's `state` document and the simulator's `surroundings`."""
+
+    robot: Question
+    water: Question
+
+
+class Surroundings:
+    """The runtime, the simulator and the emulated board, as a scenario speaks to them.
+
+    Everything may raise Refused or RuntimeSilent.
+    """
+
+    def __init__(self, bridge: Bridge, board_socket: Path) -> None:
+        self._bridge = bridge
+        self._board_socket = board_socket
+
+    async def read(self, robot: Question) -> Before:
+        """How everything is now; `robot` is the newest `state`."""
+        return Before(robot, await self._bridge.ask_simulator("surroundings", {}))
+
+    async def prepare(self, scenario: Scenario, before: Before) -> None:
+        """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
+        await self._set_water(_water_of(scenario), before.water)
+        start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
+        await self._bridge.ask_simulator("reset", {**start, "seed": scenario.seed})
+        await self._clean_line(scenario.seed)
+        for name, gains in _gains_of(scenario).items():
+            await self._bridge.command("controller", {"name": name, "gains": gains})
+        control, vision = scenario.control, scenario.vision
+        await self._bridge.command("controller", {"name": control.controller})
+        await self._bridge.command(
+            "set_points", {"default": control.set_point, "detected": control.set_point_detected}
+        )
+        await self._bridge.command("vision", {"rate": vision.rate, "colour": vision.colour})
+        if vision.camera == "card":
+            await self._bridge.command("card", {"colour": None})
+
+    async def apply(self, event: Event) -> None:
+        """Do what an event says to runtime, simulator or board."""
+        if isinstance(event, Line):
+            await self._order(event.command)
+        elif event.to == "simulator":
+            await self._bridge.ask_simulator(event.do, event.question)
+        elif event.do == "stop":
+            await self._bridge.disarm()
+        else:
+            await self._bridge.command(event.do, event.question)
+
+    async def disarm(self) -> None:
+        """Let the fins rest."""
+        await self._bridge.disarm()
+
+    async def put_back(self, before: Before) -> list[str]:
+        """Make everything as it was; what could not be, in words."""
+        robot = before.robot
+        steps: list[Callable[[], Awaitable[None]]] = [
+            lambda: self._clean_line(0),
+            lambda: self._set_water(before.water, None),
+            *(
+                lambda one=one: self._bridge.command(
+                    "controller",
+                    {"name": one["name"], "gains": {gain["name"]: gain["value"] for gain in one["gains"]}},
+                )
+                for one in robot["controllers"]
+            ),
+            lambda: self._bridge.command("controller", {"name": robot["controller"]}),
+            lambda: self._bridge.command(
+                "set_points",
+                {"default": robot["set_point_default"], "detected": robot["set_point_detected"]},
+            ),
+            lambda: self._bridge.command(
+                "vision", {"rate": robot["vision_rate"], "colour": robot["vision_colour"]}
+            ),
+            lambda: self._put_card_back(robot["card"]),
+        ]
+        problems = []
+        for step in steps:
+            try:
+                await step()
+            except (Refused, RuntimeSilent) as problem:
+                problems.append(str(problem))
+        return list(dict.fromkeys(problems))
+
+    async def _put_card_back(self, colour: str | None) -> None:
+        try:
+            await self._bridge.command("card", {"colour": colour})
+        except Refused:
+            # A camera without cards had none before, either.
+            if colour is not None:
+                raise
+
+    async def _set_water(self, wanted: Question, present: Question | None) -> None:
+        ask = self._bridge.ask_simulator
+        for fault in wanted["faults"] if present is None else present["faults"]:
+            await ask("fault", fault if present is None else {"sensor": fault["sensor"], "kind": "none"})
+        # The old waves might break in the new basin.
+        await ask("waves", STILL)
+        await ask("world", wanted["world"])
+        for name in ("beacons", "current", "waves", "trim"):
+            await ask(name, wanted[name])
+        await ask("reset", {})
+
+    async def _clean_line(self, seed: int) -> None:
+        for direction in DIRECTIONS:
+            await self._order(f"line {direction} clean")
+            await self._order(f"line {direction} stall 0")
+        await self._order(f"seed {seed}")
+
+    async def _order(self, command: str) -> None:
+        try:
+            await asyncio.to_thread(_order, self._board_socket, command)
+        except BoardError as problem:
+            raise Refused(f"The emulated board: {problem}.") from problem
+
+
+def _order(socket: Path, command: str) -> None:
+    with Board(socket) as board:
+        board.order(command)
+
+
+def _water_of(scenario: Scenario) -> Question:
+    """The scenario's water as the questions that make it."""
+    basin, robot = scenario.scene.basin, scenario.robot
+    trim = scenario.trim or Trim(robot.buoyancy, 0.0, 0.0, robot.buoyancy_height)
+    return {
+        "world": {name: value for name, value in asdict(basin).items() if value is not None},
+        "current": asdict(scenario.water.current),
+        "waves": asdict(scenario.water.waves),
+        "trim": asdict(trim),
+        "beacons": {"positions": [list(one) for one in scenario.scene.beacons]},
+        "faults": [],
+    }
+
+
+def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
+    """Every gain of every controller: the default where the scenario says nothing, so that it repeats."""
+    return {
+        one.name: {name: limits.default for name, limits in one.limits.items()}
+        | scenario.control.gains.get(one.name, {})
+        for one in CONTROLLERS
+    }
