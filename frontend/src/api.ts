@@ -12,6 +12,7 @@ export type CommTestPlace = Schemas['Start']['place'];
 export type CommTestSummary = Schemas['RunSummary'];
 export type CommTestRun = Schemas['Run'];
 export type Cell = Schemas['Cell'];
+export type View = Schemas['View'];
 export type ThesisTable = Schemas['ThesisTable'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -60,6 +61,7 @@ export const api = {
   setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
   card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
+  view: (view: View) => command('PUT', '/scene/view', view),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: () => request<Session[]>('GET', '/sessions'),
