@@ -183,7 +183,9 @@ def plan(settings: Settings) -> list[Command]:
     board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
     simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
+    simulator += ["--connect", f"unixsock-stream/{folder.scene_socket}"]
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
+    scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
     for part in (simulator, scene):
         for socket in (folder.runtime_socket, folder.server_socket):
             part += ["--connect", f"unixsock-stream/{socket}"]
