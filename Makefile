@@ -74,6 +74,8 @@ build/.packages-%: setup.sh
 	@python3 -m venv .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
 	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --editable . --group dev
+	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --no-build mujoco || \
+		echo "MuJoCo could not be installed; instead of rendered water the camera shows a drawn card."
 	@touch $@
 
 .venv/.ready-bench: .venv/.ready

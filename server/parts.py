@@ -258,12 +258,13 @@ def plan(settings: Settings) -> list[Command]:
         simulator += ["--in-the-loop", "--connect", f"unixsock-stream/{folder.runtime_socket}"]
     else:
         simulator += ["--board", str(folder.board_socket)]
-        for socket in (folder.runtime_socket, folder.server_socket):
+        for socket in (folder.scene_socket, folder.runtime_socket, folder.server_socket):
             simulator += ["--connect", f"unixsock-stream/{socket}"]
     simulator += ["--robot", settings.robot, *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
     water = Command("simulator", "simulator", tuple(simulator), needs)
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
+    scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
     for socket in (folder.runtime_socket, folder.server_socket):
         scene += ["--connect", f"unixsock-stream/{socket}"]
     scene += ["--robot", settings.robot, *lock]

@@ -64,6 +64,11 @@ class DataFolder:
         return self.run / "server.sock"
 
     @property
+    def scene_socket(self) -> Path:
+        """Where the scene listens for Zenoh; peers speak with those alone that they are connected to."""
+        return self.run / "scene.sock"
+
+    @property
     def board_socket(self) -> Path:
         """Where the emulated board listens for the water."""
         return self.run / "board.sock"
@@ -169,7 +174,7 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
 
 def _check_socket_paths(folder: DataFolder) -> None:
     longest = max(
-        (folder.runtime_socket, folder.server_socket, folder.board_socket),
+        (folder.runtime_socket, folder.server_socket, folder.scene_socket, folder.board_socket),
         key=lambda path: len(os.fsencode(path)),
     )
     size = len(os.fsencode(longest))

@@ -155,8 +155,10 @@ class Process:
                 self._publish_observer(*self._truth)
             except Refused as problem:
                 log.warning("a bystander sees nothing: %s", problem)
-        self._observe_due = max(self._observe_due + period, now)
-        return max(self._observe_due - self._clock.now(), 0.001)
+        done = self._clock.now()
+        # Where a picture takes long, no more than half of the time goes into those of the bystander's.
+        self._observe_due = max(self._observe_due + period, done + (done - now))
+        return self._observe_due - done
 
     def _publish_observer(self, time: float, truth: Truth) -> None:
         if self._observed == (time, self._view):
