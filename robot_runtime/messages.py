@@ -17,6 +17,9 @@ from robot_runtime.errors import Refused as Refused
 log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
+_CLIENT_TIMEOUT_MS = 1000
+
+_REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
 
 class Subscription:
@@ -34,18 +37,25 @@ class Messages:
     """One process's end of the conversation.
 
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
-    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. Raises OSError where an endpoint cannot be
-    listened on.
+    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. A `client` reaches everybody through the one
+    that it connects to, which must be there when it starts. Raises OSError where an endpoint cannot be
+    listened on, or a client's cannot be reached.
     """
 
     def __init__(
-        self, robot: str, listen: Sequence[str] = (), connect: Sequence[str] = (), scouting: bool = False
+        self,
+        robot: str,
+        listen: Sequence[str] = (),
+        connect: Sequence[str] = (),
+        scouting: bool = False,
+        client: bool = False,
     ) -> None:
         self._prefix = f"mucat/{robot}/"
         try:
-            self._session = zenoh.open(_configuration(listen, connect, scouting))
+            self._session = zenoh.open(_configuration(listen, connect, scouting, client))
         except zenoh.ZError as problem:
-            raise OSError(f"cannot listen on {', '.join(listen)}: {problem}") from problem
+            does = "reach" if client else "listen on"
+            raise OSError(f"cannot {does} {', '.join(connect if client else listen)}: {problem}") from problem
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._queryables: list[zenoh.Queryable[None]] = []
 
@@ -88,6 +98,30 @@ class Messages:
 
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
+    def ask_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
+        """The answer to a question, both as plain bytes; raises as `ask` does."""
+        for reply in self._session.get(self._prefix + name, payload=payload, timeout=timeout):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+            # Zenoh puts its own errors, such as a timeout, into the same place.
+            if reply.err is not None and reply.err.encoding == _REFUSAL:
+                raise Refused(reply.err.payload.to_string())
+        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+
+    def answer_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
+        """Answer `name` with the bytes that the handler returns; what it raises is told as by `answer`."""
+
+        def reply(query: zenoh.Query) -> None:
+            with query:
+                try:
+                    answer = handler(query.payload.to_bytes() if query.payload is not None else b"")
+                except Exception as problem:
+                    query.reply_err(_reason(problem, query).encode(), encoding=_REFUSAL)
+                else:
+                    query.reply(query.key_expr, answer)
+
+        self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
+
     def close(self) -> None:
         """Leave. An open Zenoh session keeps the interpreter alive, so this must be called."""
         self._session.close()  # type: ignore[no-untyped-call]
@@ -111,23 +145,30 @@ def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh
         if not isinstance(question, dict):
             raise ValueError("a question must be a JSON object")
         return {"accepted": True, **(handler(question) or {})}
-    except (Refused, ValueError, TypeError) as refusal:
-        return {"accepted": False, "reason": str(refusal)}
-    except Exception:
-        log.exception("answering %s failed", query.key_expr)
-        return {"accepted": False, "reason": "an error inside the answering process; its log says more"}
+    except Exception as problem:
+        return {"accepted": False, "reason": _reason(problem, query)}
 
 
-def _configuration(listen: Sequence[str], connect: Sequence[str], scouting: bool) -> zenoh.Config:
+def _reason(problem: Exception, query: zenoh.Query) -> str:
+    if isinstance(problem, Refused | ValueError | TypeError):
+        return str(problem)
+    log.error("answering %s failed", query.key_expr, exc_info=problem)
+    return "an error inside the answering process; its log says more"
+
+
+def _configuration(
+    listen: Sequence[str], connect: Sequence[str], scouting: bool, client: bool
+) -> zenoh.Config:
     settings: dict[str, Any] = {
-        "mode": "peer",
+        "mode": "client" if client else "peer",
         "scouting/multicast/enabled": scouting,
         "scouting/gossip/enabled": scouting,
         "listen/endpoints": list(listen),
         "connect/endpoints": list(connect),
         # Batches of some hundred bytes gain nothing from it, and its threads wake thirty times a second.
         "transport/shared_memory/enabled": False,
-        "connect/timeout_ms": -1,
+        # A client's opening waits for this; a peer's goes on trying behind it.
+        "connect/timeout_ms": _CLIENT_TIMEOUT_MS if client else -1,
         "connect/exit_on_failure": False,
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
     }

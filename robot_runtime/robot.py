@@ -12,6 +12,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
+from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.connection import Connection
@@ -61,7 +62,10 @@ class Robot:
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
-        self.supervisor = Supervisor(self.clock, self.connection, self.tell)
+        self.loop: InTheLoop | None = None
+        if config.robot.mode == "hil":
+            self.loop = InTheLoop(self.clock, self.connection.send, self.tell)
+        self.supervisor = Supervisor(self.clock, self.connection, self.tell, self.loop)
         self.control = ControlNode(self.bus, self.clock, self._navigate)
         self.vision = Vision(
             config.vision,
@@ -73,6 +77,9 @@ class Robot:
         )
         self._configure()
         self._join()
+        if self.loop is not None:
+            hear = self.loop.hear
+            messages.subscribe("sense", lambda _, data: hear(data))
 
     def tell(self, event: Event) -> None:
         """Publish an event, and the state that it changed."""

@@ -18,7 +18,7 @@ from server.health import Watch
 from server.hub import Hub
 from server.notices import Notices
 from server.page import Page
-from server.parts import Command, Parts
+from server.parts import SIMULATOR_ELSEWHERE, Command, Parts
 from server.recorder import Recorder, RecordingRefused
 from server.scenarios.live import Live
 from server.scenarios.runs import Runs as ScenarioRuns
@@ -78,6 +78,8 @@ class Assembly:
             await self.bridge.open()
             self._tell_session()
             self.scenarios.announce()
+            if self.settings.hil.simulator == "elsewhere":
+                await self.parts.pause("simulator", SIMULATOR_ELSEWHERE)
             tasks = [
                 asyncio.create_task(work)
                 for work in (

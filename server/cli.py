@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from server import VERSION
+from server import VERSION, simulator_command
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status: 0 after an orderly end, 1 where what was asked cannot be done."""
     options = _options(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    if options.command == "simulator":
+        simulator_command.perform(options)
     try:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
@@ -50,6 +52,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
     scenario = commands.add_parser("scenario", help="run experiments that are written down")
     _add_scenario(scenario.add_subparsers(dest="action", required=True), kept)
+    simulator_command.add_arguments(commands)
     return parser.parse_args(arguments)
 
 
@@ -131,9 +134,9 @@ def _run(settings: Settings) -> int:
     from server.schema import prepare
     from server.web import make_server, open_socket
 
-    if settings.mode == "emulated":
+    if settings.emulated_board:
         try:
-            build_firmware(settings.build, settings.link.baud)
+            build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:

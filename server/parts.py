@@ -28,6 +28,8 @@ TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
 LINES_TOLD = 3
 
+SIMULATOR_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
+
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
 
@@ -176,20 +178,29 @@ def plan(settings: Settings) -> list[Command]:
     runtime += ["--data", str(folder.path)]
     if settings.mode == "robot":
         return [Command("runtime", "robot's runtime", (*runtime, "--with-parent"))]
+    simulator = [sys.executable, "-m", "robot_runtime.simulation"]
+    if settings.in_the_loop:
+        simulator += ["--in-the-loop", "--connect", f"unixsock-stream/{folder.runtime_socket}"]
+    else:
+        simulator += ["--board", str(folder.board_socket)]
+        for socket in (folder.runtime_socket, folder.server_socket):
+            simulator += ["--connect", f"unixsock-stream/{socket}"]
+    simulator += ["--robot", settings.robot, "--with-parent"]
+    needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
+    water = Command("simulator", "simulator", tuple(simulator), needs)
+    if not settings.emulated_board:
+        return [Command("runtime", "robot's runtime", (*runtime, "--with-parent")), water]
     runtime += ["--port", str(folder.board_tty), "--with-parent"]
-    board = [str(build / "board"), "--elf", str(firmware_path(build, settings.link.baud, ".elf"))]
+    elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
+    board = [str(build / "board"), "--elf", str(elf)]
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
     # The communication test uploads its sketches to this board, as to a real one.
     board += ["--bootloader", str(build / "firmware" / "optiboot.hex")]
     board += ["--eeprom", str(folder.board_eeprom), "--with-parent"]
-    simulator = [sys.executable, "-m", "robot_runtime.simulation", "--board", str(folder.board_socket)]
-    for socket in (folder.runtime_socket, folder.server_socket):
-        simulator += ["--connect", f"unixsock-stream/{socket}"]
-    simulator += ["--robot", settings.robot, "--with-parent"]
     return [
         Command("board", "emulated board", tuple(board)),
         Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,)),
-        Command("simulator", "simulator", tuple(simulator), (folder.board_socket, folder.runtime_socket)),
+        water,
     ]
 
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, LinkConfig, load
+from robot_runtime.config import ConfigError, HilConfig, LinkConfig, load
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
 
 ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
 
-Mode = Literal["emulated", "robot"]
+Mode = Literal["emulated", "robot", "hil"]
 
 
 class SetupError(Exception):
@@ -97,11 +97,22 @@ class Settings:
     robot: str = "turtle"
     mode: Mode = "emulated"
     link: LinkConfig = field(default_factory=LinkConfig)
+    hil: HilConfig = field(default_factory=HilConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
     build: Path = Path(__file__).parent.parent / "build"
     page: Path = Path(__file__).parent / "page"
+
+    @property
+    def emulated_board(self) -> bool:
+        """Whether the robot's board is an emulated one."""
+        return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
+
+    @property
+    def in_the_loop(self) -> bool:
+        """Whether the board's sensors are a simulator's."""
+        return self.mode == "hil"
 
 
 def read_settings(
@@ -126,6 +137,7 @@ def read_settings(
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
         link=loaded.link,
+        hil=loaded.hil,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

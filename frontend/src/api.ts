@@ -66,6 +66,7 @@ export const api = {
   setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
   card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
+  simulator: (here: boolean) => command('PUT', '/simulator', { here }),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: () => request<Session[]>('GET', '/sessions'),

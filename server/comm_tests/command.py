@@ -36,7 +36,12 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
     """
     try:
         if options.action == "run":
-            return _run(options.file, options.place or settings.mode, settings, claim)
+            return _run(
+                options.file,
+                options.place or ("emulated" if settings.emulated_board else "robot"),
+                settings,
+                claim,
+            )
         with _open(settings.data, claim) as runs:
             print(_look(options, runs), end="")  # noqa: T201 - a command line speaks
     except StoreError as problem:
@@ -90,7 +95,7 @@ def _is_current(folder: DataFolder) -> bool:
 
 def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
     text, tests = _read(file)
-    if place == "robot" and settings.mode == "emulated":
+    if place == "robot" and settings.emulated_board:
         raise SetupError(
             "The emulated robot's board runs only while the server does. Start the test from the page, or "
             "leave --place out."

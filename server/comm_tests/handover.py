@@ -44,7 +44,7 @@ class Board:
         self._tell = tell
         link, folder = settings.link, settings.data
         self._port, reset = link.port, link.reset
-        if settings.mode == "emulated":
+        if settings.emulated_board:
             self._port, reset = str(folder.board_tty), f"board:{folder.board_socket}"
         self._arguments = ["--port", self._port, "--reset", reset]
 
@@ -90,7 +90,8 @@ class Board:
     async def _upload(self) -> str:
         """What went wrong, in words; empty where the firmware is there."""
         output = PartLog(self._settings.data.logs / "restore.log")
-        firmware = firmware_path(self._settings.build, self._settings.link.baud, ".hex")
+        settings = self._settings
+        firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
         command = [sys.executable, "-m", "robot_runtime.comm_test", "--restore", str(firmware)]
         command += ["--with-parent", *self._arguments]
         try:
