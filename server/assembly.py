@@ -4,6 +4,8 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from starlette.requests import HTTPConnection
 
@@ -22,6 +24,9 @@ from server.parts import Command, Parts
 from server.recorder import Recorder, RecordingRefused
 from server.settings import Settings
 from server.store import Store, StoreError
+
+if TYPE_CHECKING:
+    from server.comparison.comparing import Comparer
 
 HEALTH_SECONDS = 1.0
 
@@ -43,6 +48,13 @@ class Assembly:
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
+
+    @cached_property
+    def comparer(self) -> "Comparer":
+        """Lays sessions over each other; made when first asked for, since it needs NumPy."""
+        from server.comparison.comparing import Comparer
+
+        return Comparer(self.store)
 
     @staticmethod
     def of(connection: HTTPConnection) -> "Assembly":
