@@ -113,23 +113,30 @@ class Recording:
     def changes(self, topic: str) -> Iterator[dict[str, Any]]:
         """The documents that say something else than the one before, but for their time."""
         before = b""
-        for chunk in self._data(topic, -inf, inf):
-            with _reading(chunk, topic, DOCUMENTS_ENCODING):
-                for line in zlib.decompress(chunk.data).splitlines():
+        for number, encoding, data in self._data(topic, -inf, inf):
+            if encoding != DOCUMENTS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                for line in zlib.decompress(data).splitlines():
                     says = line.partition(b",")[2]
                     if says != before:
                         before = says
                         yield json.loads(line)
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(topic, number, problem) from problem
 
     def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
         """The bytes of each chunk's rows, in the shape (size of a row, samples)."""
         import numpy as np
 
         size = self.topics[topic]["row_bytes"]
-        for chunk in self._data(topic, start, end):
-            with _reading(chunk, topic, ROWS_ENCODING):
-                table = np.frombuffer(zlib.decompress(chunk.data), np.uint8).reshape(size, -1)
-            yield table
+        for number, encoding, data in self._data(topic, start, end):
+            if encoding != ROWS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                yield np.frombuffer(zlib.decompress(data), np.uint8).reshape(size, -1)
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(topic, number, problem) from problem
 
     def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
         """Number, encoding and data of such chunks; whole objects of Chunk would take three times as long."""
@@ -155,10 +162,18 @@ class Recording:
 
 
 @contextmanager
-def _reading(chunk: Any, topic: str, encoding: str) -> Iterator[None]:
+def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
+        raise _foreign(topic, chunk.number, chunk.encoding)
     try:
         yield
     except (ValueError, KeyError, zlib.error) as problem:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}") from problem
+        raise _damaged(topic, chunk.number, problem) from problem
+
+
+def _foreign(topic: str, number: int, encoding: str) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is encoded as {encoding!r}")
+
+
+def _damaged(topic: str, number: int, problem: Exception) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is damaged: {problem}")

@@ -1,16 +1,17 @@
 """Lays sessions over each other."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
 
-from server.comparison.alignment import Align, NoMomentError, find_moment
+from server.comparison.alignment import NoMomentError, find_moment
 from server.comparison.decimation import Floats, decimate
 from server.comparison.definitions import FIGURES, Figure
 from server.comparison.differences import find_differences
-from server.comparison.figures import SET_POINT, Range, measure
+from server.comparison.figures import MEASURED, OUTPUT, SET_POINT, Range, measure
 from server.comparison.history import (
     read_events,
     read_history,
@@ -38,6 +39,9 @@ from server.recording import Recording
 from server.sessions import find_row
 from server.store import Store
 
+THREADS = 2
+"""Decompression and SQLite let others run, Python itself does not: more are of no use."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Laid:
@@ -64,6 +68,7 @@ class Comparer:
     def __init__(self, store: Store) -> None:
         self._store = store
         self._samples = Samples()
+        self._threads = ThreadPoolExecutor(THREADS, "compare")
         self._histories: Kept[History] = Kept()
         self._figures: Kept[dict[str, Figure]] = Kept()
 
@@ -73,18 +78,18 @@ class Comparer:
 
     def compare(self, wanted: WantedComparison) -> Comparison:
         """Lines, figures and differences of the sessions, in the order asked for."""
-        laid = self._lay(wanted.sessions, wanted.align)
+        laid = self._lay(wanted)
         return Comparison(
             align=wanted.align,
             signals=_wanted_signals(wanted.signals, laid),
-            sessions=[self._compare_one(one, wanted) for one in laid],
+            sessions=list(self._threads.map(lambda one: self._compare_one(one, wanted), laid)),
             figures=list(FIGURES),
             differences=find_differences([(one.row, one.history) for one in laid]),
         )
 
     def lines(self, wanted: Wanted) -> Lines:
         """The lines alone, for a part of the time."""
-        laid = self._lay(wanted.sessions, wanted.align)
+        laid = self._lay(wanted)
         return Lines(
             sessions=[
                 Drawn(
@@ -100,20 +105,23 @@ class Comparer:
             raise NoSessionError(f"There is no session {session}; it may have been deleted.")
         return Recording(self._store, row)
 
-    def _lay(self, sessions: Sequence[int], align: Align) -> list[_Laid]:
-        return [self._lay_one(self._open(one), align) for one in dict.fromkeys(sessions)]
+    def _lay(self, wanted: Wanted) -> list[_Laid]:
+        recordings = [self._open(one) for one in dict.fromkeys(wanted.sessions)]
+        return list(self._threads.map(lambda one: self._lay_one(one, wanted), recordings))
 
-    def _lay_one(self, recording: Recording, align: Align) -> _Laid:
+    def _lay_one(self, recording: Recording, wanted: Wanted) -> _Laid:
+        # At once, since what is wanted of one topic is read together.
+        found = self._samples.read(recording, {*wanted.signals, MEASURED, SET_POINT, OUTPUT})
         key = (recording.row.identifier,)
         history = self._histories.recall(key)
         if history is None:
             history = read_history(recording, self._samples)
             self._histories.keep(key, history, recording.row)
-        set_point = self._samples.read(recording, [SET_POINT]).get(SET_POINT)
+        set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         markers = read_markers(self._store, recording)
         try:
-            offset, problem = find_moment(align, history, steps, markers), ""
+            offset, problem = find_moment(wanted.align, history, steps, markers), ""
         except NoMomentError as missing:
             offset, problem = None, str(missing)
         return _Laid(recording, history, steps, markers, offset, problem)

@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 CORRELATION_LEAST = 0.5
 PERIODS_LEAST = 3
 AMPLITUDE_LEAST = 1e-6
+SMOOTHED = 1 / 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ def find_limit_cycle(signal: Series) -> LimitCycle | None:
     if found is None:
         return None
     lag, height = found
-    return LimitCycle(lag * step, _amplitude(values, lag), height)
+    return LimitCycle(float(lag * step), _amplitude(values, lag), height)
 
 
 def _even(signal: Series) -> tuple[Floats, float]:
@@ -85,7 +86,12 @@ def _first_high(correlation: Floats) -> tuple[float, float] | None:
 
 
 def _amplitude(values: Floats, period: float) -> float:
-    """Median over whole periods of the distance between highest and lowest."""
+    """Median over whole periods of the distance between highest and lowest.
+
+    Averages over a twentieth of the period keep noise from adding to it; a sine loses 0.4 % by that.
+    """
+    width = max(1, round(period * SMOOTHED))
+    values = np.convolve(values, np.full(width, 1 / width), "valid")
     edges = np.round(np.arange(0, values.size, period)).astype(int)
     heights = [np.ptp(values[first:last]) for first, last in pairwise(edges)]
     return float(np.median(heights))
