@@ -26,6 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
             return _commtest(options, settings)
+        if options.command == "report":
+            return _report(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -46,6 +48,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     run.add_argument("--host", help="address to listen on; default 127.0.0.1, or server.host in robot.toml")
     test = commands.add_parser("commtest", help="test the serial line, on the emulated board")
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
+    report = commands.add_parser(
+        "report", parents=[kept], help="lay sessions over each other in an HTML file"
+    )
+    _add_report(report)
     return parser.parse_args(arguments)
 
 
@@ -65,6 +71,18 @@ def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
     export = actions.add_parser("export", parents=[kept], help="write a run to the standard output")
     export.add_argument("run", type=int, help="its number")
     export.add_argument("--format", choices=("csv", "json"), default="csv", help="default csv")
+
+
+def _add_report(report: argparse.ArgumentParser) -> None:
+    report.add_argument("sessions", nargs="+", type=int, metavar="ID", help="numbers of sessions")
+    report.add_argument("-o", "--out", type=Path, default=Path("report.html"), help="default report.html")
+    moments = ("start", "armed", "set_point")
+    report.add_argument("--align", choices=moments, default="armed", help="what is 0 s; default armed")
+    report.add_argument("--step", type=int, default=1, help="which set-point step; default 1")
+    report.add_argument("--marker", default="", help="what is 0 s: the marker of this text")
+    report.add_argument(
+        "--signals", nargs="+", metavar="TOPIC.COLUMN", help="default as the thesis's figures"
+    )
 
 
 @contextmanager
@@ -88,6 +106,12 @@ def _claim(folder: DataFolder) -> Iterator[None]:
 
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:
     from server.comm_tests.command import perform
+
+    return perform(options, settings, _claim)
+
+
+def _report(options: argparse.Namespace, settings: Settings) -> int:
+    from server.comparison.command import perform
 
     return perform(options, settings, _claim)
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from server.comparison.limit_cycle import find_limit_cycle
-from server.comparison.samples import Series
+from server.comparison.samples import Floats, Series
 
 RATE = 50.0
 
 
-def sampled(seconds: float) -> np.ndarray:
-    return np.arange(0, seconds, 1 / RATE)
+def sampled(seconds: float) -> Floats:
+    return np.arange(0, seconds, 1 / RATE).astype(np.float64)
 
 
 @pytest.mark.parametrize("period", [0.8, 3.0, 7.3])

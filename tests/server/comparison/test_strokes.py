@@ -1,13 +1,14 @@
 import numpy as np
 import pytest
 
+from server.comparison.samples import Floats
 from server.comparison.strokes import count_strokes
 
 RATE = 50.0
 
 
-def sampled(seconds: float) -> np.ndarray:
-    return np.arange(0, seconds, 1 / RATE)
+def sampled(seconds: float) -> Floats:
+    return np.arange(0, seconds, 1 / RATE).astype(np.float64)
 
 
 def test_each_flap_is_a_stroke() -> None:
