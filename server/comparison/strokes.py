@@ -1,5 +1,7 @@
 """How often the fins moved."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ SWING_LEAST = 0.2
 """rad; less is noise of the encoders (0.006 rad a count) and a fin that holds still."""
 
 
-def count_strokes(angle: Floats, swing_least: float = SWING_LEAST) -> float:
+def count_strokes(angle: NDArray[np.floating[Any]], swing_least: float = SWING_LEAST) -> float:
     """Strokes of one fin, from its angle (rad, shape (samples,)): two swings, there and back, are one.
 
     A swing runs from a turning point to the next, where smaller swings within a larger one do not count

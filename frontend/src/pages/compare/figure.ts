@@ -42,7 +42,7 @@ const BELOW = 44;
 const GAP = 30;
 const HIGH_FIRST = 280;
 const HIGH = 170;
-const ROW = 18;
+const ROW = 14;
 const ABOVE = 8;
 const MEASURED_DASHES = ['solid', 'dot', 'dashdot'];
 const WANTED_DASHES = ['dash', 'longdash', 'longdashdot'];
@@ -74,7 +74,8 @@ export function drawPicture(
 ): Picture {
   const sessions = laid(comparison);
   const charts = chartsOf(comparison.signals);
-  const rows = sessions.length * ROW;
+  const told = sessions.some((one) => toldBy(one).length > 0);
+  const rows = told ? sessions.length * ROW : 0;
   const heights = charts.map((_, place) => (place === 0 ? HIGH_FIRST : HIGH));
   const inside = rows + heights.reduce((sum, high) => sum + high + GAP, 0);
   const height = ABOVE + inside + BELOW;
@@ -82,23 +83,20 @@ export function drawPicture(
   const narrow = width < 600;
   const data = [
     ...charts.flatMap((chart, place) => sessions.flatMap((one) => lines(chart, place, one, comparison, finer, look))),
-    ...sessions.map((one, row) => eventTrace(one, row, charts.length, colourOf(comparison, one, look), look)),
+    ...(told ? sessions : []).map((one, row) => eventTrace(one, row, charts.length, colourOf(comparison, one, look), look)),
   ];
-  const axes = charts.map((chart, place) => [`yaxis${suffix(place)}`, valueAxis(chart, places[place] ?? [0, 1], look)]);
+  const axes: [string, object][] = charts.map((chart, place) => [`yaxis${suffix(place)}`, valueAxis(chart, places[place] ?? [0, 1], look)]);
+  if (told) {
+    const range = [sessions.length - 0.5, -0.5];
+    const rowAxis = { domain: [1 - rows / inside, 1], range, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false };
+    axes.push([`yaxis${suffix(charts.length)}`, rowAxis]);
+  }
   const font = { family: look.font, size: 12, color: look.muted };
   const layout = {
     ...(Object.fromEntries(axes) as Partial<Layout>),
-    [`yaxis${suffix(charts.length)}`]: {
-      domain: [1 - rows / inside, 1],
-      range: [sessions.length - 0.5, -0.5],
-      fixedrange: true,
-      showgrid: false,
-      zeroline: false,
-      showticklabels: false,
-    },
     xaxis: {
       range: [view.start, view.end],
-      anchor: charts.length > 0 ? `y${suffix(charts.length - 1)}` : `y${suffix(charts.length)}`,
+      anchor: `y${suffix(charts.length - 1)}`,
       gridcolor: look.line,
       zeroline: true,
       zerolinecolor: look.muted,
@@ -211,12 +209,17 @@ export function points({ time, low, high }: ComparisonLine, offset: number): { x
   return { x, y };
 }
 
-function eventTrace(session: Compared, row: number, axis: number, colour: string, look: Look): Data {
-  const events = session.events.filter(({ kind, severity }) => TOLD.has(kind) || severity !== 'info');
-  const told = [
-    ...events.map((event) => ({ ...event, symbol: event.severity === 'info' ? 'line-ns' : 'triangle-down' })),
-    ...session.markers.map((marker) => ({ ...marker, symbol: 'diamond' })),
+/** What of a session's events and markers has a sign above the charts. */
+function toldBy({ events, markers }: Compared) {
+  const told = events.filter(({ kind, severity }) => TOLD.has(kind) || severity !== 'info');
+  return [
+    ...told.map((event) => ({ ...event, symbol: event.severity === 'info' ? 'line-ns' : 'triangle-down' })),
+    ...markers.map((marker) => ({ ...marker, symbol: 'diamond' })),
   ];
+}
+
+function eventTrace(session: Compared, row: number, axis: number, colour: string, look: Look): Data {
+  const told = toldBy(session);
   const trace: object = {
     type: 'scatter',
     mode: 'markers',
@@ -237,7 +240,8 @@ function heading(chart: Chart, top: number, look: Look, narrow: boolean) {
   const several = chart.signals.length > 1 && !narrow;
   const kinds = chart.signals.map(({ signal, wanted }) => `${wanted ? 'dashed' : 'solid'}: ${columnWords(signal.column)}`);
   return {
-    text: several ? `<b>${chart.title}</b>   ${[...new Set(kinds)].join(', ')}` : `<b>${chart.title}</b>`,
+    // Without tags: Plotly makes style attributes of them, which the content security policy refuses.
+    text: several ? `${chart.title}  ·  ${[...new Set(kinds)].join(', ')}` : chart.title,
     xref: 'paper',
     yref: 'paper',
     x: 0,

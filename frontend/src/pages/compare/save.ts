@@ -26,7 +26,7 @@ export async function saveCharts(comparison: Comparison, finer: Finer, view: Vie
   const { data, layout, height } = drawPicture(comparison, finer, view, WIDTH, look);
   const above = 14 + KEY * comparison.sessions.length;
   const key = comparison.sessions.map(({ name, problem }, place) => ({
-    text: `<b>—</b> ${name}${problem ? ' (cannot be aligned)' : ''}`,
+    text: `━ ${name}${problem ? ' (cannot be aligned)' : ''}`,
     xref: 'paper',
     yref: 'paper',
     x: 0,
