@@ -33,6 +33,7 @@ DEPTHS = frozenset(
 HIGH_FIRST, HIGH, GAP, EDGE = 300, 180, 46, 60
 FONT = "Inter, Helvetica, Arial, sans-serif"
 ALIGNED = {"start": "the start of the recording", "armed": "arming"}
+WANTED = ("set_point", "wanted")
 
 
 def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
@@ -79,7 +80,7 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
             axis["autorange"] = "reversed"
         figure.update_layout({f"yaxis{number if number > 1 else ''}": axis})
         figure.add_annotation(
-            text=f"<b>{escape(title)}</b>",
+            text=f"<b>{escape(title)}</b>{_kinds(signals)}",
             xref="paper",
             yref="paper",
             x=0,
@@ -104,7 +105,7 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
         hovermode="x unified",
         showlegend=False,
         xaxis={
-            "title": "s",
+            "title": f"s since {_moment(comparison)}",
             "gridcolor": "#d9e0e5",
             "anchor": f"y{len(charts)}" if len(charts) > 1 else "y",
             "range": [view.start, view.end] if view else None,
@@ -131,8 +132,19 @@ def _group(signals: Sequence[Signal]) -> list[tuple[str, list[Signal]]]:
     return list(charts.items())
 
 
+def _kinds(signals: Sequence[Signal]) -> str:
+    """How the lines of a chart with several signals are told apart."""
+    if len(signals) < 2:
+        return ""
+    kinds = (
+        f"{'dashed' if one.column.startswith(WANTED) else 'solid'}: {one.column.replace('_', ' ')}"
+        for one in signals
+    )
+    return f"   {', '.join(dict.fromkeys(kinds))}"
+
+
 def _trace(session: Compared, signal: Signal, colour: str, number: int, together: int) -> go.Scatter:
-    wanted = signal.column.startswith(("set_point", "wanted"))
+    wanted = signal.column.startswith(WANTED)
     times, values = _points(session.series[signal.name], session.offset or 0.0)
     name = f"{session.name}, {signal.column.replace('_', ' ')}" if together > 1 else session.name
     return go.Scatter(
