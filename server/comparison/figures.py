@@ -82,7 +82,8 @@ def _depth_figures(
     steady = (
         Span((response.begin + response.end) / 2, response.end) if response is not None else wanted.spans[0]
     )
-    part = depth.within(steady.start, steady.end)
+    # At its very end the next set point may be in force.
+    part = depth.within(steady.start, float(np.nextafter(steady.end, steady.start)))
     if part.times.size:
         errors = _held(set_point, part.times) - part.values
         mean = float(errors.mean())
