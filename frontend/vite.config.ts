@@ -10,7 +10,7 @@ export default defineConfig({
     target: 'es2022',
     // The page's content security policy has no room for data: addresses.
     assetsInlineLimit: 0,
-    // Plotly, which only the comm tests fetch.
+    // Plotly, which only comm tests and comparisons fetch.
     chunkSizeWarningLimit: 1200,
     modulePreload: { polyfill: false },
   },

@@ -11,10 +11,23 @@ from robot_runtime.errors import Refused
 from server import VERSION
 from server.assembly import Assembly
 from server.bridge import RuntimeSilent
+from server.comparison.shapes import NoSessionError
 from server.page import Page, make_router
 from server.parts import Command
 from server.recorder import RecordingRefused
-from server.routes import comm_tests, health, link, live, robot, scenarios, scene, sessions, simulator
+from server.recording import RecordingError
+from server.routes import (
+    comm_tests,
+    compare,
+    health,
+    link,
+    live,
+    robot,
+    scenarios,
+    scene,
+    sessions,
+    simulator,
+)
 from server.security import Guard
 from server.settings import Settings
 from server.store import StoreError
@@ -46,7 +59,10 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    for module in (health, robot, simulator, scene, link, sessions, comm_tests, scenarios, live):
+    app.add_exception_handler(NoSessionError, _not_there)
+    app.add_exception_handler(RecordingError, _unreadable)
+    modules = (health, robot, simulator, scene, link, sessions, compare, comm_tests, scenarios, live)
+    for module in modules:
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app
@@ -71,6 +87,14 @@ async def _silent(_: Request, problem: Exception) -> JSONResponse:
 
 async def _not_stored(_: Request, problem: Exception) -> JSONResponse:
     return _tell(503, f"The database does not work: {problem}.")
+
+
+async def _not_there(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(404, str(problem))
+
+
+async def _unreadable(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(500, f"This recording cannot be read whole: {problem}. Other sessions are not affected.")
 
 
 def _tell(status: int, detail: str) -> JSONResponse:

@@ -4,6 +4,8 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from starlette.requests import HTTPConnection
 
@@ -27,6 +29,9 @@ from server.scenarios.runs import Runs as ScenarioRuns
 from server.scenarios.simulated import Simulated
 from server.settings import Settings
 from server.store import Store, StoreError
+
+if TYPE_CHECKING:
+    from server.comparison.comparing import Comparer
 
 HEALTH_SECONDS = 1.0
 BEAT_SECONDS = 1.0
@@ -62,6 +67,13 @@ class Assembly:
         )
         self.scenarios = ScenarioRuns(live, Simulated(settings, self.store, self.notices), self.hub.tell)
         self.bridge.on_stop = self.scenarios.see_stop
+
+    @cached_property
+    def comparer(self) -> "Comparer":
+        """Lays sessions over each other; made when first asked for, since it needs NumPy."""
+        from server.comparison.comparing import Comparer
+
+        return Comparer(self.store)
 
     @staticmethod
     def of(connection: HTTPConnection) -> "Assembly":

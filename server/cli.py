@@ -34,6 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _commtest(options, settings)
         if options.command == "scenario":
             return _scenario(options, settings)
+        if options.command == "report":
+            return _report(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -57,6 +59,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     simulator_command.add_arguments(commands)
     scenario = commands.add_parser("scenario", help="run experiments that are written down")
     _add_scenario(scenario.add_subparsers(dest="action", required=True), kept)
+    report = commands.add_parser(
+        "report", parents=[kept], help="lay sessions over each other in an HTML file"
+    )
+    _add_report(report)
     return parser.parse_args(arguments)
 
 
@@ -99,6 +105,18 @@ def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
     export.add_argument("--format", choices=("csv", "json"), default="csv", help="default csv")
 
 
+def _add_report(report: argparse.ArgumentParser) -> None:
+    report.add_argument("sessions", nargs="+", type=int, metavar="ID", help="numbers of sessions")
+    report.add_argument("-o", "--out", type=Path, default=Path("report.html"), help="default report.html")
+    moments = ("start", "armed", "set_point")
+    report.add_argument("--align", choices=moments, default="armed", help="what is 0 s; default armed")
+    report.add_argument("--step", type=int, default=1, help="which set-point step; default 1")
+    report.add_argument("--marker", default="", help="what is 0 s: the marker of this text")
+    report.add_argument(
+        "--signals", nargs="+", metavar="TOPIC.COLUMN", help="default as the thesis's figures"
+    )
+
+
 @contextmanager
 def _claim(folder: DataFolder) -> Iterator[None]:
     """Hold the data folder alone. Raises SetupError where another server has it.
@@ -138,6 +156,12 @@ def _commtest(options: argparse.Namespace, settings: Settings) -> int:
 
 def _scenario(options: argparse.Namespace, settings: Settings) -> int:
     from server.scenarios.command import perform
+
+    return perform(options, settings, _claim)
+
+
+def _report(options: argparse.Namespace, settings: Settings) -> int:
+    from server.comparison.command import perform
 
     return perform(options, settings, _claim)
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 CHUNKS_AT_ONCE = 32
+DATA_AT_ONCE = 512
 
 
 class RecordingError(Exception):
@@ -45,26 +46,15 @@ class Recording:
         with self._store.read() as database:
             return {name: int(count) for name, count in database.exec(query.group_by(Chunk.topic))}
 
+    def has(self, topic: str) -> bool:
+        """Whether there is any sample of a topic."""
+        query = select(Chunk.id).where(Chunk.session_id == self.row.id, Chunk.topic == topic).limit(1)
+        with self._store.read() as database:
+            return database.exec(query).first() is not None
+
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
         """The chunks that may have samples between `start` and `end`, in order."""
-        number = -1
-        while True:
-            query = (
-                select(Chunk)
-                .where(Chunk.session_id == self.row.id, Chunk.topic == topic, Chunk.number > number)
-                .order_by(col(Chunk.number))
-                .limit(CHUNKS_AT_ONCE)
-            )
-            if start > -inf:
-                query = query.where(Chunk.last_time >= start)
-            if end < inf:
-                query = query.where(Chunk.first_time <= end)
-            with self._store.read() as database:
-                found = database.exec(query).all()
-            yield from found
-            if len(found) < CHUNKS_AT_ONCE:
-                return
-            number = found[-1].number
+        return self._found(select(Chunk), CHUNKS_AT_ONCE, topic, start, end)
 
     def rows(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[bytes]:
         """The rows of each such chunk, as `robot_runtime.topics` has them; not cut to the range."""
@@ -91,28 +81,99 @@ class Recording:
         """
         import numpy as np  # only where somebody compares or exports: it costs a small computer memory
 
-        layout = row_layout(self.topics[topic])
+        described = self.topics[topic]
+        layout = row_layout(described)
+        codes = "".join(field["code"] * field["count"] for field in described["fields"])
+        # Struct's codes mean the same to NumPy.
+        types = [np.dtype("<" + code) for code in codes]
+        ends = np.cumsum([8, *(one.itemsize for one in types)]).tolist()
         plain = [column.partition(" [")[0] for column in layout.columns]
         for name in names:
             if name not in plain:
                 raise KeyError(f"{topic} has no column {name}; it has {', '.join(plain)}")
-        codes = "".join(field["code"] * field["count"] for field in self.topics[topic]["fields"])
-        # Struct's codes mean the same to NumPy. Several topics have a column of their own named time.
-        columns = [(f"column {name}", "<" + code) for name, code in zip(plain, codes, strict=True)]
-        row = np.dtype([("time", "<f8"), *columns])
-        pieces = [np.frombuffer(rows, row) for rows in self.rows(topic, start, end)]
-        whole = np.concatenate(pieces) if pieces else np.empty(0, row)
-        whole = whole[(whole["time"] >= start) & (whole["time"] <= end)]
-        scales = dict(zip(plain, layout.scales, strict=True))
-        values = {name: whole[f"column {name}"].astype(np.float64) * scales[name] for name in names}
-        return whole["time"].astype(np.float64), values
+        places = [plain.index(name) for name in names]
+        # A chunk holds the first bytes of all its rows, then the second ones; only wanted ones are joined.
+        wanted = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
+        pieces = [table[wanted] for table in self._tables(topic, start, end)]
+        whole = np.concatenate(pieces, axis=1) if pieces else np.empty((len(wanted), 0), np.uint8)
+
+        def column(first: int, type_: "np.dtype[Any]") -> "Floats":
+            rows = np.ascontiguousarray(whole[first : first + type_.itemsize].T)
+            return rows.view(type_).reshape(-1).astype(np.float64)
+
+        times = column(0, np.dtype("<f8"))
+        inside = (times >= start) & (times <= end)
+        values: dict[str, Floats] = {}
+        first = 8
+        for name, at in zip(names, places, strict=True):
+            values[name] = (column(first, types[at]) * layout.scales[at])[inside]
+            first += types[at].itemsize
+        return times[inside], values
+
+    def changes(self, topic: str) -> Iterator[dict[str, Any]]:
+        """The documents that say something else than the one before, but for their time."""
+        before = b""
+        for number, encoding, data in self._data(topic, -inf, inf):
+            if encoding != DOCUMENTS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                for line in zlib.decompress(data).splitlines():
+                    says = line.partition(b",")[2]
+                    if says != before:
+                        before = says
+                        yield json.loads(line)
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(topic, number, problem) from problem
+
+    def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
+        """The bytes of each chunk's rows, in the shape (size of a row, samples)."""
+        import numpy as np
+
+        size = self.topics[topic]["row_bytes"]
+        for number, encoding, data in self._data(topic, start, end):
+            if encoding != ROWS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                yield np.frombuffer(zlib.decompress(data), np.uint8).reshape(size, -1)
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(topic, number, problem) from problem
+
+    def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
+        """Number, encoding and data of such chunks; whole objects of Chunk would take three times as long."""
+        query = select(Chunk.number, Chunk.encoding, Chunk.data)
+        return self._found(query, DATA_AT_ONCE, topic, start, end)
+
+    def _found(self, query: Any, limit: int, topic: str, start: float, end: float) -> Iterator[Any]:
+        """What `query` selects of the chunks that may have samples in this range; `limit` at a time."""
+        number = -1
+        query = query.where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+        query = query.order_by(col(Chunk.number)).limit(limit)
+        if start > -inf:
+            query = query.where(Chunk.last_time >= start)
+        if end < inf:
+            query = query.where(Chunk.first_time <= end)
+        while True:
+            with self._store.read() as database:
+                found = database.exec(query.where(col(Chunk.number) > number)).all()
+            yield from found
+            if len(found) < limit:
+                return
+            number = found[-1].number
 
 
 @contextmanager
 def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
+        raise _foreign(topic, chunk.number, chunk.encoding)
     try:
         yield
     except (ValueError, KeyError, zlib.error) as problem:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}") from problem
+        raise _damaged(topic, chunk.number, problem) from problem
+
+
+def _foreign(topic: str, number: int, encoding: str) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is encoded as {encoding!r}")
+
+
+def _damaged(topic: str, number: int, problem: Exception) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is damaged: {problem}")

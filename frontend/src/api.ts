@@ -21,12 +21,26 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type ThesisTable = Schemas['ThesisTable'];
 
+export type Signal = Schemas['Signal'];
+export type Comparison = Schemas['Comparison'];
+export type Compared = Schemas['Compared'];
+export type ComparedLines = Schemas['Lines'];
+export type ComparisonLine = Schemas['Line'];
+export type Align = Schemas['Align'];
+export type TimeRange = Schemas['TimeRange'];
+export type FigureMeaning = Schemas['FigureMeaning'];
+export type FigureMark = Schemas['Mark'];
+export type WantedLines = Schemas['Wanted'];
+export type WantedComparison = Schemas['WantedComparison'];
+
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
 const TIMEOUT = 5000;
 const TIMEOUT_STOP = 2000;
 /** ms; a board may have to be handed over first, or to get its firmware back */
 const TIMEOUT_COMM_TEST = 120_000;
+/** ms; hours of recordings are read */
+const TIMEOUT_COMPARE = 60_000;
 
 async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
   try {
@@ -74,6 +88,10 @@ export const api = {
   sessions: () => request<Session[]>('GET', '/sessions'),
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
+  signals: (id: Session['id']) => request<Signal[]>('GET', `/sessions/${id}/signals`),
+  compare: (wanted: WantedComparison) => request<Comparison>('POST', '/compare', wanted, TIMEOUT_COMPARE),
+  compareLines: (wanted: WantedLines) => request<ComparedLines>('POST', '/compare/lines', wanted, TIMEOUT_COMPARE),
+  compareReport: (query: URLSearchParams) => `/api/compare/report?${query.toString()}`,
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),

@@ -168,6 +168,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Lay sessions over each other
+         * @description Lines, figures and what was different about the sessions.
+         */
+        post: operations["compareSessions"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/compare/lines": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Lines for a part of the time
+         * @description What is fetched when somebody looks closer.
+         */
+        post: operations["compareLines"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/compare/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A comparison as one HTML file
+         * @description Charts, figures and differences, with all that they need: it opens without any network.
+         */
+        get: operations["getComparisonReport"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -536,6 +596,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/sessions/{session}/signals": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What of a session can be drawn over time
+         * @description The columns of its topics that have samples, and numbers of its documents.
+         */
+        get: operations["listSignals"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions/{session}/stop": {
         parameters: {
             query?: never;
@@ -615,6 +695,30 @@ export interface components {
             session: number | null;
             /** Title */
             title: string;
+        };
+        /**
+         * Align
+         * @description The moment that becomes 0 s in every session.
+         */
+        Align: {
+            /**
+             * By
+             * @default start
+             * @enum {string}
+             */
+            by: "start" | "armed" | "set_point" | "marker";
+            /**
+             * Marker
+             * @description its text; the first of this text counts
+             * @default
+             */
+            marker: string;
+            /**
+             * Number
+             * @description which of the set point's steps
+             * @default 1
+             */
+            number: number;
         };
         /**
          * Card
@@ -718,6 +822,92 @@ export interface components {
             seconds: number;
         };
         /**
+         * Compared
+         * @description One session, with all that is compared.
+         */
+        Compared: {
+            /**
+             * Armed
+             * @description from and to, s since its start
+             */
+            armed: [
+                number,
+                number
+            ][];
+            /**
+             * Duration
+             * @description s
+             */
+            duration: number;
+            /** Events */
+            events: components["schemas"]["Told"][];
+            /** Figures */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            /** Id */
+            id: number;
+            /** Markers */
+            markers: components["schemas"]["Told"][];
+            /** Name */
+            name: string;
+            /**
+             * Offset
+             * @description s since its start of what is 0 s; null where it lacks that
+             */
+            offset: number | null;
+            /**
+             * Problem
+             * @description why it cannot be laid over the others; empty where it can
+             */
+            problem: string;
+            /**
+             * Range
+             * @description what the figures are taken over
+             */
+            range: [
+                number,
+                number
+            ][];
+            /**
+             * Series
+             * @description by signal; without those that it does not have
+             */
+            series: {
+                [key: string]: components["schemas"]["Line"];
+            };
+            /**
+             * Set Point Steps
+             * @description how often the set point changed while armed
+             */
+            set_point_steps: number;
+            /**
+             * Started
+             * @description UTC, s since 1970
+             */
+            started: number;
+            /** State */
+            state: string;
+        };
+        /**
+         * Comparison
+         * @description Sessions laid over each other, in the order that was asked for.
+         */
+        Comparison: {
+            align: components["schemas"]["Align"];
+            /** Differences */
+            differences: components["schemas"]["Difference"][];
+            /** Figures */
+            figures: components["schemas"]["FigureMeaning"][];
+            /** Sessions */
+            sessions: components["schemas"]["Compared"][];
+            /**
+             * Signals
+             * @description the wanted ones that at least one session has
+             */
+            signals: components["schemas"]["Signal"][];
+        };
+        /**
          * Controller
          * @description A controller, and the gains that are to change.
          */
@@ -745,12 +935,55 @@ export interface components {
             title: string;
         };
         /**
+         * Difference
+         * @description Something that is not the same in all sessions.
+         */
+        Difference: {
+            /**
+             * Group
+             * @description In force, Session, robot.toml or Scenario
+             */
+            group: string;
+            /** Name */
+            name: string;
+            /**
+             * Values
+             * @description one for each session; empty where it has no such thing
+             */
+            values: string[];
+        };
+        /**
          * DocumentText
          * @description A test document as it was written.
          */
         DocumentText: {
             /** Text */
             text: string;
+        };
+        /**
+         * Drawn
+         * @description One session's lines.
+         */
+        Drawn: {
+            /** Id */
+            id: number;
+            /**
+             * Offset
+             * @description s since its start of what is 0 s; null where it lacks that
+             */
+            offset: number | null;
+            /**
+             * Problem
+             * @description why it cannot be laid over the others; empty where it can
+             */
+            problem: string;
+            /**
+             * Series
+             * @description by signal; without those that it does not have
+             */
+            series: {
+                [key: string]: components["schemas"]["Line"];
+            };
         };
         /**
          * EndedRun
@@ -782,6 +1015,46 @@ export interface components {
             state: "complete" | "cancelled" | "failed";
             /** Title */
             title: string;
+        };
+        /**
+         * Figure
+         * @description A figure's value, or why there is none.
+         */
+        Figure: {
+            mark?: components["schemas"]["Mark"] | null;
+            /** Value */
+            value: number | null;
+            /**
+             * Words
+             * @description why there is no value, or what else is to be known
+             * @default
+             */
+            words: string;
+        };
+        /**
+         * FigureMeaning
+         * @description What a figure is.
+         */
+        FigureMeaning: {
+            /**
+             * Better
+             * @description the better value: the least, the nearest to 0
+             * @enum {string}
+             */
+            better: "less" | "zero" | "neither";
+            /** Decimals */
+            decimals: number;
+            /**
+             * Meaning
+             * @description a sentence for who asks
+             */
+            meaning: string;
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
         };
         /**
          * Gain
@@ -825,6 +1098,29 @@ export interface components {
             status: "ok" | "starting" | "failed";
             /** Version */
             version: string;
+        };
+        /**
+         * Line
+         * @description A signal over time, thinned out to least and most of each column; null breaks the line.
+         */
+        Line: {
+            /** High */
+            high: (number | null)[];
+            /** Low */
+            low: (number | null)[];
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number[];
+        };
+        /**
+         * Lines
+         * @description The lines of a part of the time.
+         */
+        Lines: {
+            /** Sessions */
+            sessions: components["schemas"]["Drawn"][];
         };
         /**
          * LinkFault
@@ -906,6 +1202,23 @@ export interface components {
              * @description now, s, steady clock
              */
             time: number;
+        };
+        /**
+         * Mark
+         * @description Where a figure is to be seen in the chart of the depth: s since the session's start, and m.
+         */
+        Mark: {
+            /** End */
+            end: number;
+            /** High */
+            high?: number | null;
+            /**
+             * Low
+             * @description null: as high as the chart
+             */
+            low?: number | null;
+            /** Start */
+            start: number;
         };
         /**
          * NewSession
@@ -1314,6 +1627,22 @@ export interface components {
             detected?: number | null;
         };
         /**
+         * Signal
+         * @description One number that a session holds over time; `name` is topic and column with a dot between them.
+         */
+        Signal: {
+            /** Column */
+            column: string;
+            /** Meaning */
+            meaning: string;
+            /** Name */
+            name: string;
+            /** Topic */
+            topic: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
          * Start
          * @description A document to run, and where.
          */
@@ -1435,6 +1764,30 @@ export interface components {
             /** Title */
             title: string;
         };
+        /**
+         * TimeRange
+         * @description From one moment to another, s on the common time axis, where the aligned moment is 0.
+         */
+        TimeRange: {
+            /** End */
+            end: number;
+            /** Start */
+            start: number;
+        };
+        /**
+         * Told
+         * @description An event or a marker; `time` in s since the session's start.
+         */
+        Told: {
+            /** Kind */
+            kind: string;
+            /** Severity */
+            severity: string;
+            /** Text */
+            text: string;
+            /** Time */
+            time: number;
+        };
         /** ValidationError */
         ValidationError: {
             /** Context */
@@ -1487,6 +1840,62 @@ export interface components {
              * @description Hz
              */
             rate?: number | null;
+        };
+        /**
+         * Wanted
+         * @description Sessions, signals of them, and how they are laid over each other.
+         */
+        Wanted: {
+            /**
+             * @default {
+             *       "by": "start",
+             *       "marker": "",
+             *       "number": 1
+             *     }
+             */
+            align: components["schemas"]["Align"];
+            /**
+             * Points
+             * @description columns of each line
+             * @default 1000
+             */
+            points: number;
+            /** Sessions */
+            sessions: number[];
+            /** Signals */
+            signals: string[];
+            /** @description what is drawn; everything without */
+            view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
+         * WantedComparison
+         * @description The same, with what the figures are taken over.
+         */
+        WantedComparison: {
+            /**
+             * @default {
+             *       "by": "start",
+             *       "marker": "",
+             *       "number": 1
+             *     }
+             */
+            align: components["schemas"]["Align"];
+            /** Band */
+            band?: number | null;
+            /**
+             * Points
+             * @description columns of each line
+             * @default 1000
+             */
+            points: number;
+            /** @description for the figures; the time armed without */
+            range?: components["schemas"]["TimeRange"] | null;
+            /** Sessions */
+            sessions: number[];
+            /** Signals */
+            signals: string[];
+            /** @description what is drawn; everything without */
+            view?: components["schemas"]["TimeRange"] | null;
         };
     };
     responses: never;
@@ -1775,6 +2184,167 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ThesisTable"][];
+                };
+            };
+        };
+    };
+    compareSessions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WantedComparison"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Comparison"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    compareLines: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Wanted"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Lines"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getComparisonReport: {
+        parameters: {
+            query: {
+                sessions: string;
+                signals?: string;
+                by?: string;
+                number?: number;
+                marker?: string;
+                /** @description what the figures are taken over */
+                start?: number | null;
+                end?: number | null;
+                /** @description what the charts show at first */
+                view_start?: number | null;
+                view_end?: number | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2568,6 +3138,55 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    listSignals: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Signal"][];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

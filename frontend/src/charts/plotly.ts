@@ -1,5 +1,6 @@
-/** Plotly, which only this page needs: about 400 kB, fetched when the first figure is drawn. */
+/** Plotly, for figures that are kept: about 400 kB, fetched when the first one is drawn. */
 import type Plotly from 'plotly.js-basic-dist-min';
+import './plotly.css';
 
 export type PlotlyModule = typeof Plotly;
 
@@ -7,7 +8,7 @@ const MARK = 'plotly.js-style-global';
 
 /**
  * Plotly puts its rules into a style element, which the page's content security policy refuses. It does not try
- * where something of this name and class is there already; HeatMaps.svelte has the rules that a figure needs.
+ * where something of this name and class is there already; plotly.css has the rules that a figure needs.
  */
 export async function loadPlotly(): Promise<PlotlyModule> {
   if (document.getElementById(MARK) === null) {

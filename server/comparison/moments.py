@@ -1,0 +1,43 @@
+"""Moments and spans of a session; times are s since its start."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """From one moment to another, s since the session's start."""
+
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Something that happened; `kind` is one word, severity as in events."""
+
+    time: float
+    kind: str
+    severity: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """The controller in force from `time` on, with its gains by name."""
+
+    time: float
+    controller: str
+    gains: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """When the robot was armed, and how it was controlled; times in s since the session's start."""
+
+    armed: tuple[Span, ...]
+    armed_at_start: bool
+    """It was armed before the recording began, so that the moment is not in it."""
+    controls: tuple[Control, ...]
+    state: dict[str, Any]
+    """The newest state document at the first arming, or the first of all; empty where there is none."""

@@ -1,0 +1,105 @@
+"""Two recorded sessions laid over each other, in a real browser; their report, opened without any network."""
+
+import re
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.stack import Stack
+
+STEP_MS = 20_000
+LINES = ".scatterlayer .trace path.js-line"
+
+
+def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
+    """Record a short session through the interface. Returns its number."""
+    session = stack.api.post("/sessions", json={"name": name}).raise_for_status().json()
+    page.goto(f"{stack.url}/#/operate")
+    if armed:
+        button = page.get_by_role("button", name="Hold to arm")
+        expect(button).to_be_enabled(timeout=STEP_MS)
+        stack.api.post("/robot/arm").raise_for_status()
+    page.wait_for_timeout(2500)  # so that there is something to be drawn
+    stack.api.post("/robot/stop").raise_for_status()
+    stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
+    return int(session["id"])
+
+
+def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack, tmp_path: Path) -> None:
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    one = record(page, stack, "with fins", armed=True)
+    other = record(page, stack, "without", armed=False)
+    page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
+    expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible(timeout=STEP_MS)
+    expect(page.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+
+    page.get_by_role("button", name="Figures 14 to 16").click()
+    expect(page.locator(".ytick").first).to_be_visible()
+    expect(page.get_by_text("Command downwards")).to_be_visible(timeout=STEP_MS)
+    figures = page.get_by_role("region", name="Figures of the sessions")
+    strokes = figures.get_by_role("row", name=re.compile("^Fin strokes"))
+    expect(strokes.get_by_role("button").nth(1)).to_have_text(re.compile(r"^\d+$"))
+    expect(strokes.get_by_role("button").nth(2)).to_have_text("none")
+    strokes.get_by_role("button").nth(2).hover()
+    expect(page.get_by_text("The robot was never armed in this session.")).to_be_visible()
+
+    page.get_by_label("Align at").select_option("armed")
+    expect(page.get_by_text("never armed in this session. It is not drawn.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("s since arming")).to_be_visible()
+    shapes = page.locator(".shapelayer path")
+    count = shapes.count()
+    figures.get_by_role("row", name=re.compile("^RMSE")).get_by_role("button").nth(1).hover()
+    expect(shapes).to_have_count(count + 1)
+
+    page.get_by_label("From", exact=True).fill("0.5")
+    page.get_by_label("From", exact=True).press("Enter")
+    expect(page.get_by_role("button", name="Whole time")).to_be_enabled()
+    page.get_by_role("button", name="What is shown").click()
+    expect(page.get_by_role("button", name=re.compile(r"^0\.5 to "))).to_be_visible()
+
+    check_files(page, tmp_path)
+    check_report(page, browser, tmp_path / "report.html")
+    assert complaints == []
+
+
+def check_files(page: Page, folder: Path) -> None:
+    """What is shown can be saved as a picture."""
+    beginnings = {"PNG": b"\x89PNG\r\n", "SVG": b"<svg "}
+    for name, beginning in beginnings.items():
+        with page.expect_download() as download:
+            page.get_by_role("button", name=name, exact=True).click()
+        path = folder / name
+        download.value.save_as(path)
+        assert path.read_bytes().startswith(beginning)
+
+
+def check_report(page: Page, browser: Browser, path: Path) -> None:
+    """The report opens without any network, asks for nothing, and has its charts and tables."""
+    page.get_by_label("Align at").select_option("start")
+    page.get_by_role("button", name="Depth", exact=True).click()
+    with page.expect_download(timeout=STEP_MS) as download:
+        page.get_by_role("link", name="HTML report").click()
+    download.value.save_as(path)
+    context = browser.new_context(offline=True)
+    report = context.new_page()
+    asked: list[str] = []
+    complaints: list[str] = []
+    report.on("request", lambda request: asked.append(request.url))
+    report.on("pageerror", lambda error: complaints.append(str(error)))
+    report.goto(path.as_uri())
+    expect(report.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+    expect(report.get_by_role("heading", name="with fins, without")).to_be_visible()
+    expect(report.get_by_role("row", name=re.compile("^Fin strokes"))).to_be_visible()
+    assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
+    assert complaints == []
+    context.close()
+
+
+def test_an_address_that_names_nothing_says_what_to_do(any_page: Page, stack: Stack) -> None:
+    any_page.goto(f"{stack.url}/#/sessions/compare/")
+    expect(any_page.get_by_text("No session is chosen")).to_be_visible()
+    any_page.goto(f"{stack.url}/#/sessions/compare/999999")
+    expect(any_page.get_by_text("There is no session 999999; it may have been deleted.")).to_be_visible()
+    wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
+    assert any_page.evaluate(wider) == 0
