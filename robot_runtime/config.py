@@ -123,6 +123,16 @@ class ServerConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SessionsConfig:
+    """What is recorded and removed by itself; times in days, room in GB of 10^9 bytes, 0: no such rule."""
+
+    record_at_arming: bool = True
+    undo_days: Annotated[float, Range(0, 3650)] = 7.0
+    keep_days: Annotated[float, Range(0, 36500)] = 0.0
+    keep_free: Annotated[float, Range(0, 100_000)] = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Config:
     """All of robot.toml."""
 
@@ -133,6 +143,7 @@ class Config:
     vision: VisionConfig = VisionConfig()
     zenoh: ZenohConfig = ZenohConfig()
     server: ServerConfig = ServerConfig()
+    sessions: SessionsConfig = SessionsConfig()
 
     def __post_init__(self) -> None:
         if self.robot.mode == "hil" and self.link.baud < HIL_BAUD_MIN:

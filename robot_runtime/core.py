@@ -90,6 +90,7 @@ class Core:
             self.tell,
             open_camera,
             messages,
+            on_thumbnail=self._take_thumbnail,
         )
         self._every: list[tuple[float, Callable[[], None]]] = [
             (_STATE_EVERY, self.announce),
@@ -214,6 +215,9 @@ class Core:
         text = self.line.text
         severity: Severity = "info" if self.line.connected else "caution"
         self.tell(Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}."))
+
+    def _take_thumbnail(self, time: float, jpeg: bytes) -> None:
+        self.outbox.add_picture("thumbnail", time, jpeg)
 
     def _take_detection(self, detection: Detection) -> None:
         self.bus.publish_document("detection", detection)

@@ -12,8 +12,10 @@ from server import VERSION
 from server.assembly import Assembly
 from server.bridge import RuntimeSilent
 from server.comparison.shapes import NoSessionError
+from server.markers import UnknownMark
 from server.page import Page, make_router
 from server.parts import Command
+from server.presence import NotNow, UnknownSession
 from server.recorder import RecordingRefused
 from server.recording import RecordingError
 from server.routes import (
@@ -22,11 +24,13 @@ from server.routes import (
     health,
     link,
     live,
+    marks,
     robot,
     scenarios,
     scene,
     sessions,
     simulator,
+    storage,
 )
 from server.security import Guard
 from server.settings import Settings
@@ -57,12 +61,15 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
+    app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(UnknownSession, _absent)
+    app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
-    modules = (health, robot, simulator, scene, link, sessions, compare, comm_tests, scenarios, live)
-    for module in modules:
+    robots = (health, robot, simulator, scene, link, live)
+    for module in (*robots, sessions, marks, storage, compare, comm_tests, scenarios):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app
@@ -78,6 +85,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _absent(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(404, str(problem))
 
 
 async def _silent(_: Request, problem: Exception) -> JSONResponse:

@@ -20,7 +20,8 @@ from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages, NoAnswer, Subscription
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets.layout import LayoutError
-from robot_runtime.topics import BY_NAME, TOPICS, Block, Kind, read_blocks
+from robot_runtime.topics import BY_NAME, Block, read_blocks
+from server.chunks import RECORDED
 from server.settings import Settings, SetupError
 from server.source import Source
 
@@ -47,7 +48,7 @@ CONTACT_SECONDS = 5.0
 
 _TRUTH, _NOTICE = BY_NAME["truth"], BY_NAME["notice"]
 SENT_BY = {
-    "runtime": tuple(one for one in TOPICS if one.kind is not Kind.PICTURE and one not in (_TRUTH, _NOTICE)),
+    "runtime": tuple(one for one in RECORDED if one not in (_TRUTH, _NOTICE)),
     "simulator": (_TRUTH,),
 }
 """What the processes send that number it; notices are the server's own."""

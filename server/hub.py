@@ -173,6 +173,8 @@ class Hub:
         rows: list[Block] = []
         documents: list[Block] = []
         for block in blocks:
+            if block.topic.name == "thumbnail":
+                continue
             if block.topic.kind is Kind.PICTURE:
                 self._picture_number += 1
                 if block.topic.name in self._watched:

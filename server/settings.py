@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, HilConfig, LinkConfig, load
+from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
 from server.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
@@ -42,6 +42,11 @@ class DataFolder:
     def logs(self) -> Path:
         """What the supervised processes print."""
         return self.path / "logs"
+
+    @property
+    def exports(self) -> Path:
+        """Sessions as files, to be taken home."""
+        return self.path / "exports"
 
     @property
     def run(self) -> Path:
@@ -104,6 +109,7 @@ class Settings:
     mode: Mode = "emulated"
     link: LinkConfig = field(default_factory=LinkConfig)
     hil: HilConfig = field(default_factory=HilConfig)
+    sessions: SessionsConfig = field(default_factory=SessionsConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
@@ -144,6 +150,7 @@ def read_settings(
         mode=loaded.robot.mode,
         link=loaded.link,
         hil=loaded.hil,
+        sessions=loaded.sessions,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

@@ -29,7 +29,7 @@ export type ComparisonLine = Schemas['Line'];
 export type Align = Schemas['Align'];
 export type TimeRange = Schemas['TimeRange'];
 export type FigureMeaning = Schemas['FigureMeaning'];
-export type FigureMark = Schemas['Mark'];
+export type FigureMark = Schemas['FigureMark'];
 export type WantedLines = Schemas['Wanted'];
 export type WantedComparison = Schemas['WantedComparison'];
 

@@ -11,9 +11,9 @@ from robot_runtime.cache import Cache, Kept, write_question
 from robot_runtime.packets.layout import Record
 from robot_runtime.topics import BY_NAME, NUMBERS, Block, row
 from server.bridge import SENT_BY
+from server.catalogue import Catalogue
 from server.models import SessionRow
 from server.resume import Missing, find_missing
-from server.sessions import list_sessions
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block, depth_block
@@ -83,7 +83,7 @@ class Wreck:
 
     @property
     def state(self) -> str:
-        (session,) = list_sessions(self.after.store)
+        (session,) = Catalogue(self.after.store).list()
         return session.state
 
 
