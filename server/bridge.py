@@ -39,11 +39,10 @@ QUEUE_MAX = 20_000
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
-KEPT_SECONDS = 5.0
-KEPT_TRIES = 5
+KEPT_SECONDS = 3.0
 KEPT_PAUSE = 0.1
 """s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
-CONTACT_SECONDS = 5.0
+CONTACT_SECONDS = 10.0
 """For which a server that starts waits for processes that a killed one has left."""
 
 _TRUTH, _NOTICE = BY_NAME["truth"], BY_NAME["notice"]
@@ -200,7 +199,8 @@ class Bridge:
         return kept
 
     async def _ask_kept(self, name: str, wanted: Mapping[str, int]) -> Kept | None:
-        for _ in range(KEPT_TRIES):
+        end = self._loop.time() + KEPT_SECONDS
+        while self._loop.time() < end:
             try:
                 return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted)
             except NoAnswer:
