@@ -23,6 +23,7 @@ PARTS = (
     "start",
     "stack",
     "latency",
+    "compare",
 )
 RESULT = Path("build/bench.json")
 

@@ -116,6 +116,8 @@ def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, 
     both = compare(store, session, never, align={"by": "armed"})
     assert [bool(one.series) for one in both.sessions] == [True, False]
     assert both.sessions[1].figures["rise_time"].words == "The robot was never armed in this session."
+    part = compare(store, never, align={"by": "armed"}, range={"start": 0, "end": 5}).sessions[0]
+    assert {(one.value, one.words) for one in part.figures.values()} == {(None, problems["armed"])}
     second = compare(store, session, align={"by": "set_point", "number": 2}).sessions[0]
     assert second.problem == (
         "The set point changed only once while the robot was armed, so there is no step 2."
