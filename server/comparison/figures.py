@@ -18,6 +18,8 @@ from server.store import Store
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"
 HEIGHT_LEAST = 0.05
 """m; less is no step to be judged by."""
+LATE_MOST = 0.5
+"""s by which a recording may begin after the step that it is judged by, as one that begins at arming does."""
 _FINS = tuple(f"angle_{fin}" for fin in range(4))
 _LINK = {
     "frames_lost": "frames_missed",
@@ -117,7 +119,8 @@ def _step(
     for span in wanted.spans:
         for begin in sorted({*armings, *changes}):
             meant = wanted.anchor is None or abs(begin - wanted.anchor) < 1e-6
-            if not (meant and span.start <= begin < span.end):
+            recorded = begin >= depth.times[0] - LATE_MOST
+            if not (meant and recorded and span.start <= begin < span.end):
                 continue
             ends = [span.end, *(one for one in (*changes, *_ends(history)) if one > begin)]
             response = measure_step(depth, begin, min(ends), _value_at(set_point, begin), band)

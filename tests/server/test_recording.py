@@ -1,10 +1,13 @@
-import pytest
+import asyncio
 
-from server.recording import CHUNKS_AT_ONCE, Recording
+import pytest
+from sqlalchemy import text
+
+from server.recording import CHUNKS_AT_ONCE, Recording, RecordingError
 from server.sessions import find_row
 from server.settings import Settings
 from server.store import Store
-from tests.server.blocks import debug_block, depth_block
+from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.test_export import record
 
 
@@ -41,3 +44,25 @@ def test_documents_of_a_range(store: Store, settings: Settings) -> None:
     assert first["time"] <= second["time"] <= third["time"]
     if first["time"] < second["time"]:
         assert list(recording.documents("debug", second["time"], second["time"])) == [second]
+
+
+def test_changes_are_documents_that_say_something_else(store: Store, settings: Settings) -> None:
+    documents = [(100.0, 0.5), (101.0, 0.5), (102.0, 1.0), (103.0, 1.0), (104.0, 0.5)]
+    batches = [
+        [state_block(place, time=time, set_point=set_point)]
+        for place, (time, set_point) in enumerate(documents)
+    ]
+    changes = list(read(store, record(store, settings, *batches)).changes("state"))
+    assert [(one["time"], one["set_point"]) for one in changes] == [(100.0, 0.5), (102.0, 1.0), (104.0, 0.5)]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"), [("data = x'00'", "is damaged"), ("encoding = 'other'", "is encoded as 'other'")]
+)
+def test_what_cannot_be_read_is_told(store: Store, settings: Settings, change: str, words: str) -> None:
+    recording = read(store, record(store, settings, [depth_block(0, 5), state_block(0)]))
+    asyncio.run(store.write(lambda connection: connection.execute(text(f"UPDATE chunk SET {change}"))))
+    with pytest.raises(RecordingError, match=f"chunk 0 of depth {words}"):
+        recording.columns("depth", ["depth"])
+    with pytest.raises(RecordingError, match=f"chunk 0 of state {words}"):
+        list(recording.changes("state"))
