@@ -24,6 +24,7 @@ PARTS = (
     "start",
     "stack",
     "latency",
+    "compare",
 )
 RESULT = Path("build/bench.json")
 

@@ -35,6 +35,7 @@ def _goodput(name: str) -> dict[str, Goal]:
 GOALS = {
     "codec.ratio_to_cobs_zlib": _most(1.3),
     "codec.ratio_to_pymavlink": _most(1 / 6),
+    "compare.open_ms": _most(1500),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
     "link.table6_min_success": _least(1.0),

@@ -11,7 +11,17 @@ from server.comparison.alignment import NoMomentError, find_moment
 from server.comparison.decimation import Floats, decimate
 from server.comparison.definitions import FIGURES, Figure
 from server.comparison.differences import find_differences
-from server.comparison.figures import MEASURED, OUTPUT, SET_POINT, Range, measure
+from server.comparison.figures import (
+    MEASURED,
+    NEVER_ARMED,
+    NOTHING_THERE,
+    OUTPUT,
+    SET_POINT,
+    Range,
+    complete,
+    count,
+    measure,
+)
 from server.comparison.history import (
     read_events,
     read_history,
@@ -70,7 +80,8 @@ class Comparer:
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
         self._histories: Kept[History] = Kept()
-        self._figures: Kept[dict[str, Figure]] = Kept()
+        self._measured: Kept[dict[str, Figure]] = Kept()
+        self._counted: Kept[dict[str, Figure]] = Kept()
 
     def signals(self, session: int) -> list[Signal]:
         """What of a session can be drawn."""
@@ -143,16 +154,24 @@ class Comparer:
             markers=[_told(marker) for marker in one.markers],
             series=self._draw(one, wanted),
             range=[(span.start, span.end) for span in taken.spans],
-            figures=self._measure(one, taken, wanted.band),
+            figures=self._measure(one, taken, wanted),
         )
 
-    def _measure(self, one: _Laid, taken: Range, band: float | None) -> dict[str, Figure]:
+    def _measure(self, one: _Laid, taken: Range, wanted: WantedComparison) -> dict[str, Figure]:
+        band = wanted.band
+        if wanted.range is not None and one.offset is None:
+            return complete({}, one.problem)
         key = (one.row.identifier, taken, band)
-        figures = self._figures.recall(key)
-        if figures is None:
-            figures = measure(self._store, one.recording, self._samples, one.history, taken, band)
-            self._figures.keep(key, figures, one.row)
-        return figures
+        measured = self._measured.recall(key)
+        if measured is None:
+            measured = measure(one.recording, self._samples, one.history, taken, band)
+            self._measured.keep(key, measured, one.row)
+        place = (one.row.identifier, taken.spans)
+        counted = self._counted.recall(place)
+        if counted is None:
+            counted = count(self._store, one.recording, taken.spans)
+            self._counted.keep(place, counted, one.row)
+        return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
     def _draw(self, one: _Laid, wanted: Wanted) -> dict[str, Line]:
         if one.offset is None:
@@ -172,11 +191,9 @@ class Comparer:
 
 def _range(one: _Laid, wanted: WantedComparison) -> Range:
     if wanted.range is not None:
-        # A session that cannot be aligned has no such range.
-        spans = () if one.offset is None else (_shift(wanted.range, one.offset),)
-        return Range(spans, chosen=True)
+        return Range(() if one.offset is None else (_shift(wanted.range, one.offset),))
     anchor = one.offset if wanted.align.by in ("armed", "set_point") else None
-    return Range(one.history.armed, chosen=False, anchor=anchor)
+    return Range(one.history.armed, anchor)
 
 
 def _shift(part: TimeRange, offset: float) -> Span:

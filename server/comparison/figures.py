@@ -1,6 +1,6 @@
 """Figures of one session over a range of its time."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,24 +18,26 @@ from server.store import Store
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"
 HEIGHT_LEAST = 0.05
 """m; less is no step to be judged by."""
+LATE_MOST = 0.5
+"""s by which a recording may begin after the step that it is judged by, as one that begins at arming does."""
 _FINS = tuple(f"angle_{fin}" for fin in range(4))
 _LINK = {
     "frames_lost": "frames_missed",
     "frames_repeated": "frames_repeated",
     "frames_invalid": "frames_invalid",
 }
+NOTHING_THERE = "The recording has no depth and set point in this range."
 NEVER_ARMED = "The robot was never armed in this session."
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """The time over which figures are taken: in a chosen range all of it, else the time armed.
+    """The time over which figures are taken.
 
     `anchor` is the moment (s) of the step that is meant; the first one in the range without.
     """
 
     spans: tuple[Span, ...]
-    chosen: bool
     anchor: float | None = None
 
     def mask(self, times: np.ndarray) -> np.ndarray:
@@ -48,14 +50,12 @@ class Range:
 
 
 def measure(
-    store: Store,
-    recording: Recording,
-    samples: Samples,
-    history: History,
-    wanted: Range,
-    band: float | None = None,
+    recording: Recording, samples: Samples, history: History, wanted: Range, band: float | None = None
 ) -> dict[str, Figure]:
-    """Every figure of FIGURES; `band` is that of the settling time, m. Raises StoreError, RecordingError."""
+    """Those of FIGURES that follow from depth, set point and command; `band` is that of the settling time, m.
+
+    Raises StoreError, RecordingError.
+    """
     found: dict[str, Figure] = {}
     if wanted.spans:
         series = samples.read(recording, [MEASURED, SET_POINT, OUTPUT])
@@ -64,13 +64,22 @@ def measure(
             found |= _depth_figures(depth, set_point, history, wanted, band)
         if (output := series.get(OUTPUT)) is not None:
             found["effort"] = _effort(output, wanted)
-        found["fin_strokes"] = _strokes(recording, wanted)
-    spans = wanted.spans or (Span(0.0, recording.row.duration),)
-    found |= _link(recording, spans) | {"gaps": _gaps(store, recording, spans)}
-    missing = Figure(
-        value=None,
-        words="The recording has no depth and set point in this range." if wanted.spans else NEVER_ARMED,
-    )
+    return found
+
+
+def count(store: Store, recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
+    """Those of FIGURES that are counted: strokes, losses, gaps; over the whole session without `spans`.
+
+    Raises StoreError, RecordingError.
+    """
+    found = {"fin_strokes": _strokes(recording, spans)} if spans else {}
+    whole = spans or (Span(0.0, recording.row.duration),)
+    return found | _link(recording, whole) | {"gaps": _gaps(store, recording, whole)}
+
+
+def complete(found: Mapping[str, Figure], why: str) -> dict[str, Figure]:
+    """All of FIGURES in their order; `why` says why those that were not found are missing."""
+    missing = Figure(value=None, words=why)
     return {meaning.name: found.get(meaning.name, missing) for meaning in FIGURES}
 
 
@@ -112,7 +121,8 @@ def _step(
     for span in wanted.spans:
         for begin in sorted({*armings, *changes}):
             meant = wanted.anchor is None or abs(begin - wanted.anchor) < 1e-6
-            if not (meant and span.start <= begin < span.end):
+            recorded = begin >= depth.times[0] - LATE_MOST
+            if not (meant and recorded and span.start <= begin < span.end):
                 continue
             ends = [span.end, *(one for one in (*changes, *_ends(history)) if one > begin)]
             response = measure_step(depth, begin, min(ends), _value_at(set_point, begin), band)
@@ -186,10 +196,10 @@ def _effort(output: Series, wanted: Range) -> Figure:
     return Figure(value=100 * float(np.abs(output.values[inside]).mean()))
 
 
-def _strokes(recording: Recording, wanted: Range) -> Figure:
+def _strokes(recording: Recording, spans: Sequence[Span]) -> Figure:
     origin = recording.row.started_steady
     strokes, seen = 0.0, False
-    for span in wanted.spans:
+    for span in spans:
         if "motor" not in recording.topics:
             break
         _, angles = recording.columns("motor", _FINS, span.start + origin, span.end + origin)

@@ -34,7 +34,7 @@ def read_history(recording: Recording, samples: Samples) -> History:
     before = [one for one in changes if not armed or one["time"] - origin <= armed[0].start]
     return History(
         armed=armed,
-        armed_at_start=bool(changes[0].get("armed")),
+        armed_at_start=bool(changes[0].get("armed")) and changes[0].get("armed_since") is None,
         controls=tuple(_controls(changes, origin)),
         state=(before or changes[:1])[-1],
     )
@@ -89,7 +89,7 @@ def _spans_of_states(changes: list[dict[str, Any]], origin: float, end: float) -
         now = document["time"] - origin
         if document.get("armed") and since is None:
             told = document.get("armed_since")
-            since = max(0.0, (told if isinstance(told, int | float) else document["time"]) - origin)
+            since = (told if isinstance(told, int | float) else document["time"]) - origin
         elif not document.get("armed") and since is not None:
             yield Span(since, now)
             since = None

@@ -36,8 +36,9 @@ class History:
     """When the robot was armed, and how it was controlled; times in s since the session's start."""
 
     armed: tuple[Span, ...]
+    """The first may begin before the recording did, which is known where the state documents say so."""
     armed_at_start: bool
-    """It was armed before the recording began, so that the moment is not in it."""
+    """It was armed before the recording began, and nothing says when."""
     controls: tuple[Control, ...]
     state: dict[str, Any]
     """The newest state document at the first arming, or the first of all; empty where there is none."""

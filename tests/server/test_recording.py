@@ -1,11 +1,14 @@
+import asyncio
+
 import pytest
+from sqlalchemy import text
 
 from server.chunks import decode_pictures, encode_pictures
-from server.recording import CHUNKS_AT_ONCE, Recording
+from server.recording import CHUNKS_AT_ONCE, Recording, RecordingError
 from server.sessions import find_row
 from server.settings import Settings
 from server.store import Store
-from tests.server.blocks import debug_block, depth_block, picture_block, thumbnail_block
+from tests.server.blocks import debug_block, depth_block, picture_block, state_block, thumbnail_block
 from tests.server.test_export import record
 
 
@@ -62,3 +65,25 @@ def test_a_chunk_of_pictures_that_is_cut_off_is_damaged() -> None:
     for end in range(1, len(data)):
         with pytest.raises(ValueError, match="cut off"):
             list(decode_pictures(data[:end]))
+
+
+def test_changes_are_documents_that_say_something_else(store: Store, settings: Settings) -> None:
+    documents = [(100.0, 0.5), (101.0, 0.5), (102.0, 1.0), (103.0, 1.0), (104.0, 0.5)]
+    batches = [
+        [state_block(place, time=time, set_point=set_point)]
+        for place, (time, set_point) in enumerate(documents)
+    ]
+    changes = list(read(store, record(store, settings, *batches)).changes("state"))
+    assert [(one["time"], one["set_point"]) for one in changes] == [(100.0, 0.5), (102.0, 1.0), (104.0, 0.5)]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"), [("data = x'00'", "is damaged"), ("encoding = 'other'", "is encoded as 'other'")]
+)
+def test_what_cannot_be_read_is_told(store: Store, settings: Settings, change: str, words: str) -> None:
+    recording = read(store, record(store, settings, [depth_block(0, 5), state_block(0)]))
+    asyncio.run(store.write(lambda connection: connection.execute(text(f"UPDATE chunk SET {change}"))))
+    with pytest.raises(RecordingError, match=f"chunk 0 of depth {words}"):
+        recording.columns("depth", ["depth"])
+    with pytest.raises(RecordingError, match=f"chunk 0 of state {words}"):
+        list(recording.changes("state"))

@@ -42,14 +42,19 @@ def set_point_at(time: float) -> float:
 
 
 def dive(
-    controller: str = "pid", gains: Mapping[str, float] = {"kp": 3.0}, *, arms: bool = True, lost: int = 0
+    controller: str = "pid",
+    gains: Mapping[str, float] = {"kp": 3.0},
+    *,
+    arms: bool = True,
+    lost: int = 0,
+    begin: float = START,
 ) -> list[Block]:
-    """The blocks of such a dive; `lost` frames are missed at its end."""
+    """The blocks of such a dive from `begin` on; `lost` frames are missed at its end."""
     blocks = [
-        rows("depth", 50.0, _depth if arms else lambda _: _depth(START)),
-        rows("control", 10.0, _control),
-        rows("motor", 50.0, _motor),
-        rows("link", 1.0, lambda time: _link(lost if time > DISARMED - 5 else 0)),
+        rows("depth", 50.0, begin, _depth if arms else lambda _: _depth(START)),
+        rows("control", 10.0, begin, _control),
+        rows("motor", 50.0, begin, _motor),
+        rows("link", 1.0, begin, lambda time: _link(lost if time > DISARMED - 5 else 0)),
     ]
     chosen = {
         "name": controller,
@@ -60,6 +65,8 @@ def dive(
         ],
     }
     moments = [(START, False), (ARMED + 0.04, True), (DISARMED, False)] if arms else [(START, False)]
+    if begin > ARMED:
+        moments = [(begin, True), (DISARMED, False)]
     for place, (time, armed) in enumerate(moments):
         blocks.append(
             state_block(
@@ -75,24 +82,26 @@ def dive(
     return [*blocks, Block.of(BY_NAME["event"], 1, 0, documents([event]))]
 
 
-def record(store: Store, settings: Settings, blocks: list[Block], name: str = "dive") -> int:
+def record(
+    store: Store, settings: Settings, blocks: list[Block], name: str = "dive", started: float = STARTED_STEADY
+) -> int:
     """Record these blocks as a session that lasts until END. Returns its number."""
 
     async def scenario() -> int:
-        clock = SimulatedClock(STARTED_STEADY)
+        clock = SimulatedClock(started)
         recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
         session = await recorder.start(new_row(settings, clock, name, "", "{}"))
         for block in blocks:
             recorder.add(block)
-        clock.forward(END - STARTED_STEADY)
+        clock.forward(END - started)
         await recorder.stop(session.id)
         return session.id
 
     return asyncio.run(scenario())
 
 
-def rows(topic: str, rate: float, make: Callable[[float], Record]) -> Block:
-    times = (START + np.arange(round((END - START) * rate)) / rate).tolist()
+def rows(topic: str, rate: float, begin: float, make: Callable[[float], Record]) -> Block:
+    times = (begin + np.arange(round((END - begin) * rate)) / rate).tolist()
     payload = b"".join(row(time, make(time).to_bytes()) for time in times)
     return Block.of(BY_NAME[topic], len(times), 0, payload)
 

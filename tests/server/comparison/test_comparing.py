@@ -103,6 +103,17 @@ def test_moments_are_where_they_are(store: Store, session: int) -> None:
     assert [event.text for event in one.events] == ["Armed."]
 
 
+def test_a_recording_that_begins_armed(store: Store, settings: Settings) -> None:
+    """The state documents say since when, even before it; what was not recorded is not measured."""
+    for before, measured in ((0.2, True), (20.0, False)):
+        started = ARMED + before
+        one = record(store, settings, dive(begin=started), started=started)
+        (found,) = compare(store, one, align={"by": "armed"}).sessions
+        assert (found.offset, found.problem) == (pytest.approx(-before), "")
+        assert found.armed[0][0] == pytest.approx(-before)
+        assert (found.figures["rise_time"].value is not None) == measured
+
+
 def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, session: int) -> None:
     never = record(store, settings, dive(arms=False), name="never")
     problems = {
@@ -116,6 +127,8 @@ def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, 
     both = compare(store, session, never, align={"by": "armed"})
     assert [bool(one.series) for one in both.sessions] == [True, False]
     assert both.sessions[1].figures["rise_time"].words == "The robot was never armed in this session."
+    part = compare(store, never, align={"by": "armed"}, range={"start": 0, "end": 5}).sessions[0]
+    assert {(one.value, one.words) for one in part.figures.values()} == {(None, problems["armed"])}
     second = compare(store, session, align={"by": "set_point", "number": 2}).sessions[0]
     assert second.problem == (
         "The set point changed only once while the robot was armed, so there is no step 2."
