@@ -134,6 +134,7 @@ class _Performance:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
         self._stopped = lambda: False
         self._until(clock.now() + AFTERWARDS)
+        self._take_in()
         robot.publish_tick()
         self._teller.event(
             "ended",
@@ -163,12 +164,15 @@ class _Performance:
         line = self._stage.robot.conversation
         if now < self._look_at - _SAME_TIME and (line.gathering or not self._heard):
             return
-        if self._heard:
-            heard, self._heard = self._heard, b""
-            line.receive(heard)
+        self._take_in()
         line.poll()
         # Where bytes may come at any time, they are looked for in every step.
         self._look_at = now + (GATHERING if line.gathering else min(line.wait(), PERIOD))
+
+    def _take_in(self) -> None:
+        if self._heard:
+            heard, self._heard = self._heard, b""
+            self._stage.robot.conversation.receive(heard)
 
     def _happen(self, event: Event) -> None:
         now = self._stage.clock.now()
