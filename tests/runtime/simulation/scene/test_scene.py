@@ -31,16 +31,17 @@ def test_a_target_straight_ahead_is_in_the_middle(scene: Make) -> None:
 @pytest.mark.parametrize(
     ("turn", "where"),
     [
-        # ° by which the robot turns away, and where the target goes: up and right are the picture's own.
-        ({"yaw": -10.0}, (0.5 + np.tan(np.radians(10)) / np.tan(np.radians(24.4)) * 3 / 8, 0.5)),
-        ({"pitch": -10.0}, (0.5, 0.5 - np.tan(np.radians(10)) / np.tan(np.radians(24.4)) / 2)),
+        # Pitch and yaw (°), and where the target goes: up and right are the picture's own.
+        ((0.0, -10.0), (0.5 + np.tan(np.radians(10)) / np.tan(np.radians(24.4)) * 3 / 8, 0.5)),
+        ((-10.0, 0.0), (0.5, 0.5 - np.tan(np.radians(10)) / np.tan(np.radians(24.4)) / 2)),
     ],
 )
 def test_it_moves_as_the_robot_turns(scene: Make, turn: dict[str, float], where: tuple[float, float]) -> None:
     # Far enough away that the camera, which is before the middle, hardly moves sideways.
+    turned = truth(pitch=turn[0], yaw=turn[1])
     far = Target(colour="yellow", position=(4.0, 0.0, 5.0), size=0.4)
-    empty = scene(open_water()).render_camera(1.0, truth(**turn), *SIZE)
-    picture = scene(open_water(far)).render_camera(1.0, truth(**turn), *SIZE)
+    empty = scene(open_water()).render_camera(1.0, turned, *SIZE)
+    picture = scene(open_water(far)).render_camera(1.0, turned, *SIZE)
     assert centre(changed(picture, empty)) == pytest.approx(where, abs=0.02)
 
 
