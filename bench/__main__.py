@@ -13,6 +13,7 @@ PARTS = (
     "firmware",
     "emulator",
     "physics",
+    "camera",
     "codec",
     "link",
     "corruption",

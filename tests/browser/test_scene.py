@@ -19,11 +19,11 @@ def test_the_bystander_shows_the_robot_and_can_be_turned(any_page: Page) -> None
     stage = any_page.get_by_role("application")
     with any_page.expect_request(re.compile("/api/scene/view")) as turned:
         stage.press("ArrowRight")
-    assert turned.value.post_data_json["azimuth"] == -36
+    assert '"azimuth":-36' in (turned.value.post_data or "")
     with any_page.expect_response(re.compile("/api/scene/view")) as answered:
-        any_page.get_by_role("button", name="top").click()
+        any_page.get_by_role("button", name="top", exact=True).click()
     assert answered.value.status == 204
-    expect(any_page.get_by_role("button", name="top")).to_have_attribute("aria-pressed", "true")
+    expect(any_page.get_by_role("button", name="top", exact=True)).to_have_attribute("aria-pressed", "true")
 
     any_page.get_by_role("button", name="robot", exact=True).click()
     expect(picture).to_be_hidden()

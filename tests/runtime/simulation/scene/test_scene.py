@@ -36,7 +36,9 @@ def test_a_target_straight_ahead_is_in_the_middle(scene: Make) -> None:
         ((-10.0, 0.0), (0.5, 0.5 - np.tan(np.radians(10)) / np.tan(np.radians(24.4)) / 2)),
     ],
 )
-def test_it_moves_as_the_robot_turns(scene: Make, turn: dict[str, float], where: tuple[float, float]) -> None:
+def test_it_moves_as_the_robot_turns(
+    scene: Make, turn: tuple[float, float], where: tuple[float, float]
+) -> None:
     # Far enough away that the camera, which is before the middle, hardly moves sideways.
     turned = truth(pitch=turn[0], yaw=turn[1])
     far = Target(colour="yellow", position=(4.0, 0.0, 5.0), size=0.4)
