@@ -28,6 +28,7 @@ class Commands:
         for name, handler in handlers.items():
             messages.answer(f"command/{name}", self._announcing(handler))
         messages.answer("query/frames", lambda _: robot.frames())
+        messages.answer_bytes("query/blocks", robot.cache.answer)
 
     def _announcing(self, handler: Callable[[Mapping[str, Any]], None]) -> Callable[[dict[str, Any]], None]:
         def handle(question: dict[str, Any]) -> None:

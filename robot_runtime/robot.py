@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.bus import Bus
+from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
+from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.connection import Connection
@@ -47,7 +49,8 @@ class Robot:
         self.config = config
         self.clock = clock or SteadyClock()
         self.bus = Bus()
-        self.outbox = Outbox(messages.publish, messages.watched)
+        self.cache = Cache(messages.run, self.clock)
+        self.outbox = Outbox(messages.publish, messages.watched, self.cache)
         self._messages = messages
         self._closing = False
         self._ending = threading.Event()
@@ -61,7 +64,10 @@ class Robot:
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
-        self.supervisor = Supervisor(self.clock, self.connection, self.tell)
+        self.loop: InTheLoop | None = None
+        if config.robot.mode == "hil":
+            self.loop = InTheLoop(self.clock, self.connection.send, self.tell)
+        self.supervisor = Supervisor(self.clock, self.connection, self.tell, self.loop)
         self.control = ControlNode(self.bus, self.clock, self._navigate)
         self.vision = Vision(
             config.vision,
@@ -74,6 +80,9 @@ class Robot:
         )
         self._configure()
         self._join()
+        if self.loop is not None:
+            hear = self.loop.hear
+            messages.subscribe("sense", lambda _, data: hear(data))
 
     def tell(self, event: Event) -> None:
         """Publish an event, and the state that it changed."""
@@ -109,6 +118,7 @@ class Robot:
         board = self.connection.board
         return State(
             time=self.clock.now(),
+            run=self._messages.run,
             mode=self.supervisor.mode,
             armed=self.supervisor.armed,
             armed_since=self.supervisor.armed_since,

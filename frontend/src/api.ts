@@ -62,6 +62,7 @@ export const api = {
   card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
   view: (view: View) => command('PUT', '/scene/view', view),
+  simulator: (here: boolean) => command('PUT', '/simulator', { here }),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: () => request<Session[]>('GET', '/sessions'),

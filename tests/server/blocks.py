@@ -40,6 +40,7 @@ def link_block(first: int, bytes_received: int) -> Block:
 def state_block(first: int, **changes: Any) -> Block:
     document: dict[str, Any] = {
         "time": 100.0,
+        "run": "0123456789abcdef",
         "mode": "disarmed",
         "armed": False,
         "armed_since": None,

@@ -5,7 +5,7 @@ import logging
 import signal
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.lifetime import end_with_parent
+from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.simulation.scene.process import Process
 
@@ -18,6 +18,8 @@ def main() -> None:
         end_with_parent()
     with Messages(arguments.robot, arguments.listen, arguments.connect) as messages:
         process = Process(messages, SteadyClock())
+        if arguments.server_lock is not None:
+            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: process.end())
         process.run()
@@ -41,6 +43,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    add_server_options(parser)
     return parser
 
 
