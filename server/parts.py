@@ -258,7 +258,7 @@ def plan(settings: Settings) -> list[Command]:
         simulator += ["--in-the-loop", "--connect", f"unixsock-stream/{folder.runtime_socket}"]
     else:
         simulator += ["--board", str(folder.board_socket)]
-        for socket in (folder.scene_socket, folder.runtime_socket, folder.server_socket):
+        for socket in (folder.runtime_socket, folder.server_socket, folder.scene_socket):
             simulator += ["--connect", f"unixsock-stream/{socket}"]
     simulator += ["--robot", settings.robot, *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
@@ -268,9 +268,9 @@ def plan(settings: Settings) -> list[Command]:
     for socket in (folder.runtime_socket, folder.server_socket):
         scene += ["--connect", f"unixsock-stream/{socket}"]
     scene += ["--robot", settings.robot, *lock]
-    view = Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
+    sight = Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
     if not settings.emulated_board:
-        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water, view]
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water, sight]
     runtime += ["--port", str(folder.board_tty), *lock]
     program = build / "board"
     elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
@@ -283,7 +283,7 @@ def plan(settings: Settings) -> list[Command]:
         Command("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
         Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
         water,
-        view,
+        sight,
     ]
 
 

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { DEFINITIONS_HASH, OTHER_TOPICS } from '../src/generated/topics';
 import { Live } from '../src/live/live.svelte';
-import { depthBlock, documentBlock, join } from './bytes';
+import { blockBytes, depthBlock, documentBlock, join } from './bytes';
 
 /** Stands in for the browser's WebSocket; the test plays the server. */
 class ServerEnd {
@@ -91,6 +91,30 @@ describe('Live', () => {
     );
     expect(depths()).toHaveLength(3);
     expect(live.debug.entries.map(({ text }) => text)).toEqual(['one', 'two']);
+  });
+
+  it('has the bystander’s pictures sent while somebody looks, also after the connection was lost', () => {
+    const asked = () => server().sent.map((text) => JSON.parse(text) as { pictures?: string[] }).flatMap((one) => one.pictures ? [one.pictures] : []);
+    const picture = (time: number) => {
+      const payload = new Uint8Array(10);
+      new DataView(payload.buffer).setFloat64(0, time, true);
+      return blockBytes(OTHER_TOPICS.observer, 2, 1, 0, payload);
+    };
+    server().greet();
+    const first = live.observe();
+    const second = live.observe();
+    expect(asked()).toEqual([['picture', 'observer']]);
+    server().give(picture(101));
+    expect(live.observer?.time).toBe(101);
+    server().close();
+    vi.advanceTimersByTime(3000);
+    server().greet({ steady: 104 });
+    expect(asked()).toEqual([['picture', 'observer']]);
+    first();
+    expect(live.observer).not.toBeNull();
+    second();
+    expect(live.observer).toBeNull();
+    expect(asked().at(-1)).toEqual(['picture']);
   });
 
   it('gives up a connection that has fallen silent', () => {

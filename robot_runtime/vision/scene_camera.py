@@ -10,7 +10,7 @@ from robot_runtime.vision.cards import card_paint
 from robot_runtime.vision.colours import ColourRange
 
 READY_TIMEOUT = 1.0
-PICTURE_TIMEOUT = 6.0
+PICTURE_TIMEOUT = 16.0
 """s; the first picture waits until all of the scene is made."""
 PATIENCE = 8.0
 """s for which it is not news that there is none: board, simulator and scene start after the runtime."""

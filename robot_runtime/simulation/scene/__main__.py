@@ -14,6 +14,8 @@ def main() -> None:
     """Render until SIGTERM or SIGINT."""
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
+    # It tells of modules that are not needed.
+    logging.getLogger("OpenGL").setLevel(logging.WARNING)
     if arguments.with_parent:
         end_with_parent()
     with Messages(arguments.robot, arguments.listen, arguments.connect) as messages:

@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 ASK_PERIOD = 1.0
 """s after which the simulator is asked again what surrounds the robot."""
 ASK_TIMEOUT = 0.3
-ANSWER_TIMEOUT = 5.0
+ANSWER_TIMEOUT = 15.0
 """s; the first picture waits for MuJoCo and all textures."""
 OBSERVER_PERIOD = 1 / 12
 """s between two pictures of the bystander's."""

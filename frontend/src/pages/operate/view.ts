@@ -4,7 +4,7 @@ import type { View } from '../../api';
 export const VIEWS: Record<View['name'], View> = {
   follow: { name: 'follow', azimuth: -28, elevation: 16, distance: 1.1 },
   side: { name: 'side', azimuth: 90, elevation: 4, distance: 1.1 },
-  top: { name: 'top', azimuth: 0, elevation: 89, distance: 2.6 },
+  top: { name: 'top', azimuth: 0, elevation: 89, distance: 1.8 },
 };
 const LOW = -60;
 const HIGH = 89;
