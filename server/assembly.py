@@ -14,6 +14,8 @@ from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.exports.imports import Imports
+from server.exports.jobs import Jobs
 from server.health import Watch
 from server.hub import Hub
 from server.notices import Notices
@@ -42,6 +44,8 @@ class Assembly:
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
+        self.jobs = Jobs(settings.data, self.store)
+        self.imports = Imports(settings.data, self.store)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
     @staticmethod
@@ -57,6 +61,8 @@ class Assembly:
         tasks: list[asyncio.Task[None]] = []
         try:
             await self.recorder.recover()
+            await self.imports.recover()
+            self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             await self.bridge.open()
@@ -66,6 +72,7 @@ class Assembly:
                 for work in (
                     self.handover.start_parts(),
                     self.recorder.run(),
+                    self.jobs.run(),
                     self.hub.watch(),
                     self._tell_health(),
                 )

@@ -13,10 +13,13 @@ from server import VERSION
 from server.chunks import describe_topics
 from server.models import SessionRow
 from server.settings import Settings
-from server.store import Store
+from server.store import Reader, Store
 
 IDENTIFIER_MAX = 2**63 - 1
 """SQLite's largest number."""
+
+IMPORTING = "importing"
+"""The state of a session that is not yet here as a whole; nobody but the import sees it."""
 
 State = Literal["recording", "complete", "interrupted"]
 
@@ -65,10 +68,12 @@ def from_row(row: SessionRow) -> Session:
 def list_sessions(store: Store) -> list[Session]:
     """All sessions, newest first. Raises StoreError."""
     with store.read() as database:
-        return [from_row(row) for row in database.exec(select(SessionRow).order_by(desc(col(SessionRow.id))))]
+        here = select(SessionRow).where(SessionRow.state != IMPORTING)
+        return [from_row(row) for row in database.exec(here.order_by(desc(col(SessionRow.id))))]
 
 
-def find_row(store: Store, session: int) -> SessionRow | None:
+def find_row(store: Reader, session: int) -> SessionRow | None:
     """The row of a session; None where there is none of this number. Raises StoreError."""
     with store.read() as database:
-        return database.get(SessionRow, session)
+        row = database.get(SessionRow, session)
+        return None if row is None or row.state == IMPORTING else row

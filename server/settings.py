@@ -43,6 +43,16 @@ class DataFolder:
         return self.path / "logs"
 
     @property
+    def exports(self) -> Path:
+        """Sessions as files, to be taken home."""
+        return self.path / "exports"
+
+    @property
+    def imports(self) -> Path:
+        """Archives on their way in."""
+        return self.path / "imports"
+
+    @property
     def run(self) -> Path:
         """Sockets; emptied at every start."""
         return self.path / "run"

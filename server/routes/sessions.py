@@ -9,7 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import StreamingResponse
 
 from server.assembly import Assembly
-from server.export import Export
+from server.exports.describe import file_name
+from server.exports.shapes import Wanted
+from server.exports.source import Source
+from server.exports.tables import stream_tables
 from server.models import SessionRow
 from server.recorder import RecordingRefused
 from server.routes.problems import answers
@@ -77,9 +80,10 @@ async def stop_session(request: Request, session: Identifier) -> Session:
 )
 def get_csv(request: Request, session: Identifier) -> StreamingResponse:
     """One CSV file for each topic, with units in its header, and `session.json` with everything else."""
-    export = Export(Assembly.of(request).store, _find(request, session))
-    headers = {"content-disposition": f'attachment; filename="{export.file_name}"'}
-    return StreamingResponse(export.stream(), media_type="application/zip", headers=headers)
+    store = Assembly.of(request).store
+    source = Source(store, _find(request, session), Wanted(format="csv"))
+    headers = {"content-disposition": f'attachment; filename="{file_name(source, ".zip")}"'}
+    return StreamingResponse(stream_tables(store, source), media_type="application/zip", headers=headers)
 
 
 def _find(request: Request, session: int) -> SessionRow:
