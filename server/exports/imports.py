@@ -1,7 +1,7 @@
 """Sessions brought from other machines: an archive is received, examined, and stored under a new number.
 
 It is stored piece by piece, so that what is being recorded meanwhile is not held up, and is seen by nobody
-before its last piece is there. What a killed server leaves of it is removed at the next start.
+before its last piece is there. What does not become whole is marked, and removed by `tidying`.
 """
 
 import asyncio
@@ -14,7 +14,7 @@ from pathlib import Path
 from secrets import token_hex
 from typing import Any
 
-from sqlalchemy import Connection, Delete, delete, insert, update
+from sqlalchemy import Connection, Update, insert, update
 from sqlmodel import SQLModel, col, select
 
 from robot_runtime.errors import Refused
@@ -22,7 +22,7 @@ from server.exports.child import Child, ChildFailed
 from server.exports.files import PART, FileFailed, explain
 from server.exports.reading import Archive, ArchiveRefused, open_archive
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
-from server.sessions import IMPORTING
+from server.sessions import IMPORTING, REMOVING
 from server.settings import DataFolder
 from server.store import Store
 
@@ -46,15 +46,14 @@ class Imports:
         self._busy = asyncio.Lock()
 
     async def recover(self) -> None:
-        """Remove what was not finished. Raises StoreError."""
+        """Let go of what a killed server has not finished. Raises StoreError."""
         if self._folder.is_dir():
             for left in self._folder.iterdir():
                 left.unlink(missing_ok=True)
-        with self._store.read() as database:
-            query = select(SessionRow.id).where(SessionRow.state == IMPORTING)
-            unfinished = [number for number in database.exec(query) if number is not None]
-        for number in unfinished:
-            await self._remove(number)
+        unfinished = col(SessionRow.state) == IMPORTING
+        await self._store.write(
+            partial(_execute, update(SessionRow).where(unfinished).values(state=REMOVING))
+        )
 
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
         """Import the archive that comes in pieces, of `size` bytes where that is known: its new number.
@@ -113,7 +112,7 @@ class Imports:
             try:
                 await self._fill(number, archive)
             except BaseException:
-                await asyncio.shield(self._remove(number))
+                await asyncio.shield(self._give_up(number))
                 raise
         return number
 
@@ -121,9 +120,12 @@ class Imports:
         identifier = archive.content.session.identifier
         with self._store.read() as database:
             row = database.exec(select(SessionRow).where(SessionRow.identifier == identifier)).first()
-        if row is not None:
-            deleted = " It is deleted; restore it there." if row.deleted is not None else ""
-            raise Refused(f"This session is here already, as number {row.id}: “{row.name}”.{deleted}")
+        if row is None:
+            return
+        if row.state == REMOVING:
+            raise Refused("This session was here and is being removed. Try again in a few minutes.")
+        binned = " It is in the bin; restore it there." if row.deleted is not None else ""
+        raise Refused(f"This session is here already, as number {row.id}: “{row.name}”.{binned}")
 
     async def _fill(self, number: int, archive: Archive) -> None:
         content = archive.content
@@ -144,18 +146,15 @@ class Imports:
             size += sum(len(row["data"]) for row in batch)
         done = {"state": content.session.state, "samples": samples, "bytes": size}
         change = update(SessionRow).where(col(SessionRow.id) == number).values(done)
-        await self._store.write(lambda connection: connection.execute(change))
+        await self._store.write(partial(_execute, change))
 
     async def _insert(self, table: type[SQLModel], rows: list[dict[str, Any]]) -> None:
         await self._store.write(lambda connection: connection.execute(insert(table), rows))
 
-    async def _remove(self, number: int) -> None:
-        for table in (Chunk, Gap, Marker, SessionTag):
-            some = _some_of(table, number)
-            while await self._store.write(partial(_count, some)):
-                pass
-        last = delete(SessionRow).where(col(SessionRow.id) == number)
-        await self._store.write(lambda connection: connection.execute(last))
+    async def _give_up(self, number: int) -> None:
+        """Leave the rest to `tidying`, which removes sessions."""
+        unwanted = update(SessionRow).where(col(SessionRow.id) == number).values(state=REMOVING)
+        await self._store.write(partial(_execute, unwanted))
 
 
 def _session_values(archive: Archive) -> dict[str, Any]:
@@ -192,10 +191,5 @@ def _batches(archive: Archive, number: int) -> Iterator[list[dict[str, Any]]]:
         yield batch
 
 
-def _count(change: Delete, connection: Connection) -> int:
-    return connection.execute(change).rowcount
-
-
-def _some_of(table: Any, number: int) -> Delete:
-    some = select(table.id).where(table.session_id == number).limit(ROWS_AT_ONCE)
-    return delete(table).where(col(table.id).in_(some))
+def _execute(change: Update, connection: Connection) -> None:
+    connection.execute(change)

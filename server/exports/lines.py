@@ -1,5 +1,6 @@
 """JSON Lines: one object a sample, all topics together in the order of time."""
 
+import base64
 import heapq
 import json
 from collections.abc import Iterator, Sequence
@@ -7,12 +8,13 @@ from typing import Any, BinaryIO
 
 from server.exports.source import Source
 from server.exports.values import Rows
-from server.recording import RecordingError
 from server.store import Reader
 
 
 def write_lines(_store: Reader, source: Source, output: BinaryIO) -> None:
     """Each object has `topic`, `time` (s since the session's start), `utc` and the sample's fields.
+
+    Of a picture that is `jpeg`, in Base64.
 
     Raises StoreError, RecordingError.
     """
@@ -39,4 +41,6 @@ def _lines(source: Source, name: str, place: int) -> Iterator[tuple[float, int, 
             told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
             yield time, place, json.dumps({**document, **told}, ensure_ascii=False, separators=(",", ":"))
     else:
-        raise RecordingError(f"{name} holds {kind}, which are not written as JSON Lines")
+        for time, jpeg in source.pictures(name, source.start, source.end):
+            told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
+            yield time, place, json.dumps({**told, "jpeg": base64.b64encode(jpeg).decode()})

@@ -3,6 +3,7 @@
 Without compression, which needs packages that a Raspberry Pi Zero has none of. Message times are UTC.
 """
 
+import base64
 import heapq
 import json
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from server.store import Reader
 
 LIBRARY = "mucat"
 LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/camera"
+IMAGE = "foxglove.CompressedImage"
 LOGGED = ("debug", "event", "notice")
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
@@ -64,10 +66,7 @@ def write_mcap(store: Reader, source: Source, output: BinaryIO) -> None:
     pose = Pose(source)
     if pose.known:
         channels.add(FRAMES, "foxglove.FrameTransform", first, level(first))
-    own = [
-        channels.open(f"/{name}", f"mucat.{name}", topic_schema(name, source.topics[name]))
-        for name in source.names
-    ]
+    own = [channels.of(name, source.topics[name]) for name in source.names]
     posing = {source.names.index(name) for name in pose.topics}
     for time, place, data, told in heapq.merge(*_samples(store, source)):
         if place < len(own):
@@ -88,6 +87,11 @@ class _Channels:
     def __init__(self, writer: Any) -> None:
         self._writer = writer
         self._numbers: dict[str, int] = {}
+
+    def of(self, name: str, described: dict[str, Any]) -> int:
+        if described["kind"] == "picture":
+            return self.open(CAMERA, IMAGE, WELL_KNOWN[IMAGE])
+        return self.open(f"/{name}", f"mucat.{name}", topic_schema(name, described))
 
     def open(self, topic: str, name: str, schema: dict[str, Any]) -> int:
         number = self._writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
@@ -132,11 +136,9 @@ def _gains(state: dict[str, Any] | None) -> dict[str, str]:
 
 
 def _samples(store: Reader, source: Source) -> list[Iterator[_Sample]]:
+    readers = {"rows": _rows, "documents": _documents, "picture": _pictures}
     found = [
-        _rows(source, name, place)
-        if source.topics[name]["kind"] == "rows"
-        else _documents(source, name, place)
-        for place, name in enumerate(source.names)
+        readers[source.topics[name]["kind"]](source, name, place) for place, name in enumerate(source.names)
     ]
     return [*found, _markers(store, source)]
 
@@ -154,6 +156,18 @@ def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:
         time = source.utc_ns(document["time"])
         data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
         yield _Sample(time, place, data, {**document, "topic": name} if name in LOGGED else None)
+
+
+def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
+    for moment, jpeg in source.pictures(name, source.start, source.end):
+        time = source.utc_ns(moment)
+        image = {
+            "timestamp": stamp(time),
+            "frame_id": "camera",
+            "data": base64.b64encode(jpeg).decode(),
+            "format": "jpeg",
+        }
+        yield _Sample(time, place, _dump(image), None)
 
 
 def _markers(store: Reader, source: Source) -> Iterator[_Sample]:

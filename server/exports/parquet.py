@@ -45,8 +45,7 @@ def _write_topic(source: Source, name: str, file: Any) -> None:
     import pyarrow as pa
     from pyarrow.parquet import ParquetWriter
 
-    topic = source.topics[name]
-    schema, batches = _rows(source, name) if topic["kind"] == "rows" else _documents(source, name)
+    schema, batches = _READERS[source.topics[name]["kind"]](source, name)
     with ParquetWriter(pa.PythonFile(file, "w"), schema) as writer:
         waiting: list[Any] = []
         count = 0
@@ -89,6 +88,19 @@ def _documents(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]
             yield [document["time"]], [[_text(document.get(one))] for one in names]
 
     return pa.schema(_head() + [pa.field(one, pa.string()) for one in names]), batches()
+
+
+def _pictures(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+    import pyarrow as pa
+
+    pictures = source.pictures(name, source.start, source.end)
+    return (
+        pa.schema([*_head(), pa.field("jpeg", pa.binary())]),
+        (([time], [[jpeg]]) for time, jpeg in pictures),
+    )
+
+
+_READERS = {"rows": _rows, "documents": _documents, "picture": _pictures}
 
 
 def _head() -> list[Any]:

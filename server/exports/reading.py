@@ -20,7 +20,7 @@ from typing import IO, Annotated, Any, Literal, NamedTuple
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from robot_runtime.topics import TIME
-from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING
+from server.chunks import DOCUMENTS_ENCODING, PICTURES_ENCODING, ROWS_ENCODING, decode_pictures
 from server.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
 
 SESSION_BYTES_MAX = 32_000_000
@@ -31,6 +31,7 @@ UNPACKED_RATIO_MAX = 1100
 STEP_BYTES = 1 << 20
 MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
 CODES = "bBhHiIqQfd?"
+ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
 
 Text = Annotated[str, Field(max_length=1_000_000)]
 Words = Annotated[str, Field(max_length=10_000)]
@@ -62,7 +63,7 @@ class Topic(_Strict):
     """A topic, as `chunks.describe_topics` has it."""
 
     meaning: Words
-    kind: Literal["rows", "documents"]
+    kind: Literal["rows", "documents", "picture"]
     row_bytes: int = 0
     fields: Annotated[list[TopicField], Field(max_length=1000)]
 
@@ -264,9 +265,12 @@ class Archive:
     def _decode(self, chunk: ArchivedChunk) -> None:
         topic = self.content.session.topics[chunk.topic]
         where = f"Chunk {chunk.number} of {chunk.topic}"
-        expected = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING}[topic.kind]
+        expected = ENCODINGS[topic.kind]
         if chunk.encoding != expected:
             raise ArchiveRefused(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
+        if topic.kind == "picture":
+            _look_at_pictures(chunk, where)
+            return
         limit = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
         data = _unpack(chunk.data, limit, where)
         if topic.kind == "rows":
@@ -301,6 +305,15 @@ def open_archive(path: Path) -> Iterator[Archive]:
         ) from problem
     except (NotImplementedError, EOFError, OSError, UnicodeError) as problem:
         raise ArchiveRefused(f"It cannot be read: {problem}") from problem
+
+
+def _look_at_pictures(chunk: ArchivedChunk, where: str) -> None:
+    try:
+        times = [time for time, _ in decode_pictures(chunk.data)]
+    except ValueError as problem:
+        raise ArchiveRefused(f"{where} is damaged: {problem}") from problem
+    if len(times) != chunk.samples or not all(map(isfinite, times)):
+        raise ArchiveRefused(f"{where} does not hold {chunk.samples} pictures with a time.")
 
 
 def _unpack(data: bytes, limit: int, where: str) -> bytes:

@@ -15,7 +15,7 @@ from server.store import Reader
 
 
 def stream_tables(store: Reader, source: Source) -> Iterator[bytes]:
-    """A zip file of `session.json` and a CSV file for each topic, piece by piece.
+    """A zip file of `session.json`, a CSV file for each topic and JPEG files, piece by piece.
 
     Raises StoreError, RecordingError.
     """
@@ -23,6 +23,12 @@ def stream_tables(store: Reader, source: Source) -> Iterator[bytes]:
     packing = Packing(cast("BinaryIO", sink))
     packing.text("session.json", as_text(describe_session(store, source)))
     for name in source.names:
+        if source.topics[name]["kind"] == "picture":
+            for time, jpeg in source.pictures(name, source.start, source.end):
+                with packing.member(f"{name}/{source.since_start(time):010.3f}.jpg") as file:
+                    file.write(jpeg)
+                yield from sink.take()
+            continue
         with packing.member(f"{name}.csv") as file:
             for lines in _lines(source, name):
                 file.write(lines.encode())

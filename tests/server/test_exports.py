@@ -1,6 +1,7 @@
 """Each format read back, as somebody at home does."""
 
 import asyncio
+import base64
 import io
 import json
 import math
@@ -8,6 +9,7 @@ import struct
 import sys
 import zipfile
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import pandas
@@ -21,6 +23,7 @@ from robot_runtime.packets.layout import Record
 from robot_runtime.samples import Control, Event, Truth
 from robot_runtime.topics import BY_NAME, Block, documents, row
 from server.exports.formats import KINDS, check
+from server.exports.reading import examine
 from server.exports.schemas import WELL_KNOWN
 from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
@@ -297,3 +300,27 @@ def test_an_empty_session_gives_a_file(store: Store, settings: Settings, kind: s
             write(store, number, format=kind)
     else:
         write(store, number, format=kind)
+
+
+def test_pictures_go_along(store: Store, settings: Settings, tmp_path: Path) -> None:
+    topic = BY_NAME["thumbnail"]
+    blocks = [Block.of(topic, 1, place, row(100 + place, b"jpeg %d" % place)) for place in range(3)]
+    number = record(store, settings, [depth_block(0, 1)], blocks)
+    archive = zipfile.ZipFile(write(store, number, format="csv"))
+    assert archive.read("thumbnail/000001.500.jpg") == b"jpeg 1"
+    lines = [json.loads(line) for line in write(store, number, format="jsonl").getvalue().splitlines()]
+    assert base64.b64decode(lines[-1]["jpeg"]) == b"jpeg 2"
+    tables = zipfile.ZipFile(write(store, number, format="parquet"))
+    table = pyarrow.parquet.read_table(io.BytesIO(tables.read("thumbnail.parquet")))
+    assert table.column("jpeg").to_pylist() == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
+    reader = make_reader(write(store, number, format="mcap"))
+    found = [
+        (schema, json.loads(message.data)) for schema, _, message in reader.iter_messages(topics="/camera")
+    ]
+    assert [base64.b64decode(image["data"]) for _, image in found] == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
+    schema, image = found[0]
+    assert schema is not None
+    assert (schema.name, image["format"]) == ("foxglove.CompressedImage", "jpeg")
+    whole = tmp_path / "whole"
+    whole.write_bytes(write(store, number, format="archive").getvalue())
+    examine(whole)
