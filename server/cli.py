@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from server import VERSION
+from server.exports.options import add_export, add_import
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
             return _commtest(options, settings)
+        if options.command in ("export", "import"):
+            return _carry(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -46,6 +49,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     run.add_argument("--host", help="address to listen on; default 127.0.0.1, or server.host in robot.toml")
     test = commands.add_parser("commtest", help="test the serial line, on the emulated board")
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
+    add_export(commands, kept)
+    add_import(commands, kept)
     return parser.parse_args(arguments)
 
 
@@ -89,6 +94,13 @@ def _claim(folder: DataFolder) -> Iterator[None]:
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:
     from server.comm_tests.command import perform
 
+    return perform(options, settings, _claim)
+
+
+def _carry(options: argparse.Namespace, settings: Settings) -> int:
+    from server.exports.command import export_session, import_session
+
+    perform = export_session if options.command == "export" else import_session
     return perform(options, settings, _claim)
 
 

@@ -6,6 +6,10 @@ export type Part = Schemas['PartHealth'];
 export type LinkFrame = Schemas['LinkFrame'];
 export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
+export type SessionDetail = Schemas['SessionDetail'];
+export type ExportJob = Schemas['Job'];
+export type ExportFormat = Schemas['Wanted']['format'];
+export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
 export type CommTestDocument = Schemas['TestDocument'];
 export type CommTestCheck = Schemas['Check'];
 export type CommTestPlace = Schemas['Start']['place'];
@@ -37,6 +41,21 @@ async function request<T>(method: string, path: string, body?: object, timeout =
   }
 }
 
+/** Fetch tells nothing of how far it has sent a body. */
+function upload<T>(path: string, file: File, progress: (share: number) => void): Promise<Answer<T>> {
+  return new Promise((resolve) => {
+    const sending = new XMLHttpRequest();
+    sending.upload.onprogress = (event) => event.lengthComputable && progress(event.loaded / event.total);
+    sending.onload = () => {
+      if (sending.status >= 400) resolve({ problem: describe(sending.status, sending.responseText) });
+      else resolve({ value: JSON.parse(sending.responseText) as T });
+    };
+    sending.onerror = () => resolve({ problem: `${file.name} could not be sent whole. Look whether the server runs, and try again.` });
+    sending.open('POST', `/api${path}`);
+    sending.send(file);
+  });
+}
+
 function describe(status: number, text: string): string {
   try {
     const { detail } = JSON.parse(text) as { detail?: unknown };
@@ -66,6 +85,11 @@ export const api = {
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
+  exports: () => request<ExportJob[]>('GET', '/exports'),
+  startExport: (wanted: NewExport) => request<ExportJob>('POST', '/exports', wanted),
+  deleteExport: (id: ExportJob['id']) => command('DELETE', `/exports/${id}`),
+  exportFile: (id: ExportJob['id']) => `/api/exports/${id}/file`,
+  importSession: (file: File, progress: (share: number) => void) => upload<Session>('/imports', file, progress),
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
   startCommTest: (text: string, place: CommTestPlace) =>

@@ -83,13 +83,13 @@ def test_a_session_goes_to_another_machine_and_stays_the_same(
 
     async def scenario() -> None:
         async with serve(replace(settings, data=folder)) as served:
-            answer = await served.api.post("/imports", content=archive.read_bytes())
+            answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
             assert answer.status_code == 201, answer.text
             assert (answer.json()["id"], answer.json()["samples"]) == (2, 102)
-            again = await served.api.post("/imports", content=archive.read_bytes())
+            again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
             assert again.status_code == 409
             assert "is here already, as number 2" in again.json()["detail"]
-            bad = await served.api.post("/imports", content=archive.read_bytes()[:-100])
+            bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=60)
             assert (bad.status_code, "cut off" in bad.json()["detail"]) == (422, True)
             assert len((await served.api.get("/sessions")).json()) == 2
             assert list(folder.imports.iterdir()) == []

@@ -168,6 +168,74 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All exports, newest first
+         * @description Those that are kept, and those that are being made.
+         */
+        get: operations["listExports"];
+        put?: never;
+        /**
+         * Have a session made into a file
+         * @description Files are made one after the other, apart from the server; GET tells how far it is.
+         */
+        post: operations["startExport"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/exports/{export}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One export
+         * @description How far it is; its size and checksum when it is there.
+         */
+        get: operations["getExport"];
+        put?: never;
+        post?: never;
+        /**
+         * Cancel or delete an export
+         * @description The file is gone then.
+         */
+        delete: operations["deleteExport"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/exports/{export}/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download an export
+         * @description A download that was cut goes on where it was: ask with Range, and with If-Range its ETag.
+         */
+        get: operations["downloadExport"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -182,6 +250,26 @@ export interface paths {
         get: operations["getHealth"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/imports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Import the archive of a session
+         * @description The body is the file. It is looked at as a whole, and stored as a whole or not at all.
+         */
+        post: operations["importSession"];
         delete?: never;
         options?: never;
         head?: never;
@@ -748,6 +836,56 @@ export interface components {
             version: string;
         };
         /**
+         * Job
+         * @description One file, made or to be made. It is kept for some days.
+         */
+        Job: {
+            /**
+             * Bytes
+             * @description the file's size; null until it is there
+             */
+            bytes?: number | null;
+            /**
+             * File
+             * @description the file's name
+             */
+            file: string;
+            /** Id */
+            id: string;
+            /**
+             * Made
+             * Format: date-time
+             * @description UTC, when it was asked for
+             */
+            made: string;
+            /**
+             * Problem
+             * @description why it failed
+             * @default
+             */
+            problem: string;
+            /**
+             * Progress
+             * @description 0 to 1
+             */
+            progress: number;
+            /** Session */
+            session: number;
+            /** Session Name */
+            session_name: string;
+            /**
+             * Sha256
+             * @description the file's checksum, hexadecimal; null until it is there
+             */
+            sha256?: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "waiting" | "running" | "done" | "failed";
+            wanted: components["schemas"]["Wanted"];
+        };
+        /**
          * LinkFault
          * @description The last time that something went wrong on the line, and the frames until then.
          */
@@ -858,6 +996,45 @@ export interface components {
             text?: string | null;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * NewExport
+         * @description A file that is wanted.
+         */
+        NewExport: {
+            /**
+             * Columns
+             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
+             */
+            columns?: string[] | null;
+            /**
+             * End
+             * @description s since the session's start; null for its end
+             */
+            end?: number | null;
+            /**
+             * Format
+             * @enum {string}
+             */
+            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            /**
+             * Period
+             * @description s between the lines of csv-grid
+             * @default 0.1
+             */
+            period: number;
+            /** Session */
+            session: number;
+            /**
+             * Start
+             * @description s since the session's start; null for its beginning
+             */
+            start?: number | null;
+            /**
+             * Topics
+             * @description names of topics; null for all. Not for csv-grid, archive and report
+             */
+            topics?: string[] | null;
         };
         /**
          * NewMark
@@ -1568,6 +1745,43 @@ export interface components {
              */
             rate?: number | null;
         };
+        /**
+         * Wanted
+         * @description What of a session is to be in the file, and as what.
+         */
+        Wanted: {
+            /**
+             * Columns
+             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
+             */
+            columns?: string[] | null;
+            /**
+             * End
+             * @description s since the session's start; null for its end
+             */
+            end?: number | null;
+            /**
+             * Format
+             * @enum {string}
+             */
+            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            /**
+             * Period
+             * @description s between the lines of csv-grid
+             * @default 0.1
+             */
+            period: number;
+            /**
+             * Start
+             * @description s since the session's start; null for its beginning
+             */
+            start?: number | null;
+            /**
+             * Topics
+             * @description names of topics; null for all. Not for csv-grid, archive and report
+             */
+            topics?: string[] | null;
+        };
     };
     responses: never;
     parameters: never;
@@ -1859,6 +2073,220 @@ export interface operations {
             };
         };
     };
+    listExports: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"][];
+                };
+            };
+        };
+    };
+    startExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewExport"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be made */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    deleteExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be deleted */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    downloadExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file; its ETag is its SHA-256 */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description The part that was asked for with Range */
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not finished */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     getHealth: {
         parameters: {
             query?: never;
@@ -1875,6 +2303,66 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+        };
+    };
+    importSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/zip": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            /** @description It is here already, or another is being imported */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is no archive that can be imported */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
