@@ -18,6 +18,8 @@ PARTS = (
     "corruption",
     "chip",
     "comm_test",
+    "store",
+    "export",
     "setpoint",
     "connection",
     "start",

@@ -35,10 +35,13 @@ def _goodput(name: str) -> dict[str, Goal]:
 GOALS = {
     "codec.ratio_to_cobs_zlib": _most(1.3),
     "codec.ratio_to_pymavlink": _most(1 / 6),
+    "export.csv_1h_ratio": _most(1.3),
+    "export.mcap_1h_ratio": _most(1.3),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),
+    "store.ingest_ratio": _least(50),
 }
