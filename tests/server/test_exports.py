@@ -5,6 +5,7 @@ import base64
 import io
 import json
 import math
+import re
 import struct
 import sys
 import zipfile
@@ -324,3 +325,18 @@ def test_pictures_go_along(store: Store, settings: Settings, tmp_path: Path) -> 
     whole = tmp_path / "whole"
     whole.write_bytes(write(store, number, format="archive").getvalue())
     examine(whole)
+
+
+def test_the_example_of_the_docs_runs(
+    store: Store,
+    session: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = (Path(__file__).parents[2] / "docs/export.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "dive.zip").write_bytes(write(store, session, format="csv").getvalue())
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example, "docs/export.md", "exec"), {})
+    assert "count    100.0" in capsys.readouterr().out

@@ -18,6 +18,9 @@ export const CHOICES: readonly Choice[] = [
   { format: 'archive', title: 'Archive', text: 'For µ-CAT on another computer, which imports it whole: replay and comparison go on there.', parts: 'whole' },
 ];
 
+/** Columns of the joined table where nobody has chosen others; their topics' own clocks are rarely wanted. */
+export const USUAL_COLUMNS = ['depth.depth', 'control.set_point', 'control.output', 'imu.attitude_0', 'imu.attitude_1', 'imu.attitude_2', 'imu.attitude_3', 'status.battery'];
+
 export function titleOf(format: ExportFormat): string {
   return CHOICES.find((choice) => choice.format === format)?.title ?? format;
 }
