@@ -20,6 +20,8 @@ PARTS = (
     "corruption",
     "chip",
     "comm_test",
+    "store",
+    "export",
     "setpoint",
     "connection",
     "start",

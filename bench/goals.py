@@ -37,6 +37,8 @@ GOALS = {
     "codec.ratio_to_cobs_zlib": _most(1.3),
     "codec.ratio_to_pymavlink": _most(1 / 6),
     "compare.open_ms": _most(1500),
+    "export.csv_1h_ratio": _most(1.3),
+    "export.mcap_1h_ratio": _most(1.3),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
     "link.table6_min_success": _least(1.0),
@@ -45,4 +47,5 @@ GOALS = {
     **_goodput("link.goodput_chip"),
     "scenario.speed_x": _least(15),
     "scenario.speed_board_x": _least(6),
+    "store.ingest_ratio": _least(50),
 }

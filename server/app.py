@@ -21,6 +21,7 @@ from server.recording import RecordingError
 from server.routes import (
     comm_tests,
     compare,
+    exports,
     health,
     link,
     live,
@@ -69,7 +70,7 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live)
-    for module in (*robots, sessions, marks, storage, compare, comm_tests, scenarios):
+    for module in (*robots, sessions, marks, storage, compare, exports, comm_tests, scenarios):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app

@@ -18,6 +18,8 @@ from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.exports.imports import Imports
+from server.exports.jobs import Jobs
 from server.health import Watch
 from server.hub import Hub
 from server.markers import Markers
@@ -63,6 +65,8 @@ class Assembly:
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
+        self.jobs = Jobs(settings.data, self.store)
+        self.imports = Imports(settings.data, self.store)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
         live = Live(
@@ -98,6 +102,8 @@ class Assembly:
         tasks: list[asyncio.Task[None]] = []
         try:
             left = await self.recorder.recover()
+            await self.imports.recover()
+            self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             await self.bridge.open()
@@ -113,6 +119,7 @@ class Assembly:
                 for work in (
                     self.handover.start_parts(),
                     self.recorder.run(),
+                    self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
                     self._tell_health(),

@@ -16,6 +16,7 @@ from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.presence import NotNow, UnknownSession, require
 from server.recorder import Recorder
 from server.sessions import (
+    HIDDEN,
     REMOVING,
     RecordedColumn,
     RecordedTopic,
@@ -54,7 +55,7 @@ class Catalogue:
         query = (
             select(SessionRow)
             .options(*(defer(text) for text in texts))  # type: ignore[arg-type]
-            .where(SessionRow.state != REMOVING, col(SessionRow.deleted).is_not(None) == deleted)
+            .where(col(SessionRow.state).not_in(HIDDEN), col(SessionRow.deleted).is_not(None) == deleted)
             .order_by(desc(col(SessionRow.id)))
         )
         if origin is not None:
@@ -76,7 +77,7 @@ class Catalogue:
         """One session, also from the bin."""
         with self._store.read() as database:
             row = database.get(SessionRow, session)
-            if row is None or row.state == REMOVING:
+            if row is None or row.state in HIDDEN:
                 raise UnknownSession(session)
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
             markers = select(func.count()).select_from(Marker).where(Marker.session_id == session)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
+from server.exports.options import add_export, add_import
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _scenario(options, settings)
         if options.command == "report":
             return _report(options, settings)
+        if options.command in ("export", "import"):
+            return _carry(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -63,6 +66,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         "report", parents=[kept], help="lay sessions over each other in an HTML file"
     )
     _add_report(report)
+    add_export(commands, kept)
+    add_import(commands, kept)
     return parser.parse_args(arguments)
 
 
@@ -163,6 +168,13 @@ def _scenario(options: argparse.Namespace, settings: Settings) -> int:
 def _report(options: argparse.Namespace, settings: Settings) -> int:
     from server.comparison.command import perform
 
+    return perform(options, settings, _claim)
+
+
+def _carry(options: argparse.Namespace, settings: Settings) -> int:
+    from server.exports.command import export_session, import_session
+
+    perform = export_session if options.command == "export" else import_session
     return perform(options, settings, _claim)
 
 

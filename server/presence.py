@@ -4,7 +4,7 @@ from sqlalchemy import Connection
 from sqlmodel import col, select
 
 from server.models import SessionRow
-from server.sessions import REMOVING
+from server.sessions import HIDDEN
 
 
 class UnknownSession(LookupError):  # noqa: N818 - it says what happened
@@ -21,6 +21,6 @@ class NotNow(Exception):  # noqa: N818 - it says what happened
 def require(connection: Connection, session: int) -> str:
     """The state of a session, within a transaction. Raises UnknownSession."""
     state = connection.execute(select(SessionRow.state).where(col(SessionRow.id) == session)).scalar()
-    if state is None or state == REMOVING:
+    if state is None or state in HIDDEN:
         raise UnknownSession(session)
     return str(state)

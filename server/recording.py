@@ -19,7 +19,7 @@ from server.chunks import (
     row_layout,
 )
 from server.models import Chunk, SessionRow
-from server.store import Store
+from server.store import Reader
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,15 +42,19 @@ class Recording:
     raises StoreError, and RecordingError where a chunk cannot be read.
     """
 
-    def __init__(self, store: Store, row: SessionRow) -> None:
+    def __init__(self, store: Reader, row: SessionRow) -> None:
         self.row = row
         self.topics: Mapping[str, dict[str, Any]] = json.loads(row.topics)
         """What `chunks.describe_topics` said when it was recorded, by name."""
         self._store = store
 
-    def counts(self) -> dict[str, int]:
-        """Samples by topic; topics without any are left out."""
+    def counts(self, start: float = -inf, end: float = inf) -> dict[str, int]:
+        """Samples by topic, of the chunks that may have some between `start` and `end`; no topics without."""
         query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
+        if start > -inf:
+            query = query.where(Chunk.last_time >= start)
+        if end < inf:
+            query = query.where(Chunk.first_time <= end)
         with self._store.read() as database:
             return {name: int(count) for name, count in database.exec(query.group_by(Chunk.topic))}
 
@@ -59,6 +63,16 @@ class Recording:
         query = select(Chunk.id).where(Chunk.session_id == self.row.id, Chunk.topic == topic).limit(1)
         with self._store.read() as database:
             return database.exec(query).first() is not None
+
+    def spans(self, topic: str) -> list[tuple[float, float, int]]:
+        """Of each chunk in order: the times of its first and its last sample, and how many it has."""
+        query = (
+            select(Chunk.first_time, Chunk.last_time, Chunk.count)
+            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+            .order_by(col(Chunk.number))
+        )
+        with self._store.read() as database:
+            return [(first, last, count) for first, last, count in database.exec(query)]
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
         """The chunks that may have samples between `start` and `end`, in order."""

@@ -15,12 +15,16 @@ from server import VERSION
 from server.chunks import describe_topics
 from server.models import SessionRow
 from server.settings import Settings
-from server.store import Store
+from server.store import Reader
 
 IDENTIFIER_MAX = 2**63 - 1
 """SQLite's largest number."""
 REMOVING = "removing"
 """State of a row whose samples are being removed: to everybody it is gone already."""
+IMPORTING = "importing"
+"""State of a row whose samples are not all here yet."""
+HIDDEN = (REMOVING, IMPORTING)
+"""States of rows that are no sessions to anybody but who removes or imports them."""
 
 State = Literal["recording", "complete", "interrupted"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
@@ -159,11 +163,11 @@ def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Ses
     )
 
 
-def find_row(store: Store, session: int) -> SessionRow | None:
+def find_row(store: Reader, session: int) -> SessionRow | None:
     """The row of a session, also from the bin; None where there is none of this number. Raises StoreError."""
     with store.read() as database:
         row = database.get(SessionRow, session)
-        return None if row is None or row.state == REMOVING else row
+        return None if row is None or row.state in HIDDEN else row
 
 
 def _moment(time: float | None) -> datetime | None:

@@ -49,6 +49,11 @@ class DataFolder:
         return self.path / "exports"
 
     @property
+    def imports(self) -> Path:
+        """Archives on their way in."""
+        return self.path / "imports"
+
+    @property
     def run(self) -> Path:
         """Sockets, and which processes run; emptied at a start where none of them has been left running."""
         return self.path / "run"

@@ -7,7 +7,7 @@ from pydantic import BaseModel, Field
 from sqlmodel import col, func, select
 
 from server.models import SessionRow
-from server.sessions import REMOVING
+from server.sessions import HIDDEN
 from server.settings import DataFolder, Settings
 from server.store import Store
 
@@ -42,7 +42,7 @@ def measure(store: Store, settings: Settings) -> Storage:
         connection = database.connection()
         pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
         size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
-        rows = database.exec(query.where(SessionRow.state != REMOVING).group_by(binned))
+        rows = database.exec(query.where(col(SessionRow.state).not_in(HIDDEN)).group_by(binned))
         found = {bool(deleted): (count, total) for deleted, count, total in rows}
     disk = shutil.disk_usage(folder.path)
     sessions, sessions_bytes = found.get(False, (0, 0))

@@ -24,13 +24,33 @@ class StoreError(Exception):
     """The database could not do what was asked; the text says why, for a person."""
 
 
-class Store:
-    """An open database that `schema.prepare` has made ready; `failing` says why the last write failed."""
+class Reader:
+    """A database that `schema.prepare` has made ready, open only for reading; also beside a server."""
 
     def __init__(self, database: Path) -> None:
+        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool)
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A session that only reads. Keep it short: a long one keeps the write-ahead log growing."""
+        try:
+            with Session(self._reader) as session:
+                yield session
+        except DBAPIError as problem:
+            raise StoreError(_explain(problem)) from problem
+
+    def close(self) -> None:
+        """Let go of the database. Call it once."""
+        self._reader.dispose()
+
+
+class Store(Reader):
+    """An open database that is also written; `failing` says why the last write failed."""
+
+    def __init__(self, database: Path) -> None:
+        super().__init__(database)
         self.failing: str | None = None
         self._writer = _engine(f"sqlite:///{database}", pool.StaticPool)
-        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool)
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
 
@@ -45,20 +65,11 @@ class Store:
         """Write next to nothing, to learn whether writing works. Raises StoreError where it does not."""
         await self.write(_touch)
 
-    @contextmanager
-    def read(self) -> Iterator[Session]:
-        """A session that only reads. Keep it short: a long one keeps the write-ahead log growing."""
-        try:
-            with Session(self._reader) as session:
-                yield session
-        except DBAPIError as problem:
-            raise StoreError(_explain(problem)) from problem
-
     def close(self) -> None:
         """Wait for what is being written, and close. Blocks; call it once."""
         self._thread.submit(self._connection.close).result()
         self._thread.shutdown()
-        self._reader.dispose()
+        super().close()
         self._writer.dispose()
 
     def _open(self) -> None:

@@ -17,7 +17,7 @@ from sqlmodel import col, select
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.notices import Notices
 from server.schema import INCREMENTAL
-from server.sessions import REMOVING
+from server.sessions import HIDDEN, REMOVING
 from server.settings import Settings
 from server.storage import GIGABYTE, measure
 from server.store import Store, StoreError
@@ -146,7 +146,7 @@ class Tidying:
     async def _find(self, *conditions: ColumnElement[bool]) -> list[_Candidate]:
         row = SessionRow
         query = select(row.id, row.name, row.bytes, row.started, row.deleted).order_by(col(row.started))  # type: ignore[call-overload]
-        query = query.where(col(row.state) != REMOVING, *conditions)
+        query = query.where(col(row.state).not_in(HIDDEN), *conditions)
 
         def read() -> list[_Candidate]:
             with self._store.read() as database:

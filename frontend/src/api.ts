@@ -10,6 +10,9 @@ export type SessionDetail = Schemas['SessionDetail'];
 export type SessionChanges = Partial<Pick<Session, 'name' | 'note' | 'tags' | 'kept'>>;
 export type Mark = Schemas['Mark'];
 export type Storage = Schemas['Storage'];
+export type ExportJob = Schemas['Job'];
+export type ExportFormat = Schemas['Wanted']['format'];
+export type NewExport = Pick<Schemas['NewExport'], 'session' | 'format'> & Partial<Schemas['NewExport']>;
 export type CommTestDocument = Schemas['TestDocument'];
 export type CommTestCheck = Schemas['Check'];
 export type CommTestPlace = Schemas['Start']['place'];
@@ -34,7 +37,7 @@ export type Align = Schemas['Align'];
 export type TimeRange = Schemas['TimeRange'];
 export type FigureMeaning = Schemas['FigureMeaning'];
 export type FigureMark = Schemas['FigureMark'];
-export type WantedLines = Schemas['Wanted'];
+export type WantedLines = Schemas['WantedLines'];
 export type WantedComparison = Schemas['WantedComparison'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -60,6 +63,21 @@ async function request<T>(method: string, path: string, body?: object, timeout =
   } catch {
     return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
   }
+}
+
+/** Fetch tells nothing of how far it has sent a body. */
+function upload<T>(path: string, file: File, progress: (share: number) => void): Promise<Answer<T>> {
+  return new Promise((resolve) => {
+    const sending = new XMLHttpRequest();
+    sending.upload.onprogress = (event) => event.lengthComputable && progress(event.loaded / event.total);
+    sending.onload = () => {
+      if (sending.status >= 400) resolve({ problem: describe(sending.status, sending.responseText) });
+      else resolve({ value: JSON.parse(sending.responseText) as T });
+    };
+    sending.onerror = () => resolve({ problem: `${file.name} could not be sent whole. Look whether the server runs, and try again.` });
+    sending.open('POST', `/api${path}`);
+    sending.send(file);
+  });
 }
 
 function describe(status: number, text: string): string {
@@ -110,6 +128,11 @@ export const api = {
   compareLines: (wanted: WantedLines) => request<ComparedLines>('POST', '/compare/lines', wanted, TIMEOUT_COMPARE),
   compareReport: (query: URLSearchParams) => `/api/compare/report?${query.toString()}`,
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
+  exports: () => request<ExportJob[]>('GET', '/exports'),
+  startExport: (wanted: NewExport) => request<ExportJob>('POST', '/exports', wanted),
+  deleteExport: (id: ExportJob['id']) => command('DELETE', `/exports/${id}`),
+  exportFile: (id: ExportJob['id']) => `/api/exports/${id}/file`,
+  importSession: (file: File, progress: (share: number) => void) => upload<Session>('/imports', file, progress),
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
   startCommTest: (text: string, place: CommTestPlace) =>

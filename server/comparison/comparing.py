@@ -40,8 +40,8 @@ from server.comparison.shapes import (
     NoSessionError,
     TimeRange,
     Told,
-    Wanted,
     WantedComparison,
+    WantedLines,
 )
 from server.comparison.signals import Signal, list_signals
 from server.models import SessionRow
@@ -98,7 +98,7 @@ class Comparer:
             differences=find_differences([(one.row, one.history) for one in laid]),
         )
 
-    def lines(self, wanted: Wanted) -> Lines:
+    def lines(self, wanted: WantedLines) -> Lines:
         """The lines alone, for a part of the time."""
         laid = self._lay(wanted)
         return Lines(
@@ -116,11 +116,11 @@ class Comparer:
             raise NoSessionError(f"There is no session {session}; it may have been deleted.")
         return Recording(self._store, row)
 
-    def _lay(self, wanted: Wanted) -> list[_Laid]:
+    def _lay(self, wanted: WantedLines) -> list[_Laid]:
         recordings = [self._open(one) for one in dict.fromkeys(wanted.sessions)]
         return list(self._threads.map(lambda one: self._lay_one(one, wanted), recordings))
 
-    def _lay_one(self, recording: Recording, wanted: Wanted) -> _Laid:
+    def _lay_one(self, recording: Recording, wanted: WantedLines) -> _Laid:
         # At once, since what is wanted of one topic is read together.
         found = self._samples.read(recording, {*wanted.signals, MEASURED, SET_POINT, OUTPUT})
         key = (recording.row.identifier,)
@@ -173,7 +173,7 @@ class Comparer:
             self._counted.keep(place, counted, one.row)
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
-    def _draw(self, one: _Laid, wanted: Wanted) -> dict[str, Line]:
+    def _draw(self, one: _Laid, wanted: WantedLines) -> dict[str, Line]:
         if one.offset is None:
             return {}
         view = _shift(wanted.view, one.offset) if wanted.view else Span(0.0, max(one.row.duration, 1e-3))

@@ -29,7 +29,7 @@ class TimeRange(BaseModel):
     end: Annotated[float, Field(allow_inf_nan=False)]
 
 
-class Wanted(BaseModel):
+class WantedLines(BaseModel):
     """Sessions, signals of them, and how they are laid over each other."""
 
     model_config = ConfigDict(extra="forbid")
@@ -40,7 +40,7 @@ class Wanted(BaseModel):
     view: TimeRange | None = Field(default=None, description="what is drawn; everything without")
 
 
-class WantedComparison(Wanted):
+class WantedComparison(WantedLines):
     """The same, with what the figures are taken over."""
 
     range: TimeRange | None = Field(default=None, description="for the figures; the time armed without")

@@ -8,7 +8,7 @@ from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from server.assembly import Assembly
-from server.comparison.shapes import Comparison, Lines, TimeRange, Wanted, WantedComparison
+from server.comparison.shapes import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.comparison.signals import Signal
 from server.routes.problems import answers
 from server.sessions import IDENTIFIER_MAX
@@ -97,6 +97,6 @@ def compare(request: Request, wanted: WantedComparison) -> Comparison:
 @router.post(
     "/compare/lines", summary="Lines for a part of the time", operation_id="compareLines", responses=UNKNOWN
 )
-def lines(request: Request, wanted: Wanted) -> Lines:
+def lines(request: Request, wanted: WantedLines) -> Lines:
     """What is fetched when somebody looks closer."""
     return Assembly.of(request).comparer.lines(wanted)

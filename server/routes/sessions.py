@@ -9,7 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from starlette.responses import Response, StreamingResponse
 
 from server.assembly import Assembly
-from server.export import Export
+from server.exports.describe import file_name
+from server.exports.shapes import Wanted
+from server.exports.source import Source
+from server.exports.tables import stream_tables
 from server.recorder import RecordingRefused
 from server.recording import Recording
 from server.routes.problems import answers
@@ -170,6 +173,8 @@ def get_thumbnail(
 def get_csv(request: Request, session: Identifier) -> StreamingResponse:
     """One CSV file for each topic, with units in its header, and `session.json` with everything else."""
     assembly = Assembly.of(request)
-    export = Export(assembly.store, assembly.catalogue.row(session))
-    headers = {"content-disposition": f'attachment; filename="{export.file_name}"'}
-    return StreamingResponse(export.stream(), media_type="application/zip", headers=headers)
+    source = Source(assembly.store, assembly.catalogue.row(session), Wanted(format="csv"))
+    headers = {"content-disposition": f'attachment; filename="{file_name(source, ".zip")}"'}
+    return StreamingResponse(
+        stream_tables(assembly.store, source), media_type="application/zip", headers=headers
+    )

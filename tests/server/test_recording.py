@@ -9,7 +9,7 @@ from server.sessions import find_row
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block, depth_block, picture_block, state_block, thumbnail_block
-from tests.server.test_export import record
+from tests.server.test_export_tables import record
 
 
 def read(store: Store, session: int) -> Recording:

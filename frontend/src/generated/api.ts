@@ -228,6 +228,74 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All exports, newest first
+         * @description Those that are kept, and those that are being made.
+         */
+        get: operations["listExports"];
+        put?: never;
+        /**
+         * Have a session made into a file
+         * @description Files are made one after the other, apart from the server; GET tells how far it is.
+         */
+        post: operations["startExport"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/exports/{export}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One export
+         * @description How far it is; its size and checksum when it is there.
+         */
+        get: operations["getExport"];
+        put?: never;
+        post?: never;
+        /**
+         * Cancel or delete an export
+         * @description The file is gone then.
+         */
+        delete: operations["deleteExport"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/exports/{export}/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download an export
+         * @description A download that was cut goes on where it was: ask with Range, and with If-Range its ETag.
+         */
+        get: operations["downloadExport"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -242,6 +310,26 @@ export interface paths {
         get: operations["getHealth"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/imports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Import the archive of a session
+         * @description The body is the file. It is looked at as a whole, and stored as a whole or not at all.
+         */
+        post: operations["importSession"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1249,6 +1337,56 @@ export interface components {
             version: string;
         };
         /**
+         * Job
+         * @description One file, made or to be made. It is kept for some days.
+         */
+        Job: {
+            /**
+             * Bytes
+             * @description the file's size; null until it is there
+             */
+            bytes?: number | null;
+            /**
+             * File
+             * @description the file's name
+             */
+            file: string;
+            /** Id */
+            id: string;
+            /**
+             * Made
+             * Format: date-time
+             * @description UTC, when it was asked for
+             */
+            made: string;
+            /**
+             * Problem
+             * @description why it failed
+             * @default
+             */
+            problem: string;
+            /**
+             * Progress
+             * @description 0 to 1
+             */
+            progress: number;
+            /** Session */
+            session: number;
+            /** Session Name */
+            session_name: string;
+            /**
+             * Sha256
+             * @description the file's checksum, hexadecimal; null until it is there
+             */
+            sha256?: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "waiting" | "running" | "done" | "failed";
+            wanted: components["schemas"]["Wanted"];
+        };
+        /**
          * Line
          * @description A signal over time, thinned out to least and most of each column; null breaks the line.
          */
@@ -1382,6 +1520,45 @@ export interface components {
             text?: string | null;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * NewExport
+         * @description A file that is wanted.
+         */
+        NewExport: {
+            /**
+             * Columns
+             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
+             */
+            columns?: string[] | null;
+            /**
+             * End
+             * @description s since the session's start; null for its end
+             */
+            end?: number | null;
+            /**
+             * Format
+             * @enum {string}
+             */
+            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            /**
+             * Period
+             * @description s between the lines of csv-grid
+             * @default 0.1
+             */
+            period: number;
+            /** Session */
+            session: number;
+            /**
+             * Start
+             * @description s since the session's start; null for its beginning
+             */
+            start?: number | null;
+            /**
+             * Topics
+             * @description names of topics; null for all. Not for csv-grid, archive and report
+             */
+            topics?: string[] | null;
         };
         /**
          * NewMark
@@ -2325,29 +2502,40 @@ export interface components {
         };
         /**
          * Wanted
-         * @description Sessions, signals of them, and how they are laid over each other.
+         * @description What of a session is to be in the file, and as what.
          */
         Wanted: {
             /**
-             * @default {
-             *       "by": "start",
-             *       "marker": "",
-             *       "number": 1
-             *     }
+             * Columns
+             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
              */
-            align: components["schemas"]["Align"];
+            columns?: string[] | null;
             /**
-             * Points
-             * @description columns of each line
-             * @default 1000
+             * End
+             * @description s since the session's start; null for its end
              */
-            points: number;
-            /** Sessions */
-            sessions: number[];
-            /** Signals */
-            signals: string[];
-            /** @description what is drawn; everything without */
-            view?: components["schemas"]["TimeRange"] | null;
+            end?: number | null;
+            /**
+             * Format
+             * @enum {string}
+             */
+            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            /**
+             * Period
+             * @description s between the lines of csv-grid
+             * @default 0.1
+             */
+            period: number;
+            /**
+             * Start
+             * @description s since the session's start; null for its beginning
+             */
+            start?: number | null;
+            /**
+             * Topics
+             * @description names of topics; null for all. Not for csv-grid, archive and report
+             */
+            topics?: string[] | null;
         };
         /**
          * WantedComparison
@@ -2372,6 +2560,32 @@ export interface components {
             points: number;
             /** @description for the figures; the time armed without */
             range?: components["schemas"]["TimeRange"] | null;
+            /** Sessions */
+            sessions: number[];
+            /** Signals */
+            signals: string[];
+            /** @description what is drawn; everything without */
+            view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
+         * WantedLines
+         * @description Sessions, signals of them, and how they are laid over each other.
+         */
+        WantedLines: {
+            /**
+             * @default {
+             *       "by": "start",
+             *       "marker": "",
+             *       "number": 1
+             *     }
+             */
+            align: components["schemas"]["Align"];
+            /**
+             * Points
+             * @description columns of each line
+             * @default 1000
+             */
+            points: number;
             /** Sessions */
             sessions: number[];
             /** Signals */
@@ -2730,7 +2944,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Wanted"];
+                "application/json": components["schemas"]["WantedLines"];
             };
         };
         responses: {
@@ -2831,6 +3045,220 @@ export interface operations {
             };
         };
     };
+    listExports: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"][];
+                };
+            };
+        };
+    };
+    startExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewExport"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be made */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    deleteExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be deleted */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    downloadExport: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                export: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file; its ETag is its SHA-256 */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description The part that was asked for with Range */
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such export */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not finished */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     getHealth: {
         parameters: {
             query?: never;
@@ -2847,6 +3275,66 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+        };
+    };
+    importSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/zip": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            /** @description It is here already, or another is being imported */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is no archive that can be imported */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The disk is full */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

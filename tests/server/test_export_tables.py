@@ -14,7 +14,10 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.packets import Motor
 from robot_runtime.samples import Truth
 from robot_runtime.topics import BY_NAME, Block, read_rows, row
-from server.export import Export
+from server.exports.describe import file_name
+from server.exports.shapes import Wanted
+from server.exports.source import Source
+from server.exports.tables import stream_tables
 from server.notices import Notices
 from server.recorder import Recorder
 from server.recording import CHUNKS_AT_ONCE, RecordingError
@@ -45,14 +48,14 @@ def record(
     return asyncio.run(scenario())
 
 
-def make(store: Store, session: int) -> Export:
+def make(store: Store, session: int, **wanted: Any) -> Source:
     row = find_row(store, session)
     assert row is not None
-    return Export(store, row)
+    return Source(store, row, Wanted(**{"format": "csv", **wanted}))
 
 
-def unpack(export: Export) -> zipfile.ZipFile:
-    archive = zipfile.ZipFile(io.BytesIO(b"".join(export.stream())))
+def unpack(store: Store, source: Source) -> zipfile.ZipFile:
+    archive = zipfile.ZipFile(io.BytesIO(b"".join(stream_tables(store, source))))
     assert archive.testzip() is None
     return archive
 
@@ -77,7 +80,7 @@ def test_numbers_are_the_very_ones_that_were_recorded(store: Store, settings: Se
         Block.of(BY_NAME["truth"], 1, 0, row(100.5, truth.to_bytes())),
         depth_block(0, 30),
     ]
-    archive = unpack(make(store, record(store, settings, blocks)))
+    archive = unpack(store, make(store, record(store, settings, blocks)))
     (line,) = table(archive, "motor")
     (_, sent), *_ = read_rows(blocks[0])
     assert isinstance(sent, Motor)
@@ -99,10 +102,10 @@ def test_numbers_are_the_very_ones_that_were_recorded(store: Store, settings: Se
 
 
 def test_the_header_gives_units_and_two_times(store: Store, settings: Settings) -> None:
-    export = make(store, record(store, settings, [depth_block(0, 1)]))
-    (line,) = table(unpack(export), "depth")
+    source = make(store, record(store, settings, [depth_block(0, 1)]))
+    (line,) = table(unpack(store, source), "depth")
     assert list(line) == ["time [s]", "utc", "time [µs]", "depth [m]", "pressure [Pa]", "temperature [°C]"]
-    started = export._session.started
+    started = source.row.started
     assert float(line["time [s]"]) == 100 - STARTED_STEADY
     utc = datetime.fromisoformat(line["utc"])
     assert utc.timestamp() == pytest.approx(started + 0.5, abs=0.001)
@@ -111,7 +114,9 @@ def test_the_header_gives_units_and_two_times(store: Store, settings: Settings) 
 
 def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
     awkward = 'say "hi", then\nbreak; é'
-    archive = unpack(make(store, record(store, settings, [debug_block(0, awkward, "b"), state_block(0)])))
+    archive = unpack(
+        store, make(store, record(store, settings, [debug_block(0, awkward, "b"), state_block(0)]))
+    )
     assert [(one["level"], one["text"]) for one in table(archive, "debug")] == [("1", awkward), ("1", "b")]
     (state,) = table(archive, "state")
     assert (state["armed"], state["armed_since"], state["port"]) == ("false", "", "board.tty")
@@ -120,7 +125,7 @@ def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
 
 def test_many_chunks_come_out_once_each_and_in_order(store: Store, settings: Settings) -> None:
     batches = [[depth_block(3 * number, 3)] for number in range(CHUNKS_AT_ONCE * 2 + 1)]
-    archive = unpack(make(store, record(store, settings, *batches)))
+    archive = unpack(store, make(store, record(store, settings, *batches)))
     numbers = [int(one["time [µs]"]) for one in table(archive, "depth")]
     assert numbers == list(range(3 * len(batches)))
 
@@ -129,7 +134,7 @@ def test_only_topics_that_were_heard_and_everything_about_the_session(
     store: Store, settings: Settings
 ) -> None:
     session = record(store, settings, [depth_block(0, 1), depth_block(5, 1)])
-    archive = unpack(make(store, session))
+    archive = unpack(store, make(store, session))
     assert set(archive.namelist()) == {"session.json", "depth.csv"}
     told: dict[str, Any] = json.loads(archive.read("session.json"))
     assert (told["id"], told["note"], told["state"]) == (session, "calm", "complete")
@@ -147,18 +152,19 @@ def test_a_recording_is_read_as_it_was_defined_then(store: Store, settings: Sett
         connection.execute(text("UPDATE session SET topics = replace(topics, 'temperature', 'warmth')"))
 
     asyncio.run(store.write(rename))
-    assert "warmth [°C]" in table(unpack(make(store, session)), "depth")[0]
+    assert "warmth [°C]" in table(unpack(store, make(store, session)), "depth")[0]
 
 
 def test_the_file_is_written_while_it_is_read(store: Store, settings: Settings) -> None:
-    batches = [[depth_block(100 * number, 100)] for number in range(CHUNKS_AT_ONCE * 4)]
-    pieces = list(make(store, record(store, settings, *batches)).stream())
+    batches = [[depth_block(1000 * number, 1000)] for number in range(CHUNKS_AT_ONCE * 4)]
+    source = make(store, record(store, settings, *batches))
+    pieces = list(stream_tables(store, source))
     assert len(pieces) > 10
     assert max(map(len, pieces)) < 0.2 * sum(map(len, pieces))
 
 
 def test_the_file_name_is_safe(store: Store, settings: Settings) -> None:
-    name = make(store, record(store, settings)).file_name
+    name = file_name(make(store, record(store, settings)), ".zip")
     assert name.endswith("_Dive-no-1-resund-x.zip")
     datetime.strptime(name[:19], "%Y-%m-%d_%H-%M-%S")
 
@@ -167,4 +173,4 @@ def test_a_damaged_chunk_is_told(store: Store, settings: Settings) -> None:
     session = record(store, settings, [depth_block(0, 2)])
     asyncio.run(store.write(lambda connection: connection.execute(text("UPDATE chunk SET data = x'00'"))))
     with pytest.raises(RecordingError, match="chunk 0 of depth is damaged"):
-        unpack(make(store, session))
+        unpack(store, make(store, session))

@@ -1,0 +1,110 @@
+"""An hour at full rate as a file, beside the same rows written by plain pandas and by the mcap writer.
+
+All are s of a processor, which other work on the computer does not lengthen. Ours includes reading and
+unpacking what is stored; the others are given the rows in memory, and only write them.
+"""
+
+import io
+import json
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from mcap.writer import CompressionType, Writer
+
+from bench.hour import record_hour
+from server.chunks import row_layout
+from server.exports.files import write_part
+from server.exports.formats import check
+from server.exports.packing import LEVEL
+from server.exports.shapes import Wanted
+from server.exports.source import Source
+from server.sessions import find_row
+from server.store import Reader
+
+
+def measure() -> dict[str, float]:
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder)
+        session = record_hour(data)
+        reader = Reader(data / "mucat.db")
+        csv = _cpu(lambda: _export(reader, session, "csv", data))
+        mcap = _cpu(lambda: _export(reader, session, "mcap", data))
+        row = find_row(reader, session)
+        assert row is not None
+        source = Source(reader, row, Wanted(format="csv"))
+        tables = {name: _table(source, name) for name in source.names}
+        plain_csv = _cpu(lambda: _write_pandas(tables, data))
+        plain_mcap = _cpu(lambda: _write_mcap(tables, data))
+        reader.close()
+    return {
+        "export.csv_1h_s": csv,
+        "export.csv_1h_pandas_s": plain_csv,
+        "export.csv_1h_ratio": csv / plain_csv,
+        "export.mcap_1h_s": mcap,
+        "export.mcap_1h_plain_s": plain_mcap,
+        "export.mcap_1h_ratio": mcap / plain_mcap,
+    }
+
+
+def _cpu(work: Callable[[], object]) -> float:
+    before = time.process_time()
+    work()
+    return time.process_time() - before
+
+
+def _export(reader: Reader, session: int, kind: Any, data: Path) -> None:
+    row = find_row(reader, session)
+    assert row is not None
+    wanted = Wanted(format=kind)
+    source = Source(reader, row, wanted)
+    write_part(data / kind, lambda output: check(wanted).write(reader, source, output))
+
+
+def _table(source: Source, name: str) -> pd.DataFrame:
+    topic = source.topics[name]
+    if topic["kind"] == "rows":
+        names = [column.partition(" [")[0] for column in row_layout(topic).columns]
+        times, values = source.columns(name, names)
+        columns: dict[str, Any] = {f"value {column}": values[column] for column in names}
+    else:
+        documents = list(source.documents(name))
+        times = np.array([document["time"] for document in documents])
+        columns = {
+            field["name"]: [document[field["name"]] for document in documents]
+            for field in topic["fields"]
+            if field["name"] != "time"
+        }
+    since = times - source.row.started_steady
+    utc = pd.to_datetime(source.row.started + since, unit="s", utc=True)
+    return pd.DataFrame({"time [s]": since, "utc": utc, **columns})
+
+
+def _write_pandas(tables: dict[str, pd.DataFrame], data: Path) -> None:
+    for name, table in tables.items():
+        packed = {"method": "zip", "compresslevel": LEVEL}
+        table.to_csv(data / f"{name}.zip", index=False, compression=packed)
+
+
+def _write_mcap(tables: dict[str, pd.DataFrame], data: Path) -> None:
+    with (data / "plain.mcap").open("wb") as file:
+        writer = Writer(io.BufferedWriter(file.raw), compression=CompressionType.NONE)
+        writer.start()
+        for name, table in tables.items():
+            schema = writer.register_schema(name, "jsonschema", b'{"type": "object"}')
+            channel = writer.register_channel(name, "json", schema)
+            for time_ns, message in _messages(table):
+                writer.add_message(channel, time_ns, json.dumps(message).encode(), time_ns)
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+def _messages(table: pd.DataFrame) -> Iterator[tuple[int, dict[str, Any]]]:
+    names = [name for name in table.columns if name != "utc"]
+    columns = [table[name].tolist() for name in names]
+    times = table["utc"].astype("int64").tolist()
+    for time_ns, *values in zip(times, *columns, strict=True):
+        yield time_ns, dict(zip(names, values, strict=True))

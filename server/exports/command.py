@@ -1,0 +1,172 @@
+"""`mucat export` and `mucat import`: sessions taken home and brought back from a shell."""
+
+import argparse
+import asyncio
+import json
+import sqlite3
+import sys
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, closing, contextmanager
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from migrations import HEAD
+from robot_runtime.errors import Refused
+from server.exports.describe import file_name
+from server.exports.files import PART, FileFailed, put_in_place, write_part
+from server.exports.formats import check
+from server.exports.imports import Imports
+from server.exports.reading import ArchiveRefused
+from server.exports.shapes import Wanted
+from server.exports.source import ExportRefused, Source
+from server.models import SessionRow
+from server.recording import RecordingError
+from server.schema import prepare, read_revision
+from server.sessions import find_row
+from server.settings import DataFolder, Settings, SetupError
+from server.store import Reader, Store, StoreError
+
+Claim = Callable[[DataFolder], AbstractContextManager[None]]
+
+IMPORT_SECONDS = 3600.0
+
+
+def export_session(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
+    """Write a file, also beside a running server. Raises SetupError where it cannot be."""
+    try:
+        wanted = Wanted(
+            format=options.format,
+            topics=options.topics,
+            columns=options.columns,
+            start=options.start,
+            end=options.end,
+            **({} if options.period is None else {"period": options.period}),
+        )
+        kind = check(wanted)
+        with _open(settings.data, claim) as store:
+            row = find_row(store, options.session)
+            if row is None:
+                raise SetupError(f"There is no session {options.session} in {settings.data.path}.")
+            source = Source(store, row, wanted, _Progress().tell)
+            path = options.output or Path(file_name(source, kind.ending))
+            part = path.with_name(path.name + PART)
+            written = write_part(part, lambda output: kind.write(store, source, output))
+            put_in_place(part, path)
+    except ValidationError as problem:
+        raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
+    except (ExportRefused, FileFailed, RecordingError) as problem:
+        raise SetupError(str(problem)) from problem
+    except StoreError as problem:
+        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
+    _say(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
+    return 0
+
+
+def import_session(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
+    """Bring an archive in: through the server that runs, or without one by itself. Raises SetupError."""
+    if not options.file.is_file():
+        raise SetupError(f"There is no file {options.file}.")
+    if _server_runs(settings.data, claim):
+        number, name = _ask_server(options.file, settings)
+    else:
+        with claim(settings.data):
+            number, name = _take(options.file, settings.data)
+    _say(f"session {number}: {name}")
+    return 0
+
+
+@contextmanager
+def _open(folder: DataFolder, claim: Claim) -> Iterator[Reader]:
+    # Only reads, so it may be done beside a running server; making or upgrading a database may not.
+    try:
+        current = read_revision(folder.database) == HEAD
+    except sqlite3.DatabaseError:
+        current = False  # `prepare` says what is the matter
+    if not current:
+        with claim(folder):
+            prepare(folder)
+    with closing(Reader(folder.database)) as store:
+        yield store
+
+
+def _server_runs(folder: DataFolder, claim: Claim) -> bool:
+    if not folder.path.is_dir():
+        return False
+    try:
+        with claim(folder):
+            return False
+    except SetupError:
+        return True
+
+
+def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
+    prepare(folder)
+    try:
+        with closing(Store(folder.database)) as store:
+            number = asyncio.run(_import(store, folder, file))
+            row = find_row(store, number)
+            assert isinstance(row, SessionRow)
+            return number, row.name
+    except (ArchiveRefused, Refused, FileFailed) as problem:
+        raise SetupError(str(problem)) from problem
+    except StoreError as problem:
+        raise SetupError(f"The database {folder.database} fails: {problem}") from problem
+
+
+async def _import(store: Store, folder: DataFolder, file: Path) -> int:
+    imports = Imports(folder, store)
+    await imports.recover()
+    return await imports.take(file)
+
+
+def _ask_server(file: Path, settings: Settings) -> tuple[int, str]:
+    host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
+    url = f"http://{f'[{host}]' if ':' in host else host}:{settings.port}/api/imports"
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    try:
+        with file.open("rb") as body:
+            headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
+            request = urllib.request.Request(url, body, headers, method="POST")
+            with opener.open(request, timeout=IMPORT_SECONDS) as answer:
+                session = json.load(answer)
+    except urllib.error.HTTPError as problem:
+        raise SetupError(_detail(problem)) from problem
+    except (urllib.error.URLError, OSError, ValueError) as problem:
+        raise SetupError(
+            f"A server works on {settings.data.path}, but none answers at port {settings.port} of {host} "
+            f"({problem}). Give its --port."
+        ) from problem
+    return session["id"], session["name"]
+
+
+def _detail(problem: urllib.error.HTTPError) -> str:
+    try:
+        return str(json.load(problem)["detail"])
+    except (ValueError, KeyError, TypeError):
+        return f"The server refused with status {problem.code}."
+
+
+def _words(error: Any) -> str:
+    return f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}"
+
+
+def _say(words: str) -> None:
+    print(words)  # noqa: T201 - a command line speaks
+
+
+class _Progress:
+    """Writes percents to a terminal."""
+
+    def __init__(self) -> None:
+        self._told = -1
+
+    def tell(self, share: float) -> None:
+        percent = int(100 * share)
+        if percent != self._told and sys.stderr.isatty():
+            self._told = percent
+            sys.stderr.write(f"\r{percent:3} %" + ("\r     \r" if percent == 100 else ""))
+            sys.stderr.flush()

@@ -1,0 +1,49 @@
+"""A zip file that is written while it is read: it is never in memory as a whole. Same input, same bytes."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO, Any, BinaryIO
+
+LEVEL = 1
+"""zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""
+
+
+class Packing:
+    """A zip file around `output`, whose members are deflated where `packed`, else stored as they are."""
+
+    def __init__(self, output: BinaryIO, *, packed: bool = True) -> None:
+        kind = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
+        self._archive = zipfile.ZipFile(_Forwards(output), "w", kind, compresslevel=LEVEL)
+
+    def text(self, name: str, text: str) -> None:
+        """A member of this text."""
+        with self.member(name) as file:
+            file.write(text.encode())
+
+    @contextmanager
+    def member(self, name: str) -> Iterator[IO[bytes]]:
+        """A member to write to; one at a time. By its name alone zipfile gives it no date of today."""
+        with self._archive.open(name, "w", force_zip64=True) as file:
+            yield file
+
+    def close(self) -> None:
+        """Write the list of members."""
+        self._archive.close()
+
+
+class _Forwards(io.RawIOBase):
+    """A file that only goes forwards, which is what a download is."""
+
+    def __init__(self, output: BinaryIO) -> None:
+        self._output = output
+
+    def writable(self) -> bool:
+        """Yes."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """All of it."""
+        self._output.write(data)
+        return len(data)
