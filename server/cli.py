@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from server import VERSION
+from server.sessions_options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
             return _commtest(options, settings)
+        if options.command in ("sessions", "record"):
+            return _sessions(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -46,6 +49,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     run.add_argument("--host", help="address to listen on; default 127.0.0.1, or server.host in robot.toml")
     test = commands.add_parser("commtest", help="test the serial line, on the emulated board")
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
+    sessions = commands.add_parser("sessions", help="find sessions, write about them, delete them")
+    add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
+    record = commands.add_parser("record", help="record with the running server")
+    add_record(record.add_subparsers(dest="action", required=True), kept)
     return parser.parse_args(arguments)
 
 
@@ -92,6 +99,12 @@ def _commtest(options: argparse.Namespace, settings: Settings) -> int:
     return perform(options, settings, _claim)
 
 
+def _sessions(options: argparse.Namespace, settings: Settings) -> int:
+    from server.sessions_command import perform
+
+    return perform(options, settings, _claim)
+
+
 def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
     from robot_runtime.firmware import BuildError, build_firmware
@@ -107,6 +120,7 @@ def _run(settings: Settings) -> int:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         prepare(settings.data)
+        settings.data.port.write_text(f"{settings.port}\n", encoding="ascii")
         server = make_server(create_app(settings, plan(settings)))
         # The server ends in order at these, and then sends them to itself once more; once is enough.
         for number in (signal.SIGINT, signal.SIGTERM):
