@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
 from server.exports.options import add_export, add_import
+from server.sessions_options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _report(options, settings)
         if options.command in ("export", "import"):
             return _carry(options, settings)
+        if options.command in ("sessions", "record"):
+            return _sessions(options, settings)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -68,6 +71,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     _add_report(report)
     add_export(commands, kept)
     add_import(commands, kept)
+    sessions = commands.add_parser("sessions", help="find sessions, write about them, delete them")
+    add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
+    record = commands.add_parser("record", help="record with the running server")
+    add_record(record.add_subparsers(dest="action", required=True), kept)
     return parser.parse_args(arguments)
 
 
@@ -160,7 +167,11 @@ def _commtest(options: argparse.Namespace, settings: Settings) -> int:
 
 
 def _scenario(options: argparse.Namespace, settings: Settings) -> int:
-    from server.scenarios.command import perform
+    pass
+
+
+def _sessions(options: argparse.Namespace, settings: Settings) -> int:
+    from server.sessions_command import perform
 
     return perform(options, settings, _claim)
 
@@ -193,6 +204,7 @@ def _run(settings: Settings) -> int:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         prepare(settings.data)
+        settings.data.port.write_text(f"{settings.port}\n", encoding="ascii")
         server = make_server(create_app(settings, plan(settings)))
         # The server ends in order at these, and then sends them to itself once more; once is enough.
         for number in (signal.SIGINT, signal.SIGTERM):

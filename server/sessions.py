@@ -3,9 +3,9 @@
 import json
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from robot_runtime.clock import Clock, boot
 from robot_runtime.firmware import firmware_path
@@ -28,6 +28,13 @@ HIDDEN = (REMOVING, IMPORTING)
 
 State = Literal["recording", "complete", "interrupted"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
+
+
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
+Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
+Tag = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
+]
 
 
 class Session(BaseModel):
@@ -107,6 +114,16 @@ class SessionDetail(Session):
     marks: list[Mark] = Field(description="in the order of their times")
     gaps: list[SessionGap]
     topics: list[RecordedTopic]
+
+
+class SessionChanges(BaseModel):
+    """What people say about a session; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Annotated[Name, Field(min_length=1)] | None = None
+    note: Note | None = None
+    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
+    kept: bool | None = None
 
 
 def new_row(

@@ -64,6 +64,11 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
+    def port(self) -> Path:
+        """The TCP port at which the server that works on this folder, or did last, is to be asked."""
+        return self.path / "server.port"
+
+    @property
     def runtime_socket(self) -> Path:
         """Where the runtime listens for Zenoh."""
         return self.run / "runtime.sock"

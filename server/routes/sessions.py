@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, HTTPException, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict
 from starlette.responses import Response, StreamingResponse
 
 from server.assembly import Assembly
@@ -16,7 +16,16 @@ from server.exports.tables import stream_tables
 from server.recorder import RecordingRefused
 from server.recording import Recording
 from server.routes.problems import answers
-from server.sessions import IDENTIFIER_MAX, Origin, Session, SessionDetail, new_row
+from server.sessions import (
+    IDENTIFIER_MAX,
+    Name,
+    Note,
+    Origin,
+    Session,
+    SessionChanges,
+    SessionDetail,
+    new_row,
+)
 
 UNKNOWN = answers(_404="There is no such session")
 STORING = answers(_409="Refused now", _503="The database does not work")
@@ -24,11 +33,6 @@ STORING = answers(_409="Refused now", _503="The database does not work")
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
-Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
-Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
-Tag = Annotated[
-    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
-]
 
 
 class NewSession(BaseModel):
@@ -37,16 +41,6 @@ class NewSession(BaseModel):
     model_config = ConfigDict(extra="forbid")
     name: Name = ""
     note: Note = ""
-
-
-class SessionChanges(BaseModel):
-    """What people say about a session; what is left out stays as it is."""
-
-    model_config = ConfigDict(extra="forbid")
-    name: Annotated[Name, Field(min_length=1)] | None = None
-    note: Note | None = None
-    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
-    kept: bool | None = None
 
 
 @router.get("", summary="Sessions, newest first", operation_id="listSessions")

@@ -1,0 +1,174 @@
+"""`mucat sessions` and `mucat record`: what people do with sessions, from a shell.
+
+What changes something is asked of the server that runs on the data folder, since nothing else may write its
+database; where none runs, it is done here.
+"""
+
+import argparse
+import asyncio
+import json
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, closing, contextmanager
+from typing import Any
+
+from pydantic import ValidationError
+
+from migrations import HEAD
+from server.catalogue import Catalogue
+from server.presence import NotNow, UnknownSession
+from server.schema import prepare, read_revision
+from server.sessions import Session, SessionChanges, SessionDetail
+from server.settings import DataFolder, Settings, SetupError
+from server.store import Store, StoreError
+
+Claim = Callable[[DataFolder], AbstractContextManager[None]]
+TIMEOUT = 10.0
+"""s for the running server to answer."""
+
+
+def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
+    """Do what the command line says. Raises SetupError, with a line for a person, where it cannot be done."""
+    try:
+        print(_act(options, settings, claim))  # noqa: T201 - a command line speaks
+    except (UnknownSession, NotNow) as problem:
+        raise SetupError(str(problem)) from problem
+    except StoreError as problem:
+        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
+    return 0
+
+
+def _act(options: argparse.Namespace, settings: Settings, claim: Claim) -> str:
+    folder, action = settings.data, options.action
+    if options.command == "record":
+        return _start(options, folder) if action == "start" else _stop(folder, claim)
+    if action in ("list", "show"):
+        with _reading(folder, claim) as catalogue:
+            if action == "show":
+                return _describe(catalogue.detail(options.session))
+            found = catalogue.list(" ".join(options.words), options.tag, deleted=options.deleted)
+            return _tabulate(found)
+    if action == "tag":
+        with _reading(folder, claim) as catalogue:
+            tags = [*catalogue.find(options.session).tags, *options.tags]
+        said = _check(tags=[tag for tag in dict.fromkeys(tags) if tag not in options.remove])
+    elif action == "note":
+        said = _check(note=options.text)
+    else:
+        said = {}
+    session = _change(folder, claim, options.session, action, said)
+    words = {"delete": "is in the bin", "restore": "is back"}.get(action, "is changed")
+    return f"“{session['name']}” {words}."
+
+
+def _change(
+    folder: DataFolder, claim: Claim, session: int, action: str, said: dict[str, Any]
+) -> dict[str, Any]:
+    port = _running(folder, claim)
+    if port is not None:
+        path = f"/sessions/{session}"
+        if said:
+            return _ask(port, "PATCH", path, said)
+        return _ask(port, "DELETE", path) if action == "delete" else _ask(port, "POST", f"{path}/restore")
+    with claim(folder):
+        prepare(folder)
+        with closing(Store(folder.database)) as store:
+            catalogue = Catalogue(store)
+            if said:
+                change = catalogue.change(session, **said)
+            else:
+                change = catalogue.delete(session) if action == "delete" else catalogue.restore(session)
+            return asyncio.run(change).model_dump()
+
+
+def _check(**said: Any) -> dict[str, Any]:
+    try:
+        return SessionChanges(**said).model_dump(exclude_unset=True)
+    except ValidationError as problem:
+        raise SetupError("; ".join(error["msg"] for error in problem.errors())) from problem
+
+
+def _start(options: argparse.Namespace, folder: DataFolder) -> str:
+    session = _ask(_port(folder), "POST", "/sessions", {"name": options.name, "note": options.note})
+    return f"Recording of “{session['name']}” has begun; it is session {session['id']}."
+
+
+def _stop(folder: DataFolder, claim: Claim) -> str:
+    with _reading(folder, claim) as catalogue:
+        recording = [one.id for one in catalogue.list() if one.state == "recording"]
+    if not recording:
+        raise SetupError("Nothing is being recorded.")
+    session = _ask(_port(folder), "POST", f"/sessions/{recording[0]}/stop")
+    return f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s."
+
+
+@contextmanager
+def _reading(folder: DataFolder, claim: Claim) -> Iterator[Catalogue]:
+    # Reading may be done beside a running server; making or upgrading a database may not.
+    if read_revision(folder.database) != HEAD:
+        with claim(folder):
+            prepare(folder)
+    with closing(Store(folder.database)) as store:
+        yield Catalogue(store)
+
+
+def _running(folder: DataFolder, claim: Claim) -> int | None:
+    """The port of the server that works on this folder; None where none does."""
+    try:
+        with claim(folder):
+            return None
+    except SetupError:
+        return _port(folder)
+
+
+def _port(folder: DataFolder) -> int:
+    try:
+        return int(folder.port.read_text(encoding="ascii"))
+    except (OSError, ValueError) as problem:
+        raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
+
+
+def _ask(port: int, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(
+        f"http://127.0.0.1:{port}/api{path}",
+        data=data if data is not None or method != "POST" else b"",
+        headers={"content-type": "application/json"},
+        method=method,
+    )
+    try:
+        with urllib.request.urlopen(request, timeout=TIMEOUT) as answer:
+            found = json.load(answer)
+    except urllib.error.HTTPError as problem:
+        raise SetupError(str(json.load(problem).get("detail", problem))) from problem
+    except OSError as problem:
+        raise SetupError(f"The server does not answer at port {port}: {problem}.") from problem
+    assert isinstance(found, dict)
+    return found
+
+
+def _tabulate(sessions: list[Session]) -> str:
+    if not sessions:
+        return "No session is like that."
+    return "\n".join(
+        f"{one.id:5}  {one.started:%Y-%m-%d %H:%M}  {one.duration:8.1f} s  {one.state:11}  {one.name}"
+        + (f"  [{', '.join(one.tags)}]" if one.tags else "")
+        for one in sessions
+    )
+
+
+def _describe(session: SessionDetail) -> str:
+    lines = [
+        f"{session.id}  {session.name}",
+        *([session.note] if session.note else []),
+        f"{session.state}, {session.origin}, {session.started:%Y-%m-%d %H:%M:%S} UTC, "
+        f"{session.duration:.1f} s, {session.bytes} bytes",
+        f"tags: {', '.join(session.tags) or '-'}",
+        f"robot {session.robot}, version {session.version}, firmware {session.firmware or '-'}, "
+        f"software {session.software or '-'}",
+    ]
+    lines += [f"  mark  {mark.time:10.1f} s  {mark.text}" for mark in session.marks]
+    lines += [f"  gap   {gap.time:10.1f} s  {gap.topic}: {gap.kind}, {gap.missed}" for gap in session.gaps]
+    lines += [f"  topic {topic.name:12} {topic.count:9} samples" for topic in session.topics]
+    return "\n".join(lines)
