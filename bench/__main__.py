@@ -14,6 +14,7 @@ PARTS = (
     "emulator",
     "physics",
     "scenario",
+    "camera",
     "codec",
     "link",
     "corruption",

@@ -66,7 +66,7 @@ class Cache:
         with self._lock:
             self._messages.append((now, message))
             self._bytes += len(message)
-            while self._bytes > BYTES_MAX or self._messages[0][0] < now - SECONDS:
+            while self._messages and (self._bytes > BYTES_MAX or self._messages[0][0] < now - SECONDS):
                 self._bytes -= len(self._messages.popleft()[1])
             self._next.update(following)
 

@@ -32,6 +32,9 @@ SET_POINT = Range(0, 10)
 VISION_RATE = Range(2, 30)
 """Hz; slower, and what was seen would be stale before the next look."""
 
+HIL_BAUD_MIN = 115_200
+"""From here on the line carries the fins at full rate."""
+
 CHIP_CLOCK = 16_000_000
 """Hz."""
 BAUD_ERROR_MAX = 0.025
@@ -49,7 +52,7 @@ class RobotConfig:
     """Who this robot is."""
 
     name: str = "turtle"
-    mode: Literal["emulated", "robot"] = "emulated"
+    mode: Literal["emulated", "robot", "hil"] = "emulated"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,6 +70,14 @@ class LinkConfig:
                 f"link.baud is {self.baud}; the chip at 16 MHz makes {made:.0f} of it, "
                 f"{made / self.baud - 1:+.1%}, and the line needs it within {BAUD_ERROR_MAX:.1%}"
             )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HilConfig:
+    """Hardware in the loop: which board computes the fins, and where the simulator starts."""
+
+    board: Literal["emulated", "real"] = "emulated"
+    simulator: Literal["here", "elsewhere"] = "here"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,10 +128,18 @@ class Config:
 
     robot: RobotConfig = RobotConfig()
     link: LinkConfig = LinkConfig()
+    hil: HilConfig = HilConfig()
     control: ControlConfig = ControlConfig()
     vision: VisionConfig = VisionConfig()
     zenoh: ZenohConfig = ZenohConfig()
     server: ServerConfig = ServerConfig()
+
+    def __post_init__(self) -> None:
+        if self.robot.mode == "hil" and self.link.baud < HIL_BAUD_MIN:
+            raise ConfigError(
+                f"link.baud is {self.link.baud}; hardware in the loop needs {HIL_BAUD_MIN} or more, for the "
+                "simulator must see the fins as they flap"
+            )
 
 
 def load(path: Path) -> Config:

@@ -15,6 +15,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
+from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.conversation import Conversation
@@ -61,6 +62,7 @@ class Core:
         line: Conversation,
         outbox: Outbox,
         *,
+        loop: InTheLoop | None = None,
         picture_wanted: Callable[[], bool],
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,
@@ -76,7 +78,7 @@ class Core:
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
-        self.supervisor = Supervisor(clock, self.line, self.tell)
+        self.supervisor = Supervisor(clock, self.line, self.tell, loop)
         self.control = ControlNode(self.bus, clock, self._navigate)
         self.vision = Vision(
             config.vision,

@@ -20,21 +20,24 @@ class BuildError(Exception):
     """The firmware cannot be built; the text says why and what to do."""
 
 
-def firmware_path(build: Path, baud: int, suffix: str) -> Path:
+def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> Path:
     """The robot's firmware for this many bit/s; the suffix is ".elf" (emulated board) or ".hex" (upload).
 
-    `build` is the folder of everything built. The file need not be there yet.
+    `build` is the folder of everything built, `hil` asks for that of a board in the loop. The file need not
+    be there yet.
     """
     folder = build / "firmware"
-    return (folder if baud == LinkConfig().baud else folder / str(baud)) / f"robot{suffix}"
+    if baud != LinkConfig().baud:
+        folder /= str(baud)
+    return (folder / "hil" if hil else folder) / f"robot{suffix}"
 
 
-def build_firmware(build: Path, baud: int) -> None:
+def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     """Bring the firmware for this many bit/s up to date. Raises BuildError where that is not possible.
 
     A computer without the compiler takes what is there.
     """
-    product = firmware_path(build, baud, ".elf")
+    product = firmware_path(build, baud, ".elf", hil=hil)
     if shutil.which("make") is None or shutil.which("avr-gcc") is None:
         if product.exists():
             return
@@ -43,6 +46,7 @@ def build_firmware(build: Path, baud: int) -> None:
             "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
         )
     command = ["make", "--silent", "-C", str(_SOURCES), "robot", f"BAUD={baud}", f"BUILD={product.parent}"]
+    command += ["HIL=1"] if hil else []
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode != 0:
         last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_TOLD:]).strip()
@@ -58,7 +62,8 @@ def main() -> int:
     )
     options = parser.parse_args()
     try:
-        build_firmware(options.build.absolute(), load(options.config).link.baud)
+        config = load(options.config)
+        build_firmware(options.build.absolute(), config.link.baud, hil=config.robot.mode == "hil")
     except (ConfigError, BuildError) as problem:
         print(problem, file=sys.stderr)  # noqa: T201 - a command line speaks
         return 1

@@ -4,10 +4,9 @@ import threading
 
 from robot_runtime.clock import Clock
 from robot_runtime.control.supervisor import Supervisor
+from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages
 
-HEARTBEAT = "heartbeat"
-"""What the server publishes every second, from the loop that also does everything else there."""
 _LOOK_SECONDS = 0.5
 
 

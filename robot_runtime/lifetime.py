@@ -12,6 +12,8 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 
+HEARTBEAT = "heartbeat"
+"""What a server publishes every second, from the loop that also does everything else there."""
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
 _LOOK_SECONDS = 1.0
@@ -64,10 +66,12 @@ def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None
     def watch() -> None:
         seen = clock.now()
         pause = threading.Event()
-        while lock.exists() and clock.now() - seen < linger:
-            pause.wait(_LOOK_SECONDS)
+        while True:
             if is_served(lock):
                 seen = clock.now()
+            elif not lock.exists() or clock.now() - seen >= linger:
+                break
+            pause.wait(_LOOK_SECONDS)
         end()
 
     threading.Thread(target=watch, name="server", daemon=True).start()

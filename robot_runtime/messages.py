@@ -18,6 +18,7 @@ from robot_runtime.errors import Refused as Refused
 log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
+_CLIENT_TIMEOUT_MS = 1000
 
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
@@ -37,21 +38,28 @@ class Messages:
     """One process's end of the conversation.
 
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
-    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. Raises OSError where an endpoint cannot be
-    listened on.
+    "tcp/192.168.0.7:7447". Lost peers are tried again for ever. A `client` reaches everybody through the one
+    that it connects to, which must be there when it starts. Raises OSError where an endpoint cannot be
+    listened on, or a client's cannot be reached.
 
     `run` are 16 hexadecimal digits that are new in every process; they travel with all that it publishes.
     """
 
     def __init__(
-        self, robot: str, listen: Sequence[str] = (), connect: Sequence[str] = (), scouting: bool = False
+        self,
+        robot: str,
+        listen: Sequence[str] = (),
+        connect: Sequence[str] = (),
+        scouting: bool = False,
+        client: bool = False,
     ) -> None:
         self.run = secrets.token_hex(8)
         self._prefix = f"mucat/{robot}/"
         try:
-            self._session = zenoh.open(_configuration(listen, connect, scouting))
+            self._session = zenoh.open(_configuration(listen, connect, scouting, client))
         except zenoh.ZError as problem:
-            raise OSError(f"cannot listen on {', '.join(listen)}: {problem}") from problem
+            does = "reach" if client else "listen on"
+            raise OSError(f"cannot {does} {', '.join(connect if client else listen)}: {problem}") from problem
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._queryables: list[zenoh.Queryable[None]] = []
 
@@ -157,16 +165,19 @@ def _reason(problem: Exception, query: zenoh.Query) -> str:
     return "an error inside the answering process; its log says more"
 
 
-def _configuration(listen: Sequence[str], connect: Sequence[str], scouting: bool) -> zenoh.Config:
+def _configuration(
+    listen: Sequence[str], connect: Sequence[str], scouting: bool, client: bool
+) -> zenoh.Config:
     settings: dict[str, Any] = {
-        "mode": "peer",
+        "mode": "client" if client else "peer",
         "scouting/multicast/enabled": scouting,
         "scouting/gossip/enabled": scouting,
         "listen/endpoints": list(listen),
         "connect/endpoints": list(connect),
         # Batches of some hundred bytes gain nothing from it, and its threads wake thirty times a second.
         "transport/shared_memory/enabled": False,
-        "connect/timeout_ms": -1,
+        # A client's opening waits for this; a peer's goes on trying behind it.
+        "connect/timeout_ms": _CLIENT_TIMEOUT_MS if client else -1,
         "connect/exit_on_failure": False,
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
     }

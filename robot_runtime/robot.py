@@ -7,6 +7,7 @@ from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
+from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.core import PUBLISH_EVERY, Core
 from robot_runtime.link.connection import Connection
 from robot_runtime.messages import Messages
@@ -27,6 +28,11 @@ class Robot(Core):
         self.connection = Connection(
             port, config.link.baud, clock, epoch, self.take_messages, self.link_changed
         )
+        self.loop: InTheLoop | None = None
+        if config.robot.mode == "hil":
+            self.loop = InTheLoop(clock, self.connection.send, self.tell)
+            hear = self.loop.hear
+            messages.subscribe("sense", lambda _, data: hear(data))
         outbox = Outbox(messages.publish, messages.watched, self.cache)
         super().__init__(
             config,
@@ -34,6 +40,7 @@ class Robot(Core):
             messages.run,
             self.connection,
             outbox,
+            loop=self.loop,
             picture_wanted=lambda: messages.watched("picture"),
             messages=messages,
         )

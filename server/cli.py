@@ -6,22 +6,28 @@ import logging
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
-from server import VERSION
+from server import VERSION, simulator_command
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
+
+LOCK_TRIES = 20
+LOCK_SECONDS = 0.02
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status: 0 after an orderly end, 1 where what was asked cannot be done."""
     options = _options(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    if options.command == "simulator":
+        simulator_command.perform(options)
     try:
         settings = read_settings(options.config, options.data, options.host, options.port, os.environ)
         if options.command == "commtest":
@@ -50,6 +56,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     _add_commtest(test.add_subparsers(dest="action", required=True), kept)
     scenario = commands.add_parser("scenario", help="run experiments that are written down")
     _add_scenario(scenario.add_subparsers(dest="action", required=True), kept)
+    simulator_command.add_arguments(commands)
     return parser.parse_args(arguments)
 
 
@@ -94,21 +101,33 @@ def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def _claim(folder: DataFolder) -> Iterator[None]:
-    """Hold the data folder alone. Raises SetupError where another server has it."""
+    """Hold the data folder alone. Raises SetupError where another server has it.
+
+    Parts of a killed server look now and then whether the lock is held, and then have it for a moment.
+    """
     try:
         folder.path.mkdir(parents=True, exist_ok=True)
         handle = folder.lock.open("w")
     except OSError as problem:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
     with handle:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as problem:
+        if not _lock(handle):
             raise SetupError(
                 f"Another server works on {folder.path}. End it, or choose another folder with --data."
-            ) from problem
+            )
         make_folders(folder)
         yield
+
+
+def _lock(handle: IO[str]) -> bool:
+    for _ in range(LOCK_TRIES):
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(LOCK_SECONDS)
+        else:
+            return True
+    return False
 
 
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:
@@ -131,9 +150,9 @@ def _run(settings: Settings) -> int:
     from server.schema import prepare
     from server.web import make_server, open_socket
 
-    if settings.mode == "emulated":
+    if settings.emulated_board:
         try:
-            build_firmware(settings.build, settings.link.baud)
+            build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:

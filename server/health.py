@@ -30,6 +30,9 @@ class PartHealth(BaseModel):
     name: Literal["server", "database", "runtime", "link", "board", "simulator", "scene"]
     state: PartState
     text: str
+    here: bool | None = Field(
+        default=None, description="of what may be started and ended: whether it runs on this computer"
+    )
 
 
 class Health(BaseModel):
@@ -143,11 +146,20 @@ class Watch:
         return self._silent("board", part or runtime, "Nothing arrives from it.")
 
     def _simulator(self) -> PartHealth:
+        health = self._water()
+        part = self._parts.get("simulator")
+        if self._settings.in_the_loop and part is not None:
+            health.here = part.state != "paused"
+        return health
+
+    def _water(self) -> PartHealth:
         if self._settings.mode == "robot":
             return PartHealth(name="simulator", state="absent", text="A real robot swims in real water.")
         part = self._parts.get("simulator")
         if part is not None and part.state == "failed":
             return PartHealth(name="simulator", state="failed", text=_say_failed(part))
+        if part is not None and part.state == "paused" and not self._fresh("truth", TRUTH_SECONDS):
+            return PartHealth(name="simulator", state="absent", text=part.problem)
         if self._fresh("truth", TRUTH_SECONDS):
             return PartHealth(name="simulator", state="ok", text="The water is simulated.")
         return self._silent("simulator", part, "It runs, but the simulated water stands still.")

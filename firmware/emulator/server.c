@@ -24,6 +24,7 @@ bool server_gone(struct server *server, double now) {
   close(file);
   if (!free) {
     server->seen = now;
+    return false;
   }
   return now - server->seen >= server->linger;
 }

@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0x7089247cUL;
+constexpr uint32_t kDefinitionsHash = 0xdad8308fUL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -23,6 +23,7 @@ enum class StatusFlag : uint8_t {
   kMotorPower = 8,
   kBatteryLow = 16,
   kDefinitionsDiffer = 32,
+  kHil = 64,
 };
 
 enum class SensorFault : uint8_t {
@@ -182,6 +183,19 @@ struct __attribute__((packed)) TestResult {
 };
 static_assert(sizeof(TestResult) == 10, "TestResult has another size");
 
+// Host to board, in the loop with a simulator alone: what its sensors would show; the newest counts.
+struct __attribute__((packed)) Sense {
+  static constexpr uint8_t kType = 0x11;
+  uint32_t pressure;  // absolute pressure; Pa
+  int16_t temperature;  // temperature of the water; x 0.01 °C
+  int16_t rate[3];  // turn rate (65.5 counts per °/s); x 0.00026632423 rad/s
+  int16_t force[3];  // specific force (8192 counts per g); x 0.0011971008 m/s²
+  uint8_t right;  // 1 while the right detector sees the beacon
+  uint8_t left;  // 1 while the left detector sees the beacon
+  uint16_t battery;  // battery; x 0.001 V
+};
+static_assert(sizeof(Sense) == 22, "Sense has another size");
+
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
   switch (type) {
@@ -199,6 +213,7 @@ inline int8_t payload_bytes(uint8_t type) {
     case TestMsg::kType: return 2;
     case RequestResult::kType: return 0;
     case TestResult::kType: return 10;
+    case Sense::kType: return 22;
     default: return -1;
   }
 }

@@ -3,6 +3,7 @@
 #include "board/board.h"
 #include "led.h"
 #include "schedule.h"
+#include "sensors/sense.h"
 
 namespace mucat {
 namespace {
@@ -63,6 +64,9 @@ void Robot::handle(const Message& message) {
       break;
     case Navigation::kType:
       if (arming_.navigate(board::milliseconds())) fins_.command(unpack<Navigation>(message));
+      break;
+    case Sense::kType:
+      feel(unpack<Sense>(message));
       break;
     default:
       break;  // a heartbeat has done its work by coming; the rest is the board's own to say
@@ -167,7 +171,8 @@ uint8_t Robot::flags() const {
   return bit(StatusFlag::kArmed, armed()) | bit(StatusFlag::kHostAlive, arming_.host_alive()) |
          bit(StatusFlag::kNeutral, fins_.neutral()) | bit(StatusFlag::kMotorPower, fins_.powered()) |
          bit(StatusFlag::kBatteryLow, battery_alarm_.on()) |
-         bit(StatusFlag::kDefinitionsDiffer, arming_.definitions_differ());
+         bit(StatusFlag::kDefinitionsDiffer, arming_.definitions_differ()) |
+         bit(StatusFlag::kHil, in_the_loop());
 }
 
 }  // namespace mucat

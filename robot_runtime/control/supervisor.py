@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robot_runtime.clock import Clock
+from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.errors import Refused
 from robot_runtime.link.pace import airtime, stale_after
 from robot_runtime.packets import Depth, Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
@@ -55,14 +56,22 @@ class Arming:
 class Supervisor:
     """Knows whether the robot is armed, and decides whether it may be.
 
-    `tick` runs with the control loop; `arm` and `stop` may be called from any thread.
+    `tick` runs with the control loop; `arm` and `stop` may be called from any thread. Where there is a
+    `loop`, the board must be one for it.
     """
 
-    def __init__(self, clock: Clock, line: Line, tell: Callable[[Event], None]) -> None:
+    def __init__(
+        self,
+        clock: Clock,
+        line: Line,
+        tell: Callable[[Event], None],
+        loop: InTheLoop | None = None,
+    ) -> None:
         self.armed_since: float | None = None
         self._clock = clock
         self._line = line
         self._tell = tell
+        self._loop = loop
         self._arming: Arming | None = None
         self._status: Status | None = None
         self._status_time = float("-inf")
@@ -107,6 +116,11 @@ class Supervisor:
         now, status = self._clock.now(), self._status
         if status is None or now - self._status_time > self._status_stale:
             return ["The board says nothing of its state. Wait a moment, or reset it."]
+        if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
+            return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
+        reasons = self._loop.refusals() if self._loop else []
+        if reasons:
+            return reasons
         reasons = [_FAULTS[fault] for fault in SensorFault if status.faults & fault]
         if now - self._depth_time > self._depth_stale:
             reasons.append("There is no fresh depth. Check the pressure sensor.")
@@ -168,6 +182,8 @@ class Supervisor:
 
     def tick(self) -> None:
         """Look for what should end an armed run; repeat STOP until the board follows."""
+        if self._loop is not None:
+            self._loop.tick()
         with self._changed:
             if self.armed and not self._line.connected:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
@@ -203,6 +219,13 @@ class Supervisor:
         self._tell(Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
 
 
+_WRONG_FIRMWARE = (
+    "The board runs the firmware for hardware in the loop, which moves nothing. Upload the robot's own, or "
+    "set robot.mode to hil."
+)
+_NO_HIL_FIRMWARE = (
+    "The board does not run the firmware for hardware in the loop. Upload build/firmware/hil/robot.hex."
+)
 _FAULTS = {
     SensorFault.IMU: "The IMU does not answer.",
     SensorFault.PRESSURE: "The pressure sensor does not answer.",

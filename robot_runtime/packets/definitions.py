@@ -42,6 +42,7 @@ class StatusFlag(IntFlag):
     MOTOR_POWER = 8
     BATTERY_LOW = 16
     DEFINITIONS_DIFFER = 32
+    HIL = 64
 
 
 class SensorFault(IntFlag):
@@ -240,6 +241,28 @@ class TestResult(Packet):
     frames_invalid: Annotated[int, Wire("H", meaning="frames thrown away")]
     frames_repeated: Annotated[int, Wire("H", meaning="reliable frames sent again")]
     bytes_lost: Annotated[int, Wire("H", meaning="received bytes lost for want of room")]
+
+
+# Hardware in the loop: a board without sensors and motors of its own is told by a simulator.
+
+
+@_packet(0x11)
+class Sense(Packet):
+    """Host to board, in the loop with a simulator alone: what its sensors would show; the newest counts."""
+
+    pressure: Annotated[int, Wire("I", unit="Pa", meaning="absolute pressure")]
+    temperature: Annotated[float, Wire("h", scale=0.01, unit="°C", meaning="temperature of the water")]
+    rate: Annotated[
+        tuple[float, float, float],
+        Wire("h", scale=0.00026632423, unit="rad/s", count=3, meaning="turn rate (65.5 counts per °/s)"),
+    ]
+    force: Annotated[
+        tuple[float, float, float],
+        Wire("h", scale=0.0011971008, unit="m/s²", count=3, meaning="specific force (8192 counts per g)"),
+    ]
+    right: Annotated[int, Wire("B", meaning="1 while the right detector sees the beacon")]
+    left: Annotated[int, Wire("B", meaning="1 while the left detector sees the beacon")]
+    battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery")]
 
 
 def encode(packet: Packet) -> bytes:

@@ -1,16 +1,28 @@
-"""`python -m robot_runtime.simulation --board SOCKET`: the water around an emulated board."""
+"""`python -m robot_runtime.simulation`: the water.
+
+Around an emulated board (`--board SOCKET`), or around a robot anywhere whose hardware is in the loop
+(`--in-the-loop --connect ENDPOINT`).
+"""
 
 import argparse
 import logging
 import signal
+import sys
+import time
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
+from robot_runtime.simulation.loop import Loop
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.process import Process
 from robot_runtime.simulation.simulator import Simulator
+
+log = logging.getLogger(__name__)
+
+RETRY = 1.0
+"""s between two attempts to reach a robot elsewhere."""
 
 
 def main() -> None:
@@ -19,9 +31,15 @@ def main() -> None:
     logging.basicConfig(level=logging.INFO, format="%(levelname)s simulation: %(message)s")
     if arguments.with_parent:
         end_with_parent()
-    with Messages(arguments.robot, connect=arguments.connect) as messages:
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: sys.exit())
+    with _join(arguments.robot, arguments.connect, client=arguments.in_the_loop) as messages:
         simulator = Simulator(Parameters(), arguments.seed)
-        process = Process(simulator, arguments.board, messages, SteadyClock())
+        process: Process | Loop
+        if arguments.in_the_loop:
+            process = Loop(simulator, messages)
+        else:
+            process = Process(simulator, arguments.board, messages, SteadyClock())
         if arguments.server_lock is not None:
             watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):
@@ -29,9 +47,28 @@ def main() -> None:
         process.run()
 
 
+def _join(robot: str, endpoints: list[str], *, client: bool) -> Messages:
+    """Join the conversation; a client waits until somebody is there."""
+    told = False
+    while True:
+        try:
+            return Messages(robot, connect=endpoints, client=client)
+        except OSError as problem:
+            if not client:
+                raise
+            if not told:
+                log.warning("%s; trying again until the robot answers", problem)
+            told = True
+            time.sleep(RETRY)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m robot_runtime.simulation", description=__doc__)
-    parser.add_argument("--board", type=Path, required=True, help="the emulated board's Unix socket")
+    place = parser.add_mutually_exclusive_group(required=True)
+    place.add_argument("--board", type=Path, help="the emulated board's Unix socket")
+    place.add_argument(
+        "--in-the-loop", action="store_true", help="the board, real or emulated, has no other sensors"
+    )
     parser.add_argument(
         "--connect",
         action="append",

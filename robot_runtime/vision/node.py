@@ -69,6 +69,7 @@ class Vision:
         self._pace = Pace(clock, config.rate)
         self._camera: Camera | None = None
         self._failure: str | None = None
+        self._failing_since: float | None = None
         self._retry_at = clock.now()
         self._ending = False
         self._wake = threading.Event()
@@ -118,7 +119,7 @@ class Vision:
         try:
             frame = self._take()
         except CameraError as problem:
-            self._fail(str(problem))
+            self._fail(str(problem), problem.patience)
         except Exception as problem:
             log.exception("the camera failed")
             self._fail(f"the camera failed ({problem}); the log says more")
@@ -155,6 +156,7 @@ class Vision:
                 return None
             self._camera = self._open_camera()
         frame = self._camera.read()
+        self._failing_since = None
         if self._failure is not None:
             self._failure = None
             self._report("info", f"Camera: {self.text}.")
@@ -178,10 +180,13 @@ class Vision:
             _, jpeg = cv2.imencode(".jpg", frame.picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
             self._on_picture(frame.taken, jpeg.tobytes())
 
-    def _fail(self, text: str) -> None:
+    def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
-        self._retry_at = self._clock.now() + RETRY
-        if text != self._failure:
+        now = self._clock.now()
+        self._retry_at = now + RETRY
+        if self._failing_since is None:
+            self._failing_since = now
+        if text != self._failure and now - self._failing_since >= patience:
             self._failure = text
             self._report("caution", f"Camera: {text}. It is tried again every {RETRY:g} s.")
 

@@ -10,8 +10,10 @@ from robot_runtime.vision.cards import card_paint
 from robot_runtime.vision.colours import ColourRange
 
 READY_TIMEOUT = 1.0
-PICTURE_TIMEOUT = 6.0
+PICTURE_TIMEOUT = 16.0
 """s; the first picture waits until all of the scene is made."""
+PATIENCE = 8.0
+"""s for which it is not news that there is none: board, simulator and scene start after the runtime."""
 
 
 class SceneMissing(Exception):  # noqa: N818 - it says what happened
@@ -41,7 +43,8 @@ class SceneCamera(Camera):
         except NoAnswer as problem:
             raise CameraError(
                 "no scene answers; it belongs to a simulated robot, and starts with the server. A real robot "
-                "has another camera: name it in robot.toml, [vision] camera"
+                "has another camera: name it in robot.toml, [vision] camera",
+                PATIENCE,
             ) from problem
         if missing is not None:
             raise SceneMissing(str(missing))
@@ -53,9 +56,11 @@ class SceneCamera(Camera):
         try:
             picture = read_picture(self._messages.ask_bytes("scene/picture", request, PICTURE_TIMEOUT))
         except NoAnswer as problem:
-            raise CameraError("the scene does not answer any more; the System page tells more") from problem
+            raise CameraError(
+                "the scene does not answer any more; the System page tells more", PATIENCE
+            ) from problem
         except (Refused, ValueError) as problem:
-            raise CameraError(f"the scene gives none: {problem}") from problem
+            raise CameraError(f"the scene gives none: {problem}", PATIENCE) from problem
         return Frame(picture.pixels, picture.time)
 
     def close(self) -> None:

@@ -22,6 +22,7 @@ from server.comm_tests.reference import Place as Cell
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import Place
 from server.models import CommTestRun
+from server.pidfile import end_parts
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
@@ -36,7 +37,12 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
     """
     try:
         if options.action == "run":
-            return _run(options.file, options.place or settings.mode, settings, claim)
+            return _run(
+                options.file,
+                options.place or ("emulated" if settings.emulated_board else "robot"),
+                settings,
+                claim,
+            )
         with _open(settings.data, claim) as runs:
             print(_look(options, runs), end="")  # noqa: T201 - a command line speaks
     except StoreError as problem:
@@ -90,7 +96,7 @@ def _is_current(folder: DataFolder) -> bool:
 
 def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
     text, tests = _read(file)
-    if place == "robot" and settings.mode == "emulated":
+    if place == "robot" and settings.emulated_board:
         raise SetupError(
             "The emulated robot's board runs only while the server does. Start the test from the page, or "
             "leave --place out."
@@ -100,6 +106,7 @@ def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
             claimed.enter_context(claim(settings.data))
         except SetupError as problem:
             raise SetupError(f"{problem} Beside a running server, start the test from its page.") from problem
+        end_parts(settings.data.run)
         prepare(settings.data)
         with closing(Store(settings.data.database)) as store:
             return asyncio.run(_perform(text, tests, place, settings, Runs(store)))

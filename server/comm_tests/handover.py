@@ -44,7 +44,7 @@ class Board:
         self._tell = tell
         link, folder = settings.link, settings.data
         self._port, reset = link.port, link.reset
-        if settings.mode == "emulated":
+        if settings.emulated_board:
             self._port, reset = str(folder.board_tty), f"board:{folder.board_socket}"
         self._arguments = ["--port", self._port, "--reset", reset]
 
@@ -90,7 +90,8 @@ class Board:
     async def _upload(self) -> str:
         """What went wrong, in words; empty where the firmware is there."""
         output = PartLog(self._settings.data.logs / "restore.log")
-        firmware = firmware_path(self._settings.build, self._settings.link.baud, ".hex")
+        settings = self._settings
+        firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
         command = [sys.executable, "-m", "robot_runtime.comm_test", "--restore", str(firmware)]
         command += ["--with-parent", *self._arguments]
         try:
@@ -100,7 +101,8 @@ class Board:
         except TimeoutError:
             return f"there is no {self._port}"
         try:
-            process = Process(command, output.write)
+            with output.open() as file:
+                process = Process(command, file)
             try:
                 async with asyncio.timeout(RESTORE_SECONDS):
                     status = await process.wait()
@@ -111,7 +113,7 @@ class Board:
         except OSError as problem:
             return f"the upload could not be started: {problem.strerror}"
         finally:
-            output.close()
+            output.trim()
         return "" if status == 0 else output.last(LINES_TOLD) or f"the upload ended with exit status {status}"
 
 

@@ -556,6 +556,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/simulator": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Start or end the simulator on this computer
+         * @description Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth.
+         */
+        put: operations["putSimulator"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -932,6 +952,11 @@ export interface components {
          */
         PartHealth: {
             /**
+             * Here
+             * @description of what may be started and ended: whether it runs on this computer
+             */
+            here?: boolean | null;
+            /**
              * Name
              * @enum {string}
              */
@@ -943,6 +968,14 @@ export interface components {
             state: "ok" | "starting" | "failed" | "absent";
             /** Text */
             text: string;
+        };
+        /**
+         * Place
+         * @description Whether the simulator runs on this computer.
+         */
+        Place: {
+            /** Here */
+            here: boolean;
         };
         /**
          * Problem
@@ -2593,6 +2626,46 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putSimulator: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Place"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The robot is not in the loop */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = '7089247c';
+export const DEFINITIONS_HASH = 'dad8308f';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -38,6 +38,7 @@ export const StatusFlag = {
   MOTOR_POWER: 8,
   BATTERY_LOW: 16,
   DEFINITIONS_DIFFER: 32,
+  HIL: 64,
 } as const;
 
 export const SensorFault = {

@@ -5,7 +5,7 @@ import logging
 import signal
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.lifetime import end_with_parent
+from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.simulation.scene.process import Process
 
@@ -16,8 +16,10 @@ def main() -> None:
     logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
     if arguments.with_parent:
         end_with_parent()
-    with Messages(arguments.robot, connect=arguments.connect) as messages:
+    with Messages(arguments.robot, arguments.listen, arguments.connect) as messages:
         process = Process(messages, SteadyClock())
+        if arguments.server_lock is not None:
+            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: process.end())
         process.run()
@@ -30,10 +32,18 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint where truth comes from and pictures go; may repeat",
+        help="Zenoh endpoint of who looks; may repeat",
+    )
+    parser.add_argument(
+        "--listen",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="Zenoh endpoint where the simulator finds the scene; may repeat",
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    add_server_options(parser)
     return parser
 
 

@@ -63,8 +63,9 @@ def build(contents: Contents, parameters: Parameters) -> Any:
     spec.visual.global_.offwidth, spec.visual.global_.offheight = WIDTH_MAX, HEIGHT_MAX
     # Several samples a pixel take a CPU three times as long; the look's lens smooths edges instead.
     spec.visual.quality.offsamples = 0
+    spec.visual.quality.shadowsize = 16
     spec.visual.quality.numslices, spec.visual.quality.numstacks = 24, 16
-    spec.visual.headlight.ambient = [0.55, 0.55, 0.55]
+    spec.visual.headlight.ambient = [0.5, 0.5, 0.5]
     spec.visual.headlight.diffuse = [0.3, 0.3, 0.3]
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
     world = spec.worldbody
@@ -74,7 +75,7 @@ def build(contents: Contents, parameters: Parameters) -> Any:
         pos=[0, 0, 5],
         castshadow=False,
         ambient=[0, 0, 0],
-        diffuse=[0.4, 0.4, 0.4],
+        diffuse=[0.25, 0.25, 0.25],
         specular=[0.25, 0.25, 0.25],
     )
     _surface(spec, contents)

@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 ASK_PERIOD = 1.0
 """s after which the simulator is asked again what surrounds the robot."""
 ASK_TIMEOUT = 0.3
-ANSWER_TIMEOUT = 5.0
+ANSWER_TIMEOUT = 15.0
 """s; the first picture waits for MuJoCo and all textures."""
 OBSERVER_PERIOD = 1 / 12
 """s between two pictures of the bystander's."""
@@ -155,8 +155,10 @@ class Process:
                 self._publish_observer(*self._truth)
             except Refused as problem:
                 log.warning("a bystander sees nothing: %s", problem)
-        self._observe_due = max(self._observe_due + period, now)
-        return max(self._observe_due - self._clock.now(), 0.001)
+        done = self._clock.now()
+        # Where a picture takes long, no more than half of the time goes into those of the bystander's.
+        self._observe_due = max(self._observe_due + period, done + (done - now))
+        return self._observe_due - done
 
     def _publish_observer(self, time: float, truth: Truth) -> None:
         if self._observed == (time, self._view):

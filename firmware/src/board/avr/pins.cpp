@@ -1,4 +1,4 @@
-// LED (A1), motor power (A3), battery converter (A2), beacon detectors (D4, D5).
+// LED (A1), motor power (A3), and how the inputs are set up (inputs.cpp).
 #ifdef __AVR__
 #include <avr/io.h>
 
@@ -28,14 +28,6 @@ void start_pins() {
   ADCSRA = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);
   DIDR0 = _BV(ADC2D);
 }
-
-void start_battery() { ADCSRA |= _BV(ADSC); }
-
-uint16_t take_battery() { return ADC; }
-
-bool beacon_right() { return PIND & _BV(PD4); }
-
-bool beacon_left() { return PIND & _BV(PD5); }
 
 void set_led(bool on) { set(_BV(PC1), on); }
 

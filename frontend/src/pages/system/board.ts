@@ -24,6 +24,7 @@ const FLAGS: readonly (readonly [number, string])[] = [
   [StatusFlag.MOTOR_POWER, 'motor power on'],
   [StatusFlag.BATTERY_LOW, 'battery low'],
   [StatusFlag.DEFINITIONS_DIFFER, 'definitions differ'],
+  [StatusFlag.HIL, 'hardware in the loop'],
 ];
 
 export const causeWords = (cause: number): string => CAUSES[cause] ?? `cause ${cause}`;

@@ -1,0 +1,24 @@
+// Battery and beacon detectors as the simulator tells of them.
+#include "board/board.h"
+#include "loop.h"
+
+namespace mucat {
+namespace board {
+namespace {
+
+// mV for full scale, as sensors/battery.cpp has it.
+constexpr uint32_t kFullScale = 10000;
+constexpr uint16_t kCountsMax = 1023;
+
+}  // namespace
+
+void start_battery() {}
+
+uint16_t take_battery() { return loop::sense().battery * static_cast<uint32_t>(kCountsMax) / kFullScale; }
+
+bool beacon_right() { return loop::sense().right; }
+
+bool beacon_left() { return loop::sense().left; }
+
+}  // namespace board
+}  // namespace mucat

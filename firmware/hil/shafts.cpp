@@ -1,0 +1,51 @@
+// Four motors with encoders in the chip's memory, in place of the drivers of H-bridges and encoders. Their
+// law is that of the emulated board (firmware/emulator/motors.c): the speed follows the drive with a time
+// constant.
+#include <math.h>
+
+#include "fins/calibration.h"
+#include "fins/fin_law.h"
+#include "sensors/as5040.h"
+#include "sensors/drv8830.h"
+
+namespace mucat {
+namespace {
+
+constexpr float kSpeedPerStep = 0.315f;    // rad/s for a step of the bridge's voltage
+constexpr float kTimeConstant = 0.03f;     // s
+constexpr float kDecayPerTick = 0.71653f;  // exp(-kTickSeconds / kTimeConstant)
+constexpr int8_t kLeastDrive = 6;          // as of the H-bridge
+constexpr float kCountsPerRadian = 1024 / (2 * kPi);
+constexpr int16_t kCountsPerTurn = 1024;
+
+struct Shaft {
+  float angle;
+  float speed;
+  int8_t drive;
+};
+Shaft shafts[kFinCount];
+
+}  // namespace
+
+bool drive_bridge(uint8_t fin, int8_t drive) {
+  shafts[fin].drive = drive > -kLeastDrive && drive < kLeastDrive ? 0 : drive;
+  return true;
+}
+
+bool bridge_failed(uint8_t) { return false; }
+
+// Each encoder is read once a tick: here the tick passes for its shaft.
+bool read_encoder_counts(uint8_t fin, int16_t* counts) {
+  Shaft& shaft = shafts[fin];
+  const float driven = kSpeedPerStep * shaft.drive;
+  const float behind = shaft.speed - driven;
+  shaft.angle =
+      wrap_angle(shaft.angle + driven * kTickSeconds + behind * kTimeConstant * (1 - kDecayPerTick));
+  shaft.speed = driven + behind * kDecayPerTick;
+  const FinCalibration& fin_at = kFinCalibration[fin];
+  const int16_t turned = lroundf(shaft.angle * kCountsPerRadian);
+  *counts = (fin_at.zero + fin_at.encoder_sign * turned) & (kCountsPerTurn - 1);
+  return true;
+}
+
+}  // namespace mucat

@@ -1,0 +1,92 @@
+"""`python -m tests.in_the_loop DATA`: a robot on one host and its simulator on another, told as JSON.
+
+The robot's board computes its fins; the network between the hosts delays, jitters, loses, and is cut for a
+while.
+"""
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tests.stack import ROOT, Stack
+from tests.two_hosts import HERE, TwoHosts
+
+PATIENCE = 60.0
+PORT = 7447
+CUT_SECONDS = 3.0
+
+
+def main() -> None:
+    data = Path(sys.argv[1])
+    data.mkdir(parents=True)
+    text = (ROOT / "robot.toml").read_text()
+    for before, after in (
+        ('\nmode = "emulated"', '\nmode = "hil"'),
+        ('\nsimulator = "here"', '\nsimulator = "elsewhere"'),
+        ("\nlisten = []", f'\nlisten = ["tcp/{HERE}:{PORT}"]'),
+    ):
+        assert text.count(before) == 1, before
+        text = text.replace(before, after)
+    (data / "robot.toml").write_text(text)
+    told: dict[str, Any] = {}
+    with (
+        TwoHosts(delay=0.02, jitter=0.01, loss=0.01) as hosts,
+        Stack(data / "data", "--config", str(data / "robot.toml")) as stack,
+    ):
+        told["alone"] = refusals(stack)
+        simulator = subprocess.Popen(
+            [str(Path(sys.executable).parent / "mucat"), "simulator", "--connect", f"tcp/{HERE}:{PORT}"],
+            cwd=ROOT,
+            preexec_fn=hosts.enter_there,
+        )
+        try:
+            wait(lambda: refusals(stack) == [], "the simulator", stack)
+            told["simulator"] = health(stack, "simulator")
+            session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
+            stack.api.post("/robot/arm").raise_for_status()
+            time.sleep(12)
+            told["armed"] = state(stack)["armed"]
+            hosts.loss = 1.0
+            wait(lambda: not state(stack)["armed"], "the stop after the cut", stack)
+            told["cut"] = refusals(stack)
+            time.sleep(CUT_SECONDS)
+            hosts.loss = 0.01
+            wait(lambda: refusals(stack) == [], "the simulator's return", stack)
+            told["back"] = state(stack)["armed"]
+            stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
+            (data / "session.zip").write_bytes(stack.api.get(f"/sessions/{session['id']}/csv").content)
+        finally:
+            simulator.terminate()
+            simulator.wait(10)
+        told["packets"] = [hosts.carried, hosts.lost]
+    print(json.dumps(told))  # noqa: T201 - it speaks to the test that started it
+
+
+def state(stack: Stack) -> dict[str, Any]:
+    found: dict[str, Any] = stack.api.get("/robot").json()
+    return found
+
+
+def refusals(stack: Stack) -> list[str]:
+    found: list[str] = state(stack)["refusals"]
+    return found
+
+
+def health(stack: Stack, name: str) -> str:
+    parts = stack.api.get("/health").json()["parts"]
+    return next(f"{part['state']}: {part['text']}" for part in parts if part["name"] == name)
+
+
+def wait(condition: Callable[[], object], what: str, stack: Stack) -> None:
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}: {state(stack)}"
+        time.sleep(0.05)
+
+
+if __name__ == "__main__":
+    main()

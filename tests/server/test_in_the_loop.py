@@ -1,0 +1,77 @@
+"""Hardware in the loop on the whole stack: the robot on one host, its simulator on another."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+import zipfile
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from tests.stack import ROOT
+from tests.two_hosts import available
+
+DISARM_SECONDS = 1.0
+"""After 0.5 s the simulator counts as lost and the depth as too old; then STOP goes out."""
+
+
+def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(archive.read(f"{name}.csv").decode())))
+
+
+@pytest.fixture(scope="module")
+def swum(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], zipfile.ZipFile]:
+    """What the robot told of a dive in the loop, through a poor network that was cut for a while."""
+    missing = available()
+    if missing:
+        pytest.skip(f"no two hosts on this computer: {missing}")
+    folder = tmp_path_factory.mktemp("loop") / "robot"
+    command = ["unshare", "--user", "--map-root-user", "--net", sys.executable, "-m", "tests.in_the_loop"]
+    ended = subprocess.run([*command, str(folder)], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stderr[-4000:]
+    return json.loads(ended.stdout), zipfile.ZipFile(folder / "session.zip")
+
+
+def test_without_a_simulator_the_robot_says_so_and_does_not_arm(
+    swum: tuple[dict[str, Any], zipfile.ZipFile],
+) -> None:
+    told, _ = swum
+    assert told["alone"] == [
+        "There is no simulator. Start it with “mucat simulator --connect ...”, or on the System page."
+    ]
+    assert told["simulator"] == "ok: The water is simulated."
+
+
+def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
+    swum: tuple[dict[str, Any], zipfile.ZipFile],
+) -> None:
+    told, archive = swum
+    assert told["armed"]
+    carried, lost = told["packets"]
+    assert carried > 500
+    assert lost > 5
+    truth = [float(line["position_2 [m]"]) for line in table(archive, "truth")]
+    shown = [float(line["depth [m]"]) for line in table(archive, "depth")]
+    assert 0.5 < max(truth) < 0.9
+    assert 0.45 < max(shown) < 0.85
+    assert len(set(shown)) > 50
+
+
+def test_a_simulator_that_is_lost_is_noticed_and_the_robot_stops(
+    swum: tuple[dict[str, Any], zipfile.ZipFile],
+) -> None:
+    told, archive = swum
+    assert told["cut"] == told["alone"]
+    assert told["back"] is False
+    events = table(archive, "event")
+    lost = next(event for event in events if "The simulator has been silent for 0.5 s" in event["text"])
+    assert (lost["kind"], lost["severity"]) == ("simulator", "alarm")
+    armed = next(float(event["time [s]"]) for event in events if event["kind"] == "armed")
+    disarmed = next(float(event["time [s]"]) for event in events if event["kind"] == "disarmed")
+    times = [float(line["time [s]"]) for line in table(archive, "depth")]
+    last = max(before for before, after in pairwise(times) if after - before > DISARM_SECONDS)
+    assert armed < last < disarmed
+    assert min(disarmed, float(lost["time [s]"])) - last < DISARM_SECONDS
