@@ -63,6 +63,7 @@ class Core:
         line: Conversation,
         outbox: Outbox,
         *,
+        loop: InTheLoop | None = None,
         picture_wanted: Callable[[], bool],
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,

@@ -31,7 +31,8 @@ class Robot(Core):
         self.loop: InTheLoop | None = None
         if config.robot.mode == "hil":
             self.loop = InTheLoop(clock, self.connection.send, self.tell)
-            messages.subscribe("sense", self._hear)
+            hear = self.loop.hear
+            messages.subscribe("sense", lambda _, data: hear(data))
         outbox = Outbox(messages.publish, messages.watched, self.cache)
         super().__init__(
             config,
@@ -39,15 +40,10 @@ class Robot(Core):
             messages.run,
             self.connection,
             outbox,
+            loop=self.loop,
             picture_wanted=lambda: messages.watched("picture"),
             messages=messages,
-            loop=self.loop,
         )
-
-    def _hear(self, _: str, data: bytes) -> None:
-        """Called in Zenoh's thread."""
-        assert self.loop is not None
-        self.loop.hear(data)
 
     def answer(self) -> None:
         """From now on do what the other processes ask, and answer their queries, which change nothing."""

@@ -167,7 +167,9 @@ def _commtest(options: argparse.Namespace, settings: Settings) -> int:
 
 
 def _scenario(options: argparse.Namespace, settings: Settings) -> int:
-    pass
+    from server.scenarios.command import perform
+
+    return perform(options, settings, _claim)
 
 
 def _sessions(options: argparse.Namespace, settings: Settings) -> int:

@@ -225,6 +225,8 @@ def test_bad_commands_are_refused_with_the_reason(
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     rig = Rig(tmp_path_factory.mktemp("shared"))
     rig.ready()
+    # Without a simulator there is no scene, and it takes the camera a second to say so.
+    rig.listener.wait(lambda: rig.listener.newest_state()["camera"] != "starting")
     yield rig
     rig.close()
 

@@ -218,3 +218,13 @@ def test_what_ran_is_told(tmp_path: Path) -> None:
     started = read_events(out.read_bytes())[0]
     assert started.pop("firmware") != started.pop("software")
     assert started == {"event": "started", "time": 0.0, "scenario": "test", "seed": 7, "board": "host"}
+
+
+def test_a_board_that_was_not_built_is_said(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "robot_runtime.scenario"]
+    environment = {**os.environ, "MUCAT_BUILD": str(tmp_path)}
+    done = subprocess.run(
+        command, cwd=ROOT, input=document(1), capture_output=True, text=True, env=environment
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "`make firmware` builds it" in done.stderr
