@@ -2,12 +2,13 @@
 PORT ?= 8000
 ONLY ?=
 FUZZ_SECONDS ?= 600
+KILLS ?= 100
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench figures fuzz soak samples kills generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -50,6 +51,9 @@ fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on
 soak: setup-test ## prove the link at length: corrupted frames by the million, a thousand resets
 	@nice $(PYTHON) -m tests.proofs
 
+kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
+	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
+
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
@@ -75,6 +79,8 @@ build/.packages-%: setup.sh
 	@python3 -m venv .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
 	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --editable . --group dev
+	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --no-build mujoco || \
+		echo "MuJoCo could not be installed; instead of rendered water the camera shows a drawn card."
 	@touch $@
 
 .venv/.ready-bench: .venv/.ready

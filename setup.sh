@@ -28,6 +28,15 @@ need arduino-core-avr /usr/share/arduino/hardware/arduino/avr/cores/arduino/Ardu
 need avrdude avrdude
 need libsimavr-dev /usr/include/simavr/sim_avr.h
 need libelf-dev /usr/include/libelf.h
+# What renders the scene on a CPU. Without it the robot swims as well, and its camera shows a drawn card.
+wished=""
+wish() { # package, then a file that shows it to be there, * and ? as in the shell
+    # shellcheck disable=SC2086 - a pattern
+    ls $2 >/dev/null 2>&1 || wished="$wished $1"
+}
+wish libegl1 "/usr/lib/*/libEGL.so.1"
+wish libegl-mesa0 "/usr/lib/*/libEGL_mesa.so.0"
+wish libgl1-mesa-dri "/usr/lib/*/dri/*_dri.so"
 if [ "${1:-run}" = test ]; then
     need g++ g++
     need chromium chromium
@@ -35,17 +44,22 @@ if [ "${1:-run}" = test ]; then
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"
 fi
-[ -n "$missing" ] || exit 0
+[ -n "$missing$wished" ] || exit 0
 
+give_up() { # nothing fails for want of what was only wished for
+    [ -n "$missing" ] || { printf 'The scene is not rendered. %s\n' "$1"; exit 0; }
+    fail "$1"
+}
+all="$missing$wished"
 if ! command -v apt-get >/dev/null; then
-    fail "Missing on this machine, by the names of Debian's packages:$missing. Install them and try again."
+    give_up "Missing on this machine, by the names of Debian's packages:$all. Install them and try again."
 fi
 if [ "$(id -u)" = 0 ]; then as_root=""
 elif sudo -n true 2>/dev/null; then as_root="sudo"
-else fail "Missing Debian packages. Install them with: sudo apt install$missing"
+else give_up "Missing Debian packages. Install them with: sudo apt install$all"
 fi
-printf 'Installing Debian packages:%s\n' "$missing"
+printf 'Installing Debian packages:%s\n' "$all"
 $as_root apt-get update -q
 # shellcheck disable=SC2086 - a list of names
-DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends $missing ||
-    fail "apt could not install them. Try: sudo apt install$missing"
+DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends $all ||
+    give_up "apt could not install them. Try: sudo apt install$all"

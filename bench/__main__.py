@@ -13,6 +13,8 @@ PARTS = (
     "firmware",
     "emulator",
     "physics",
+    "scenario",
+    "camera",
     "codec",
     "link",
     "corruption",

@@ -33,6 +33,7 @@ def _goodput(name: str) -> dict[str, Goal]:
 
 
 GOALS = {
+    "camera.fps": _least(25),
     "codec.ratio_to_cobs_zlib": _most(1.3),
     "codec.ratio_to_pymavlink": _most(1 / 6),
     "firmware.missed_ticks": _most(0),
@@ -41,4 +42,6 @@ GOALS = {
     "link.undetected_corruptions": _most(0),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),
+    "scenario.speed_x": _least(15),
+    "scenario.speed_board_x": _least(6),
 }

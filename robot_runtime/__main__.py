@@ -6,9 +6,10 @@ import signal
 import sys
 from pathlib import Path
 
-from robot_runtime.commands import Commands
+from robot_runtime.clock import SteadyClock
 from robot_runtime.config import ConfigError, load
-from robot_runtime.lifetime import end_with_parent
+from robot_runtime.heartbeat import Heartbeat
+from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.robot import Robot
 
@@ -25,7 +26,11 @@ def main() -> int:
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
             robot = Robot(config, options.port or config.link.port, messages)
-            Commands(robot, messages)
+            robot.answer()
+            if options.heartbeat is not None:
+                Heartbeat(robot.supervisor, messages, robot.clock, options.heartbeat).start()
+            if options.server_lock is not None:
+                watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: robot.close())
             robot.run()
@@ -41,6 +46,13 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--data", type=Path, default=Path("data"), help="the folder of all that is stored")
     parser.add_argument("--port", help="serial port, instead of the configuration's")
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    parser.add_argument(
+        "--heartbeat",
+        type=float,
+        metavar="SECONDS",
+        help="stop the robot when no server has been heard for so long",
+    )
+    add_server_options(parser)
     return parser.parse_args()
 
 

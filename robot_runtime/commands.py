@@ -1,21 +1,17 @@
-"""What the other processes may ask of the robot: each command is checked here, then done or refused.
-
-Queries are answered here as well; they change nothing.
-"""
+"""What the other processes may ask of the robot: each command is checked here, then done or refused."""
 
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robot_runtime.core import Core
 from robot_runtime.errors import Refused
-from robot_runtime.messages import Messages
-from robot_runtime.robot import Robot
 
 
 class Commands:
-    """Answers every command and query for one robot."""
+    """Every command to one robot; `do` has what each name does with its arguments, or raises Refused."""
 
-    def __init__(self, robot: Robot, messages: Messages) -> None:
+    def __init__(self, robot: Core) -> None:
         self._robot = robot
         handlers: dict[str, Callable[[Mapping[str, Any]], None]] = {
             "stop": self._stop,
@@ -25,12 +21,12 @@ class Commands:
             "card": self._card,
             "vision": self._vision,
         }
-        for name, handler in handlers.items():
-            messages.answer(f"command/{name}", self._announcing(handler))
-        messages.answer("query/frames", lambda _: robot.frames())
+        self.do = {name: self._announcing(handler) for name, handler in handlers.items()}
 
-    def _announcing(self, handler: Callable[[Mapping[str, Any]], None]) -> Callable[[dict[str, Any]], None]:
-        def handle(question: dict[str, Any]) -> None:
+    def _announcing(
+        self, handler: Callable[[Mapping[str, Any]], None]
+    ) -> Callable[[Mapping[str, Any]], None]:
+        def handle(question: Mapping[str, Any]) -> None:
             handler(question)
             self._robot.announce()
 

@@ -95,7 +95,7 @@ class ControlConfig:
 class VisionConfig:
     """The vision node; rate in Hz, picture size in pixels, area as a share of the picture."""
 
-    camera: Literal["card", "file", "pi"] = "card"
+    camera: Literal["scene", "card", "file", "pi"] = "scene"
     file: str = ""
     rate: Annotated[float, VISION_RATE] = 4.0
     width: Annotated[int, Range(64, 1920)] = 320

@@ -1,11 +1,22 @@
-"""A process that must not outlive the one that started it."""
+"""How long a process lives beside others: as long as the one that started it, or as there is a server."""
 
+import argparse
 import ctypes
+import fcntl
 import os
 import signal
 import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
 
+from robot_runtime.clock import Clock
+
+HEARTBEAT = "heartbeat"
+"""What a server publishes every second, from the loop that also does everything else there."""
+LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
+_LOOK_SECONDS = 1.0
 
 
 def end_with_parent() -> None:
@@ -19,3 +30,48 @@ def end_with_parent() -> None:
         raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG) failed")
     if os.getppid() != parent:
         sys.exit(0)
+
+
+def add_server_options(parser: argparse.ArgumentParser) -> None:
+    """The options of a process that a server starts, and that may outlive it."""
+    parser.add_argument("--server-lock", type=Path, help="end when no server has held this file's lock ...")
+    parser.add_argument(
+        "--linger", type=float, default=LINGER_SECONDS, metavar="SECONDS", help="... for so long; default 30"
+    )
+
+
+def is_served(lock: Path) -> bool:
+    """Whether a server holds this lock (flock(2)); where the file is gone, none can come back."""
+    try:
+        handle = os.open(lock, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        # Held for microseconds, and shared: a server that starts just now tries for longer.
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(handle)
+    return False
+
+
+def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None]) -> None:
+    """Call `end`, once, when no server has held `lock` for `linger` s, or the file is gone.
+
+    A server that is killed and started again finds the process still running. Looked at from a thread of
+    its own.
+    """
+
+    def watch() -> None:
+        seen = clock.now()
+        pause = threading.Event()
+        while True:
+            if is_served(lock):
+                seen = clock.now()
+            elif not lock.exists() or clock.now() - seen >= linger:
+                break
+            pause.wait(_LOOK_SECONDS)
+        end()
+
+    threading.Thread(target=watch, name="server", daemon=True).start()

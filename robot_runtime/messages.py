@@ -6,6 +6,7 @@ for. Callbacks run in Zenoh's own threads.
 
 import json
 import logging
+import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
@@ -40,6 +41,8 @@ class Messages:
     "tcp/192.168.0.7:7447". Lost peers are tried again for ever. A `client` reaches everybody through the one
     that it connects to, which must be there when it starts. Raises OSError where an endpoint cannot be
     listened on, or a client's cannot be reached.
+
+    `run` are 16 hexadecimal digits that are new in every process; they travel with all that it publishes.
     """
 
     def __init__(
@@ -50,6 +53,7 @@ class Messages:
         scouting: bool = False,
         client: bool = False,
     ) -> None:
+        self.run = secrets.token_hex(8)
         self._prefix = f"mucat/{robot}/"
         try:
             self._session = zenoh.open(_configuration(listen, connect, scouting, client))
@@ -61,7 +65,7 @@ class Messages:
 
     def publish(self, name: str, payload: bytes) -> None:
         """Send to everybody who listens to `name`."""
-        self._publisher(name).put(payload)
+        self._publisher(name).put(payload, attachment=self.run)
 
     def watched(self, name: str) -> bool:
         """Whether anybody listens to `name` now."""
@@ -71,9 +75,14 @@ class Messages:
 
     def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
         """Call back with the name and the payload of everything that `pattern` ("depth", "**") matches."""
+        return self.subscribe_runs(pattern, lambda name, payload, _: callback(name, payload))
+
+    def subscribe_runs(self, pattern: str, callback: Callable[[str, bytes, str], None]) -> Subscription:
+        """As `subscribe`, with the sender's `run` as a third argument."""
 
         def receive(sample: zenoh.Sample) -> None:
-            callback(str(sample.key_expr).removeprefix(self._prefix), sample.payload.to_bytes())
+            run = sample.attachment.to_string() if sample.attachment is not None else ""
+            callback(str(sample.key_expr).removeprefix(self._prefix), sample.payload.to_bytes(), run)
 
         return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
 

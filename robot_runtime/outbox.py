@@ -8,6 +8,7 @@ import threading
 from collections import defaultdict
 from collections.abc import Callable
 
+from robot_runtime.cache import Cache
 from robot_runtime.samples import Document
 from robot_runtime.topics import BY_NAME, Block, documents, row
 
@@ -17,12 +18,16 @@ STREAM = "stream"
 class Outbox:
     """Rows and documents wait here, in order, until `flush` sends them. `watched` tells who listens.
 
-    Every method may be called from any thread.
+    What has been sent goes to `cache` too, for whom it did not reach. Every method may be called from any
+    thread.
     """
 
-    def __init__(self, send: Callable[[str, bytes], None], watched: Callable[[str], bool]) -> None:
+    def __init__(
+        self, send: Callable[[str, bytes], None], watched: Callable[[str], bool], cache: Cache | None = None
+    ) -> None:
         self._send = send
         self._watched = watched
+        self._cache = cache
         self._lock = threading.Lock()
         self._sending = threading.Lock()
         self._rows: defaultdict[str, list[bytes]] = defaultdict(list)
@@ -52,7 +57,10 @@ class Outbox:
                 name: self._block(name, len(batch), documents(batch)) for name, batch in papers.items()
             }
             if blocks:
-                self._send(STREAM, b"".join(blocks.values()))
+                message = b"".join(blocks.values())
+                if self._cache is not None:
+                    self._cache.keep(message, self._next)
+                self._send(STREAM, message)
             for name, block in blocks.items():
                 if self._watched(name):
                     self._send(name, block)

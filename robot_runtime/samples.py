@@ -119,6 +119,7 @@ Mode = Literal["disarmed", "automatic"]
 class State(Document):
     """The robot as a whole; sent once a second and at every change."""
 
+    run: str = field(metadata={"meaning": "16 hexadecimal digits, new at every start of the runtime"})
     mode: Mode
     armed: bool
     armed_since: float | None

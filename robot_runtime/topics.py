@@ -22,6 +22,8 @@ from robot_runtime.packets.layout import LayoutError, Record
 
 HEADER = Struct("<BBHII")
 TIME = Struct("<d")
+NUMBERS = 1 << 32
+"""Samples are numbered modulo this."""
 
 
 class Kind(IntEnum):
@@ -87,13 +89,39 @@ class Block:
     @classmethod
     def of(cls, topic: Topic, count: int, first: int, payload: bytes) -> Self:
         """The block around a payload."""
-        header = HEADER.pack(topic.id, topic.kind, count, first & 0xFFFFFFFF, len(payload))
+        header = HEADER.pack(topic.id, topic.kind, count, first % NUMBERS, len(payload))
         return cls(topic, count, first, header + payload)
 
     @property
     def payload(self) -> bytes:
         """The block without its header."""
         return self.data[HEADER.size :]
+
+    @property
+    def following(self) -> int:
+        """The number of the sample that comes after this block."""
+        return (self.first + self.count) % NUMBERS
+
+    def after(self, number: int) -> bool:
+        """Whether it holds the sample of this number or later ones, as numbers go round."""
+        return 0 < (self.following - number) % NUMBERS <= NUMBERS // 2
+
+    def time_of(self, number: int) -> float:
+        """When the sample of this number was taken (s, steady clock).
+
+        Raises IndexError where it is not in this block, LayoutError where the block is damaged.
+        """
+        place = (number - self.first) % NUMBERS
+        if place >= self.count:
+            raise IndexError(f"{number} is not one of {self.count} samples from {self.first} on")
+        if self.topic.kind is not Kind.DOCUMENTS:
+            size = ROW_BYTES.get(self.topic.id, 0)
+            time: float = TIME.unpack_from(self.data, HEADER.size + place * size)[0]
+            return time
+        try:
+            return float(json.loads(self.payload)[place]["time"])
+        except (ValueError, LookupError, TypeError, RecursionError) as problem:
+            raise LayoutError(f"a block of {self.topic.name} is damaged: {problem!r}") from problem
 
 
 def row(time: float, record: bytes) -> bytes:

@@ -9,7 +9,7 @@ from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
-from server.bridge import Bridge
+from server.bridge import SENT_BY, Bridge
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
@@ -19,7 +19,9 @@ from server.hub import Hub
 from server.notices import Notices
 from server.page import Page
 from server.parts import SIMULATOR_ELSEWHERE, Command, Parts
+from server.pidfile import running_parts
 from server.recorder import Recorder, RecordingRefused
+from server.resume import Left, find_missing
 from server.scenarios.live import Live
 from server.scenarios.runs import Runs as ScenarioRuns
 from server.scenarios.simulated import Simulated
@@ -27,6 +29,7 @@ from server.settings import Settings
 from server.store import Store, StoreError
 
 HEALTH_SECONDS = 1.0
+BEAT_SECONDS = 1.0
 
 
 class Assembly:
@@ -41,7 +44,7 @@ class Assembly:
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
-        self.parts = Parts(commands, settings.data.logs, self.clock, self.notices.tell)
+        self.parts = Parts(commands, settings.data, self.clock, self.notices.tell)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
@@ -72,15 +75,18 @@ class Assembly:
         """Start everything; end everything. Raises SetupError, StoreError."""
         tasks: list[asyncio.Task[None]] = []
         try:
-            await self.recorder.recover()
+            left = await self.recorder.recover()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             await self.bridge.open()
+            tasks.append(asyncio.create_task(self._beat()))
+            await self.parts.end_others()
+            await self._catch_up(left)
             self._tell_session()
             self.scenarios.announce()
             if self.settings.hil.simulator == "elsewhere":
                 await self.parts.pause("simulator", SIMULATOR_ELSEWHERE)
-            tasks = [
+            tasks += [
                 asyncio.create_task(work)
                 for work in (
                     self.handover.start_parts(),
@@ -100,6 +106,17 @@ class Assembly:
             await self._end_session()
             await self.bridge.close()
             await asyncio.to_thread(self.store.close)
+
+    async def _catch_up(self, left: Left | None) -> None:
+        """Take in what the parts of a killed server have sent since, before anybody is served."""
+        running = set(running_parts(self.settings.data.run))
+        if "runtime" in running and self.settings.in_the_loop:
+            running.add("simulator")  # perhaps on another computer
+        kept = await self.bridge.catch_up(running)
+        if left is not None:
+            found = {name: find_missing(left, SENT_BY[name], one) for name, one in kept.items()}
+            await self.recorder.resume(left, found)
+        self.bridge.go_on(kept)
 
     def _deliver(self, blocks: list[Block]) -> None:
         self.hub.add(blocks)
@@ -122,6 +139,11 @@ class Assembly:
             health = self.watch.health()
             self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
             await asyncio.sleep(HEALTH_SECONDS)
+
+    async def _beat(self) -> None:
+        while True:
+            self.bridge.beat()
+            await asyncio.sleep(BEAT_SECONDS)
 
     async def _end_session(self) -> None:
         if self.recorder.session is not None:

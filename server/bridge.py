@@ -1,22 +1,28 @@
 """The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
 
-Zenoh calls back in its own threads. What arrives is put into a queue, which the event loop empties in rounds:
-the first arrival after a quiet time wakes it, and from then on it comes every `ROUND_SECONDS`.
+What they send passes through a `Source` each, which asks again for what did not arrive. Zenoh calls back in
+its own threads. What arrives is put into a queue, which the event loop empties in rounds: the first arrival
+after a quiet time wakes it, and from then on it comes every `ROUND_SECONDS`.
 """
 
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
+from robot_runtime.cache import Kept, write_question
 from robot_runtime.errors import Refused
+from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages, NoAnswer, Subscription
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets.layout import LayoutError
-from robot_runtime.topics import Block, read_blocks
+from robot_runtime.topics import BY_NAME, TOPICS, Block, Kind, read_blocks
 from server.settings import Settings, SetupError
+from server.source import Source
 
 log = logging.getLogger(__name__)
 
@@ -32,6 +38,22 @@ QUEUE_MAX = 20_000
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
+KEPT_SECONDS = 3.0
+KEPT_PAUSE = 0.1
+"""s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
+CONTACT_SECONDS = 10.0
+"""For which a server that starts waits for processes that a killed one has left."""
+
+_TRUTH, _NOTICE = BY_NAME["truth"], BY_NAME["notice"]
+SENT_BY = {
+    "runtime": tuple(one for one in TOPICS if one.kind is not Kind.PICTURE and one not in (_TRUTH, _NOTICE)),
+    "simulator": (_TRUTH,),
+}
+"""What the processes send that number it; notices are the server's own."""
+
+
+QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
+"""Where the processes answer for what they have kept."""
 
 
 class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
@@ -43,7 +65,10 @@ class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
 
 
 class Bridge:
-    """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order."""
+    """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order.
+
+    Nothing is delivered before `go_on`.
+    """
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
@@ -55,10 +80,16 @@ class Bridge:
         """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
         self._settings = settings
         self._deliver = deliver
-        self._queue: deque[tuple[str, bytes]] = deque(maxlen=QUEUE_MAX)
+        self._queue: deque[tuple[str, bytes, str]] = deque(maxlen=QUEUE_MAX)
+        self._sources = {
+            name: Source(topics, partial(self._ask_kept, name), self._pass_on)
+            for name, topics in SENT_BY.items()
+        }
+        self._ready: list[Block] = []
+        self._emptying = False
         self._rounds = False
         self._quiet = 0
-        self._pictures: Subscription | None = None
+        self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
@@ -77,15 +108,29 @@ class Bridge:
             )
         except OSError as problem:
             raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
-        self._messages.subscribe(STREAM, self._receive)
+        self._messages.subscribe_runs(STREAM, self._receive)
 
-    def watch_pictures(self, wanted: bool) -> None:
-        """Subscribe to pictures or no longer; the runtime makes them only while somebody does."""
-        if wanted and self._pictures is None:
-            self._pictures = self._messages.subscribe("picture", self._receive)
-        elif not wanted and self._pictures is not None:
-            self._pictures.close()
-            self._pictures = None
+    async def catch_up(self, names: Iterable[str]) -> dict[str, Kept]:
+        """What the running processes of these names have kept; those that do not answer are left out."""
+        asked = [name for name in names if name in self._sources]
+        answers = await asyncio.gather(*map(self._contact, asked))
+        return {name: kept for name, kept in zip(asked, answers, strict=True) if kept is not None}
+
+    def go_on(self, kept: Mapping[str, Kept]) -> None:
+        """Deliver what was kept, by the processes' names, and from now on what arrives."""
+        for name, source in self._sources.items():
+            source.go_on(kept.get(name))
+
+    def beat(self) -> None:
+        """Let the runtime know that the server lives."""
+        self._messages.publish(HEARTBEAT, b"")
+
+    def watch_pictures(self, wanted: frozenset[str]) -> None:
+        """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
+        for name in self._pictures.keys() - wanted:
+            self._pictures.pop(name).close()
+        for name in wanted - self._pictures.keys():
+            self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
@@ -105,8 +150,19 @@ class Bridge:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
         return await self._ask(f"query/{name}", {}, stop=False)
 
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> None:
+        """Change the simulated scene. Raises Refused with its reason, or RuntimeSilent."""
+        try:
+            await self._ask(f"scene/{name}", payload, stop=False)
+        except RuntimeSilent as problem:
+            raise RuntimeSilent(
+                "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
+            ) from problem
+
     async def close(self) -> None:
         """Leave the conversation."""
+        for source in self._sources.values():
+            await source.close()
         self._stops.shutdown(wait=False, cancel_futures=True)
         self._commands.shutdown(wait=False, cancel_futures=True)
         await asyncio.to_thread(self._messages.close)
@@ -133,9 +189,32 @@ class Bridge:
         finally:
             self._asking -= not stop
 
-    def _receive(self, name: str, data: bytes) -> None:
+    async def _contact(self, name: str) -> Kept | None:
+        wanted, kept = self._sources[name].everything(), None
+        with suppress(TimeoutError):
+            async with asyncio.timeout(CONTACT_SECONDS):
+                while kept is None:
+                    kept = await self._ask_kept(name, wanted)
+        return kept
+
+    async def _ask_kept(self, name: str, wanted: Mapping[str, int]) -> Kept | None:
+        end = self._loop.time() + KEPT_SECONDS
+        while self._loop.time() < end:
+            try:
+                return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted)
+            except NoAnswer:
+                await asyncio.sleep(KEPT_PAUSE)
+            except (Refused, LayoutError) as problem:
+                log.warning("what the %s has kept cannot be had: %s", name, problem)
+                break
+        return None
+
+    def _fetch(self, question: str, wanted: Mapping[str, int]) -> Kept:
+        return Kept.from_bytes(self._messages.ask_bytes(question, write_question(wanted), KEPT_SECONDS))
+
+    def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""
-        self._queue.append((name, data))
+        self._queue.append((name, data, run))
         if not self._rounds:
             self._rounds = True
             try:
@@ -155,16 +234,32 @@ class Bridge:
         self._loop.call_later(ROUND_SECONDS, self._drain)
 
     def _empty_queue(self) -> None:
-        blocks: list[Block] = []
+        self._emptying = True
         while self._queue:
-            name, data = self._queue.popleft()
+            name, data, run = self._queue.popleft()
             try:
                 if len(data) > BLOCK_BYTES_MAX:
                     raise LayoutError(f"{len(data)} bytes are too many")
-                blocks += read_blocks(data)
+                blocks = read_blocks(data)
             except LayoutError as problem:
                 self.damaged += 1
                 log.warning("a message of %s was thrown away: %s", name, problem)
+                continue
+            if name != STREAM:
+                self._pass_on(blocks)
+            elif blocks:
+                sender = "simulator" if blocks[0].topic is _TRUTH else "runtime"
+                self._sources[sender].take(run, blocks)
+        self._emptying = False
+        self._hand_over()
+
+    def _pass_on(self, blocks: list[Block]) -> None:
+        self._ready += blocks
+        if not self._emptying:
+            self._hand_over()
+
+    def _hand_over(self) -> None:
+        blocks, self._ready = self._ready, []
         if blocks:
             self._deliver(blocks)
 

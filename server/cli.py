@@ -6,16 +6,20 @@ import logging
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
+
+LOCK_TRIES = 20
+LOCK_SECONDS = 0.02
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -97,21 +101,33 @@ def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def _claim(folder: DataFolder) -> Iterator[None]:
-    """Hold the data folder alone. Raises SetupError where another server has it."""
+    """Hold the data folder alone. Raises SetupError where another server has it.
+
+    Parts of a killed server look now and then whether the lock is held, and then have it for a moment.
+    """
     try:
         folder.path.mkdir(parents=True, exist_ok=True)
         handle = folder.lock.open("w")
     except OSError as problem:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
     with handle:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as problem:
+        if not _lock(handle):
             raise SetupError(
                 f"Another server works on {folder.path}. End it, or choose another folder with --data."
-            ) from problem
+            )
         make_folders(folder)
         yield
+
+
+def _lock(handle: IO[str]) -> bool:
+    for _ in range(LOCK_TRIES):
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(LOCK_SECONDS)
+        else:
+            return True
+    return False
 
 
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:

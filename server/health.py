@@ -7,6 +7,7 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.link.statistics import LinkStatistics
+from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.topics import TIME, Block
 from server import VERSION
 from server.parts import Part, Parts
@@ -26,7 +27,7 @@ PartState = Literal["ok", "starting", "failed", "absent"]
 class PartHealth(BaseModel):
     """One part, and how it does in words."""
 
-    name: Literal["server", "database", "runtime", "link", "board", "simulator"]
+    name: Literal["server", "database", "runtime", "link", "board", "simulator", "scene"]
     state: PartState
     text: str
     here: bool | None = Field(
@@ -40,7 +41,7 @@ class Health(BaseModel):
     status: Literal["ok", "starting", "failed"]
     version: str
     robot: str
-    parts: list[PartHealth] = Field(description="server, database, runtime, link, board, simulator")
+    parts: list[PartHealth] = Field(description="server, database, runtime, link, board, simulator, scene")
 
 
 class Watch:
@@ -55,6 +56,7 @@ class Watch:
         self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew: float | None = None
+        self._unrenderable = missing()
         self.firmware_away: str | None = None
         """Why the board does not run the robot's firmware, and what to do; None where it does."""
 
@@ -84,6 +86,7 @@ class Watch:
             self._link(),
             self._board(),
             self._simulator(),
+            self._scene(),
         ]
         states = {part.state for part in parts}
         status: Literal["ok", "starting", "failed"] = "ok"
@@ -160,6 +163,20 @@ class Watch:
         if self._fresh("truth", TRUTH_SECONDS):
             return PartHealth(name="simulator", state="ok", text="The water is simulated.")
         return self._silent("simulator", part, "It runs, but the simulated water stands still.")
+
+    def _scene(self) -> PartHealth:
+        if self._settings.mode == "robot":
+            return PartHealth(name="scene", state="absent", text="A real robot sees for itself.")
+        if self._unrenderable is not None:
+            return PartHealth(name="scene", state="absent", text=f"Not rendered: {self._unrenderable}.")
+        part = self._parts.get("scene")
+        if part is None:
+            return PartHealth(name="scene", state="absent", text="It does not run on this computer.")
+        if part.state == "failed":
+            return PartHealth(name="scene", state="failed", text=_say_failed(part))
+        if part.state == "running":
+            return PartHealth(name="scene", state="ok", text="It renders what somebody asks for.")
+        return self._silent("scene", part, "")
 
     def _fresh(self, topic: str, seconds: float) -> bool:
         return topic in self._newest and self._clock.now() - self._newest[topic][0] < seconds

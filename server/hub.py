@@ -55,7 +55,9 @@ class Client:
         self._newest: dict[str, str] = {}
         self._rows = self._documents = 0
         self._seen: Totals = {}
-        self._picture = 0
+        self._pictures: dict[str, int] = {}
+        self.watching = frozenset({"picture"})
+        """Topics of pictures that it wants."""
 
     def answer(self, message: dict[str, Any]) -> None:
         """Send this soon, in order. Raises Evicted where too many answers already wait to be read."""
@@ -112,12 +114,18 @@ class Client:
             await self._send(hub.documents.get(self._documents - 1).data)
         elif self._rows < hub.rows.end:
             await self._send_rows()
-        elif self._picture < hub.picture_number and hub.picture is not None:
-            self._picture = hub.picture_number
-            await self._send(hub.picture)
         else:
-            return False
+            return await self._send_picture()
         return True
+
+    async def _send_picture(self) -> bool:
+        for topic in self.watching:
+            number, picture = self._hub.pictures.get(topic, (0, b""))
+            if self._pictures.get(topic, 0) < number:
+                self._pictures[topic] = number
+                await self._send(picture)
+                return True
+        return False
 
     async def _send_rows(self) -> None:
         lane = self._hub.rows
@@ -137,15 +145,17 @@ class Client:
 
 
 class Hub:
-    """Takes in blocks and hands them to all clients; `audience` is called with whether there are any."""
+    """Takes in blocks and hands them to all clients; `audience` is called with what pictures they want."""
 
-    def __init__(self, clock: Clock, audience: Callable[[bool], None]) -> None:
+    def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
         self.rows = Lane(ROWS_MESSAGES, ROWS_BYTES)
         self.documents = Lane(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
         self.history = History(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
         self.tick = 0
-        self.picture: bytes | None = None
-        self.picture_number = 0
+        self.pictures: dict[str, tuple[int, bytes]] = {}
+        """The newest of each topic that somebody wants, and its number."""
+        self._picture_number = 0
+        self._watched: frozenset[str] = frozenset()
         self._clock = clock
         self._audience = audience
         self._clients: dict[Client, asyncio.Task[None]] = {}
@@ -164,8 +174,9 @@ class Hub:
         documents: list[Block] = []
         for block in blocks:
             if block.topic.kind is Kind.PICTURE:
-                self.picture = block.data
-                self.picture_number += 1
+                self._picture_number += 1
+                if block.topic.name in self._watched:
+                    self.pictures[block.topic.name] = (self._picture_number, block.data)
                 continue
             self.history.add(block, self.tick, now)
             (rows if block.topic.kind is Kind.ROWS else documents).append(block)
@@ -187,6 +198,12 @@ class Hub:
         for client in self._clients:
             client.tell(kind, text)
 
+    def show(self, client: Client, topics: frozenset[str]) -> None:
+        """Give this client pictures of these topics and of no other."""
+        client.watching = topics
+        self._count_audience()
+        client.wake()
+
     async def serve(
         self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]]
     ) -> None:
@@ -200,8 +217,7 @@ class Hub:
         sender = asyncio.create_task(client.run())
         receiver = asyncio.ensure_future(receive(client))
         self._clients[client] = sender
-        if len(self._clients) == 1:
-            self._audience(True)
+        self._count_audience()
         try:
             await asyncio.wait({sender, receiver}, return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -227,6 +243,13 @@ class Hub:
 
     def _leave(self, client: Client) -> None:
         del self._clients[client]
-        if not self._clients:
-            self.picture = None
-            self._audience(False)
+        self._count_audience()
+
+    def _count_audience(self) -> None:
+        wanted = frozenset[str]().union(*(client.watching for client in self._clients))
+        if wanted == self._watched:
+            return
+        self._watched = wanted
+        for topic in self.pictures.keys() - wanted:
+            del self.pictures[topic]
+        self._audience(wanted)

@@ -1,54 +1,46 @@
-"""What a supervised process prints: kept in a file of bounded size, and its last lines in memory."""
+"""What a supervised process prints: it writes to a file itself, so that it can do without the server."""
 
-from collections import deque
+import os
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO
 
 FILE_BYTES_MAX = 1_000_000
-LINES_KEPT = 20
+LAST_BYTES = 8_000
 LINE_BYTES_MAX = 2_000
 
 
 class PartLog:
-    """Writes to `path`; when that is full it becomes `path`.1, and a new one is begun."""
+    """The file `path`, and the one before it as `path`.1; together at most twice `FILE_BYTES_MAX` is kept."""
 
     def __init__(self, path: Path) -> None:
-        self.lines: deque[str] = deque(maxlen=LINES_KEPT)
         self._path = path
-        self._file: BinaryIO | None = None
-        self._partial = b""
 
-    def write(self, data: bytes) -> None:
-        """Keep these bytes. A full disk costs the file its lines, and nobody else anything."""
-        *whole, self._partial = (self._partial + data).split(b"\n")
-        self._partial = self._partial[-LINE_BYTES_MAX:]
-        self.lines.extend(
-            line[-LINE_BYTES_MAX:].decode(errors="replace").rstrip() for line in whole if line.strip()
-        )
+    def open(self) -> IO[bytes]:
+        """The file to be written by a process. A full disk costs it its lines, and nobody else anything."""
         try:
-            self._append(data)
+            return self._path.open("ab", buffering=0)
         except OSError:
-            self.close()
+            return Path(os.devnull).open("ab", buffering=0)
+
+    def trim(self) -> None:
+        """Set aside what is there where it has grown too long; the process goes on writing to the file."""
+        try:
+            if self._path.stat().st_size <= FILE_BYTES_MAX:
+                return
+            with self._path.open("r+b") as file:
+                file.seek(-FILE_BYTES_MAX, os.SEEK_END)
+                self._path.with_name(self._path.name + ".1").write_bytes(file.read())
+                file.truncate(0)
+        except OSError:
+            return
 
     def last(self, count: int) -> str:
         """The last lines, one after the other; empty where nothing was printed."""
-        lines = [*self.lines, self._partial.decode(errors="replace").strip()]
-        return " / ".join([line for line in lines if line][-count:])
-
-    def close(self) -> None:
-        """Close the file."""
-        file, self._file = self._file, None
-        if file is not None:
-            try:
-                file.close()
-            except OSError:
-                return
-
-    def _append(self, data: bytes) -> None:
-        if self._file is None:
-            self._file = self._path.open("ab", buffering=0)
-        if self._file.tell() + len(data) > FILE_BYTES_MAX:
-            self._file.close()
-            self._path.replace(self._path.with_name(self._path.name + ".1"))
-            self._file = self._path.open("ab", buffering=0)
-        self._file.write(data)
+        try:
+            with self._path.open("rb") as file:
+                file.seek(max(0, file.seek(0, os.SEEK_END) - LAST_BYTES))
+                lines = [line.strip() for line in file.read().splitlines()]
+        except OSError:
+            return ""
+        kept = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
+        return " / ".join(line.decode(errors="replace") for line in kept)

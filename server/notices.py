@@ -15,6 +15,10 @@ class Notices:
         self._deliver = deliver
         self._told = 0
 
+    def go_on(self, number: int) -> None:
+        """Number on from here, where an earlier server's notices end."""
+        self._told = number
+
     def tell(self, kind: str, severity: samples.Severity, text: str) -> None:
         """Say something in words for a person; `kind` is one word for programs."""
         event = samples.Event(time=self._clock.now(), kind=kind, severity=severity, text=text)

@@ -1,46 +1,43 @@
-"""One child process and its process group, watched by the event loop without a thread.
+"""A process and its process group, watched by the event loop without a thread.
 
-asyncio's own subprocesses count as ended only when their output is closed, which a grandchild can hold open.
+asyncio's own subprocesses count as ended only when their output is closed, which a grandchild can hold open,
+and know nothing of processes that somebody else has started.
 """
 
 import asyncio
 import os
+import select
 import subprocess
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from pathlib import Path
 from signal import SIGKILL, Signals
 from typing import IO
 
 READ_BYTES = 65_536
+KILL_SECONDS = 1.0
+"""Within which the kernel ends what is killed."""
 
 
 class Process:
-    """Started at once, in a group of its own; `output` is called with what it and its children print.
+    """Started at once, in a session and group of its own; what it and its children print goes to `output`.
 
     It reads `given` on its standard input, and nothing without. Raises OSError where it cannot be started.
     Call it in the event loop's thread, and `close` in the end.
     """
 
     def __init__(
-        self, arguments: Sequence[str], output: Callable[[bytes], None], given: IO[bytes] | None = None
+        self, arguments: Sequence[str], output: IO[bytes] | int, given: IO[bytes] | None = None
     ) -> None:
-        self._output = output
-        self._loop = asyncio.get_running_loop()
         self._popen = subprocess.Popen(
             arguments,
             stdin=given or subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
+            stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )
-        assert self._popen.stdout is not None
-        self._pipe = self._popen.stdout.fileno()
-        os.set_blocking(self._pipe, False)
-        self._status: asyncio.Future[int] = self._loop.create_future()
-        self._handle = os.pidfd_open(self._popen.pid)
-        self._loop.add_reader(self._pipe, self._read)
-        self._loop.add_reader(self._handle, self._end)
+        self._watched = Watched(self._popen.pid, self._reap)
 
     @property
     def pid(self) -> int:
@@ -49,19 +46,39 @@ class Process:
 
     async def wait(self) -> int:
         """The exit status; negative for the signal that ended it. What it had started is then ended too."""
-        return await asyncio.shield(self._status)
+        await self._watched.wait()
+        status: int = self._popen.returncode
+        return status
 
     def signal(self, number: Signals) -> None:
         """Send a signal to the whole group, where the process still runs."""
-        if not self._status.done():
-            self._signal_group(number)
+        self._watched.signal(number)
 
     def close(self) -> None:
         """End what still runs, and let go of everything."""
-        if not self._status.done():
-            self._signal_group(SIGKILL)
-            self._popen.wait()
-            self._finish()
+        self._watched.close()
+
+    def _reap(self) -> None:
+        self._popen.wait()
+
+
+class PipedProcess(Process):
+    """A process whose `output` is called with what it and its children print."""
+
+    def __init__(
+        self, arguments: Sequence[str], output: Callable[[bytes], None], given: IO[bytes] | None = None
+    ) -> None:
+        self._output = output
+        super().__init__(arguments, subprocess.PIPE, given)
+        assert self._popen.stdout is not None
+        self._pipe = self._popen.stdout.fileno()
+        os.set_blocking(self._pipe, False)
+        self._loop = asyncio.get_running_loop()
+        self._loop.add_reader(self._pipe, self._read)
+
+    def close(self) -> None:
+        """End what still runs, and let go of everything."""
+        super().close()
         self._loop.remove_reader(self._pipe)
         assert self._popen.stdout is not None
         self._popen.stdout.close()
@@ -74,19 +91,91 @@ class Process:
             else:
                 self._loop.remove_reader(self._pipe)
 
+    def _reap(self) -> None:
+        super()._reap()
+        # All of its own output is in the pipe by now, which holds no more than one reading takes.
+        self._read()
+
+
+class AdoptedProcess:
+    """A process that another server has started, at a time as `started_at` has it; used as `Process`.
+
+    Raises OSError where it has ended.
+    """
+
+    def __init__(self, pid: int, started: int) -> None:
+        self.pid = pid
+        self._handle = os.pidfd_open(pid)
+        if started_at(pid) != started:
+            os.close(self._handle)
+            raise ProcessLookupError(f"process {pid} is another one by now")
+        self._watched = Watched(pid, self._wait_killed)
+
+    async def wait(self) -> None:
+        """Wait for its end. How it ended is known to nobody here."""
+        await self._watched.wait()
+
+    def signal(self, number: Signals) -> None:
+        """Send a signal to the whole group, where the process still runs."""
+        self._watched.signal(number)
+
+    def close(self) -> None:
+        """End what still runs, and let go of everything."""
+        self._watched.close()
+
+    def _wait_killed(self) -> None:
+        select.select([self._handle], [], [], KILL_SECONDS)
+        os.close(self._handle)
+
+
+class Watched:
+    """A running process that leads a group; `reap` is called, once, when it has ended."""
+
+    def __init__(self, pid: int, reap: Callable[[], None]) -> None:
+        self._pid = pid
+        self._reap = reap
+        self._loop = asyncio.get_running_loop()
+        self._ended: asyncio.Future[None] = self._loop.create_future()
+        self._handle = os.pidfd_open(pid)
+        self._loop.add_reader(self._handle, self._end)
+
+    async def wait(self) -> None:
+        """Wait until the process has ended, and with it what it had started."""
+        await asyncio.shield(self._ended)
+
+    def signal(self, number: Signals) -> None:
+        """Send a signal to the whole group, where the process still runs."""
+        if not self._ended.done():
+            self._signal_group(number)
+
+    def close(self) -> None:
+        """End what still runs, and stop watching."""
+        if not self._ended.done():
+            self._end()
+
     def _end(self) -> None:
         # Before the process is reaped its number still belongs to its group alone.
         self._signal_group(SIGKILL)
-        self._popen.wait()
-        self._finish()
-
-    def _finish(self) -> None:
+        self._reap()
         self._loop.remove_reader(self._handle)
         os.close(self._handle)
-        # All of its own output is in the pipe by now, which holds no more than one reading takes.
-        self._read()
-        self._status.set_result(self._popen.returncode)
+        self._ended.set_result(None)
 
     def _signal_group(self, number: Signals) -> None:
         with suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._popen.pid, number)
+            os.killpg(self._pid, number)
+
+
+def started_at(pid: int) -> int | None:
+    """When a process was started (clock ticks since the computer was), as proc(5) tells; None: it has ended.
+
+    Numbers of processes are given again; number and time together are not.
+    """
+    try:
+        status = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    # Behind the program's name in brackets, which may hold brackets itself.
+    fields = status.rpartition(")")[2].split()
+    state, start = fields[0], fields[19]
+    return None if state in "ZX" else int(start)

@@ -2,14 +2,15 @@
 
 Samples are gathered in memory, encoded in the writer's thread and committed every `PERIOD`, so that a power
 cut costs at most the last second. While the database cannot be written, up to `BACKLOG_BYTES` wait; what does
-not fit is counted as not stored. A hole in a topic's numbering ends a chunk and is noted as a gap.
+not fit is counted as not stored. A hole in a topic's numbering ends a chunk and is noted as a gap. A session
+that a killed server has left goes on where what was missed is still to be had (`server.resume`).
 """
 
 import asyncio
 import logging
 import zlib
 from collections import Counter
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from time import time
@@ -19,10 +20,11 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col
 
 from robot_runtime.clock import Clock
-from robot_runtime.topics import Block, Kind, Topic
+from robot_runtime.topics import BY_NAME, NUMBERS, Block, Kind, Topic
 from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, encode_documents, encode_rows
 from server.models import Chunk, Gap, SessionRow
 from server.notices import Notices
+from server.resume import Left, Missing, find_left
 from server.sessions import Session, from_row
 from server.store import Store, StoreError
 
@@ -35,7 +37,6 @@ PERIOD = 0.8
 PROBE_PERIODS = 5
 """Periods between attempts to write while writing fails and nothing is recorded."""
 BACKLOG_BYTES = 8_000_000
-NUMBERS = 1 << 32
 
 
 class RecordingRefused(Exception):  # noqa: N818 - it says what happened
@@ -94,9 +95,47 @@ class Recorder:
         self._started_steady = 0.0
         self._reset()
 
-    async def recover(self) -> None:
-        """Mark what a crash has left recording as interrupted. Raises StoreError."""
-        await self._store.write(_mark_interrupted)
+    async def recover(self) -> Left | None:
+        """Mark what a crash has left recording as interrupted, but for a session that may perhaps go on.
+
+        Raises StoreError.
+        """
+        left = await asyncio.to_thread(find_left, self._store)
+        kept = -1 if left is None else left.row.id
+        await self._store.write(lambda connection: _mark_interrupted(connection, kept))
+        return left
+
+    async def resume(self, left: Left, missing: Mapping[str, Missing]) -> None:
+        """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
+
+        `missing` is what each sender has that is not stored, by its name. To be called before any of that is
+        added. Raises StoreError.
+        """
+        runtime = missing.get("runtime")
+        row = left.row
+        if runtime is None or not (runtime.same_run and runtime.whole):
+            await self._store.write(lambda connection: _mark_interrupted(connection, -1))
+            text = f"The server was killed while “{row.name}” was recorded. What was stored is kept"
+            self._notices.tell("recording", "caution", f"{text}; the rest is not to be had any more.")
+            return
+        self._reset()
+        self._started_steady = row.started_steady
+        self._numbers.update({name: last.chunks for name, last in left.last.items()})
+        self._expected.update({BY_NAME[name].id: last.following for name, last in left.last.items()})
+        for sender in missing.values():
+            if sender.same_run:
+                self._skip |= sender.first
+        if "notice" in left.last:
+            self._notices.go_on(left.last["notice"].following)
+        self.session = from_row(row)
+        self._accepts = True
+        away = self._clock.now() - row.started_steady - row.duration
+        self._notices.tell(
+            "recording",
+            "caution",
+            f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
+        )
+        self._changed()
 
     async def start(self, row: SessionRow) -> Session:
         """Store a new session and record into it from now on. Raises RecordingRefused, StoreError."""
@@ -142,7 +181,7 @@ class Recorder:
     def add(self, block: Block) -> None:
         """Take in a block; without a session it is passed over."""
         topic = block.topic
-        if not self._accepts or topic.kind is Kind.PICTURE:
+        if not self._accepts or topic.kind is Kind.PICTURE or (self._skip and self._is_stored(block)):
             return
         run = self._runs.get(topic.id)
         expected = self._expected.get(topic.id, block.first)
@@ -156,7 +195,17 @@ class Recorder:
             self._gathered.runs.append(run)
         run.payloads.append(block.payload)
         run.count += block.count
-        self._expected[topic.id] = (block.first + block.count) % NUMBERS
+        self._expected[topic.id] = block.following
+
+    def _is_stored(self, block: Block) -> bool:
+        """Whether an earlier server has stored it, or it is older than the session."""
+        first = self._skip.get(block.topic.id)
+        if first is None:
+            return False
+        if not block.after(first):
+            return True
+        del self._skip[block.topic.id]
+        return False
 
     async def run(self) -> None:
         """Commit every period, for ever; tell when it fails, and when it works again."""
@@ -190,6 +239,7 @@ class Recorder:
     def _reset(self) -> None:
         self._runs: dict[int, _Run] = {}
         self._expected: dict[int, int] = {}
+        self._skip: dict[int, int] = {}
         self._numbers: Counter[str] = Counter()
         self._gathered = _Batch()
         self._waiting = _Batch()
@@ -281,9 +331,9 @@ def _insert(connection: Connection, session: int, batch: _Batch, changes: dict[s
     connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(changes))
 
 
-def _mark_interrupted(connection: Connection) -> None:
+def _mark_interrupted(connection: Connection, but: int | None) -> None:
     connection.execute(
         update(SessionRow)
-        .where(col(SessionRow.state) == "recording")
+        .where(col(SessionRow.state) == "recording", col(SessionRow.id) != but)
         .values(state="interrupted", ended=col(SessionRow.started) + col(SessionRow.duration))
     )

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import BaseModel, Field
 from sqlmodel import col, desc, select
 
-from robot_runtime.clock import Clock
+from robot_runtime.clock import Clock, boot
 from robot_runtime.packets import DEFINITIONS_HASH
 from server import VERSION
 from server.chunks import describe_topics
@@ -49,6 +49,7 @@ def new_row(settings: Settings, clock: Clock, name: str, note: str, robot_state:
         definitions=f"{DEFINITIONS_HASH:08x}",
         started=now.timestamp(),
         started_steady=clock.now(),
+        boot=boot(),
         configuration=settings.config.read_text(encoding="utf-8", errors="replace"),
         robot_state=robot_state,
         topics=json.dumps(describe_topics(), ensure_ascii=False),

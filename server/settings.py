@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from robot_runtime.config import ConfigError, HilConfig, LinkConfig, load
+from server.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -44,7 +45,7 @@ class DataFolder:
 
     @property
     def run(self) -> Path:
-        """Sockets; emptied at every start."""
+        """Sockets, and which processes run; emptied at a start where none of them has been left running."""
         return self.path / "run"
 
     @property
@@ -61,6 +62,11 @@ class DataFolder:
     def server_socket(self) -> Path:
         """Where the server listens for Zenoh."""
         return self.run / "server.sock"
+
+    @property
+    def scene_socket(self) -> Path:
+        """Where the scene listens for Zenoh; peers speak with those alone that they are connected to."""
+        return self.run / "scene.sock"
 
     @property
     def board_socket(self) -> Path:
@@ -145,13 +151,15 @@ def read_settings(
 
 
 def make_folders(folder: DataFolder) -> None:
-    """Create the data folder, and empty its `run`. Raises SetupError where that is not possible."""
+    """Create the data folder, and empty its `run` where nothing runs. Raises SetupError where it cannot."""
     try:
         for path in (folder.path, folder.logs, folder.run):
             path.mkdir(parents=True, exist_ok=True)
         folder.run.chmod(0o700)
-        for left in folder.run.iterdir():
-            left.unlink()
+        # What lives there belongs to parts of a killed server, as long as one of them runs.
+        if not running_parts(folder.run):
+            for left in folder.run.iterdir():
+                left.unlink()
     except OSError as problem:
         raise SetupError(
             f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."
@@ -166,7 +174,7 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
 
 def _check_socket_paths(folder: DataFolder) -> None:
     longest = max(
-        (folder.runtime_socket, folder.server_socket, folder.board_socket),
+        (folder.runtime_socket, folder.server_socket, folder.scene_socket, folder.board_socket),
         key=lambda path: len(os.fsencode(path)),
     )
     size = len(os.fsencode(longest))

@@ -103,6 +103,12 @@ class Stack:
         assert len(found) == 1, f"{len(found)} processes with {word}"
         return found[0]
 
+    def kill(self) -> None:
+        """Kill the server alone, with -9."""
+        assert self._process is not None
+        self._process.kill()
+        self._process.wait()
+
     def stop(self) -> None:
         """Press Ctrl-C and wait for the end."""
         self.api.close()

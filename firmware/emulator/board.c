@@ -1,46 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "board.h"
 
-#include <stdio.h>
-#include <string.h>
-
-#define IMU_ADDRESS 0x69
-#define PRESSURE_ADDRESS 0x76
-static const uint8_t bridge_addresses[FIN_COUNT] = {0x64, 0x60, 0x61, 0x63};
-
 static void after_reset(void *owner) {
   struct board *board = owner;
   uart_reset(&board->uart);
   twi_reset(&board->twi);
-  pins_reset(&board->pins, &board->surroundings);
+  pins_reset(&board->pins);
 }
 
-// The line from the encoders is pulled up where none of them is selected.
 static uint8_t exchange(void *owner, uint8_t sent) {
   (void)sent;  // an encoder has no input
   struct board *board = owner;
-  uint8_t received = 0xff;
-  for (unsigned i = 0; i < FIN_COUNT; i++) {
-    if (board->encoders[i].selected) {
-      received &= as5040_exchange(&board->encoders[i]);
-    }
-  }
-  return received;
+  return devices_exchange_spi(&board->devices);
 }
 
-static void attach_devices(struct board *board) {
-  for (unsigned i = 0; i < FIN_COUNT; i++) {
-    twi_attach(&board->twi, (struct twi_device){bridge_addresses[i], &board->bridges[i], drv8830_start,
-                                                drv8830_write, drv8830_read});
-  }
-  twi_attach(&board->twi,
-             (struct twi_device){IMU_ADDRESS, &board->imu, mpu6050_start, mpu6050_write, mpu6050_read});
-  twi_attach(&board->twi, (struct twi_device){PRESSURE_ADDRESS, &board->pressure, ms5837_start, ms5837_write,
-                                              ms5837_read});
+static double chip_time(const void *chip) { return chip_seconds(chip_now(chip)); }
+
+static void on_motors_due(void *owner) {
+  struct board *board = owner;
+  chip_timer_start(&board->motors_due, board->motors_due.when + chip_cycles(MOTORS_PERIOD));
+  motors_step(&board->devices.motors);
 }
 
 bool board_create(struct board *board, struct pty *pty) {
-  *board = (struct board){.surroundings = STILL_WATER, .pty = pty};
+  *board = (struct board){.pty = pty};
   if (!chip_create(&board->chip, after_reset, board)) {
     return false;
   }
@@ -49,11 +32,13 @@ bool board_create(struct board *board, struct pty *pty) {
   twi_create(&board->twi, &board->chip);
   spi_create(&board->spi, &board->chip, exchange, board);
   eeprom_create(&board->eeprom, &board->chip);
-  mpu6050_create(&board->imu, &board->surroundings);
-  ms5837_create(&board->pressure, &board->chip, &board->surroundings);
-  pins_create(&board->pins, &board->chip, board->encoders, board->bridges);
-  motors_create(&board->motors, &board->chip, board->bridges, board->encoders, &board->surroundings);
-  attach_devices(board);
+  devices_create(&board->devices, (struct device_clock){chip_time, &board->chip});
+  pins_create(&board->pins, &board->chip, &board->devices);
+  chip_timer_add(&board->chip, &board->motors_due, on_motors_due, board);
+  chip_timer_start(&board->motors_due, chip_now(&board->chip) + chip_cycles(MOTORS_PERIOD));
+  for (unsigned i = 0; i < I2C_DEVICES; i++) {
+    twi_attach(&board->twi, board->devices.i2c[i]);
+  }
   return true;
 }
 
@@ -65,31 +50,11 @@ bool board_renew(struct board *board) {
   chip_inherit(&board->chip, &before.chip);
   eeprom_inherit(&board->eeprom, &before.eeprom);
   chip_remove(&before.chip);
-  board_feel(board, &before.surroundings);
+  board_feel(board, &before.devices.surroundings);
   return true;
 }
 
 void board_feel(struct board *board, const struct surroundings *surroundings) {
-  board->surroundings = *surroundings;
-  pins_show(&board->pins, surroundings);
-}
-
-enum fault *board_fault(struct board *board, const char *device) {
-  if (!strcmp(device, "imu")) {
-    return &board->imu.fault;
-  }
-  if (!strcmp(device, "pressure")) {
-    return &board->pressure.fault;
-  }
-  for (unsigned i = 0; i < FIN_COUNT; i++) {
-    char encoder[] = "encoder0", bridge[] = "bridge0";
-    encoder[sizeof encoder - 2] = bridge[sizeof bridge - 2] = (char)('0' + i);
-    if (!strcmp(device, encoder)) {
-      return &board->encoders[i].fault;
-    }
-    if (!strcmp(device, bridge)) {
-      return &board->bridges[i].fault;
-    }
-  }
-  return NULL;
+  board->devices.surroundings = *surroundings;
+  pins_show(&board->pins);
 }

@@ -4,12 +4,9 @@
 #define BOARD_H
 
 #include "chip.h"
-#include "drv8830.h"
+#include "devices.h"
 #include "eeprom.h"
 #include "host_port.h"
-#include "motors.h"
-#include "mpu6050.h"
-#include "ms5837.h"
 #include "pins.h"
 #include "spi.h"
 #include "twi.h"
@@ -17,18 +14,14 @@
 
 struct board {
   struct chip chip;
-  struct surroundings surroundings;
+  struct devices devices;
+  struct chip_timer motors_due;
   struct pty *pty;
   struct uart uart;
   struct host_port host;
   struct twi twi;
   struct spi spi;
   struct eeprom eeprom;
-  struct drv8830 bridges[FIN_COUNT];
-  struct as5040 encoders[FIN_COUNT];
-  struct motors motors;
-  struct mpu6050 imu;
-  struct ms5837 pressure;
   struct pins pins;
 };
 
@@ -40,8 +33,5 @@ bool board_create(struct board *board, struct pty *pty);
 bool board_renew(struct board *board);
 
 void board_feel(struct board *board, const struct surroundings *surroundings);
-
-// The device of this name, or NULL: imu, pressure, encoder0 to 3, bridge0 to 3.
-enum fault *board_fault(struct board *board, const char *device);
 
 #endif

@@ -140,19 +140,14 @@ static void stats(struct service *service, struct client *client, char *nothing)
 }
 
 static void fault(struct service *service, struct client *client, char *arguments) {
-  static const char *const kinds[] = {
-      [FAULT_NONE] = "none", [FAULT_ABSENT] = "absent", [FAULT_STUCK] = "stuck"};
   char *kind = strchr(arguments, ' ');
   if (kind) {
     *kind++ = 0;
   }
-  enum fault *device = board_fault(&service->board, arguments);
-  for (unsigned i = 0; device && kind && i < sizeof kinds / sizeof *kinds; i++) {
-    if (!strcmp(kind, kinds[i])) {
-      *device = (enum fault)i;
-      agree(service, client);
-      return;
-    }
+  enum fault *device = devices_fault(&service->board.devices, arguments);
+  if (device && kind && devices_set_fault(device, kind)) {
+    agree(service, client);
+    return;
   }
   refuse(service, client, "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck");
 }

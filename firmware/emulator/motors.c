@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define STEP_SECONDS 1e-3
 #define TIME_CONSTANT 30e-3   // s
 #define SPEED_PER_STEP 0.315  // rad/s for a step of the bridge's voltage: 12.6 rad/s at 40
 #define FRICTION_STEPS 2      // a motor that is driven by less stands still
@@ -17,9 +16,9 @@ static const int rotation_sign[FIN_COUNT] = {1, 1, -1, -1};
 static const double first_angle[FIN_COUNT] = {0.05, -0.04, 0.03, -0.06};
 
 static void turn(struct motors *motors, unsigned fin, double driven) {
-  double decay = exp(-STEP_SECONDS / TIME_CONSTANT);
+  double decay = exp(-MOTORS_PERIOD / TIME_CONSTANT);
   double behind = motors->speed[fin] - driven;
-  motors->shaft[fin] += driven * STEP_SECONDS + behind * TIME_CONSTANT * (1 - decay);
+  motors->shaft[fin] += driven * MOTORS_PERIOD + behind * TIME_CONSTANT * (1 - decay);
   double speed = driven + behind * decay;
   motors->speed[fin] = driven == 0 && fabs(speed) < STANDSTILL ? 0 : speed;
 }
@@ -33,9 +32,7 @@ static void show(struct motors *motors, unsigned fin) {
   as5040_turn(&motors->encoders[fin], encoder_zero[fin] + ENCODER_SIGN * ticks);
 }
 
-static void on_step(void *owner) {
-  struct motors *motors = owner;
-  chip_timer_start(&motors->step, motors->step.when + chip_cycles(STEP_SECONDS));
+void motors_step(struct motors *motors) {
   for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
     int drive = drv8830_drive(&motors->bridges[fin]);
     double driven = abs(drive) < FRICTION_STEPS ? 0 : SPEED_PER_STEP * drive;
@@ -44,16 +41,13 @@ static void on_step(void *owner) {
   }
 }
 
-void motors_create(struct motors *motors, struct chip *chip, const struct drv8830 bridges[FIN_COUNT],
+void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT],
                    struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings) {
-  *motors =
-      (struct motors){.chip = chip, .bridges = bridges, .encoders = encoders, .surroundings = surroundings};
+  *motors = (struct motors){.bridges = bridges, .encoders = encoders, .surroundings = surroundings};
   for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
     motors->shaft[fin] = rotation_sign[fin] * first_angle[fin];
     show(motors, fin);
   }
-  chip_timer_add(chip, &motors->step, on_step, motors);
-  chip_timer_start(&motors->step, chip_now(chip) + chip_cycles(STEP_SECONDS));
 }
 
 double motors_fin_angle(const struct motors *motors, unsigned fin) {

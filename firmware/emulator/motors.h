@@ -5,23 +5,24 @@
 #define MOTORS_H
 
 #include "as5040.h"
-#include "chip.h"
 #include "drv8830.h"
 
 #define FIN_COUNT 4
+#define MOTORS_PERIOD 1e-3  // s
 
 struct motors {
-  struct chip *chip;
   const struct drv8830 *bridges;
   struct as5040 *encoders;
   const struct surroundings *surroundings;
-  struct chip_timer step;
   double shaft[FIN_COUNT];  // rad, growing with positive drive
   double speed[FIN_COUNT];  // rad/s
 };
 
-void motors_create(struct motors *motors, struct chip *chip, const struct drv8830 bridges[FIN_COUNT],
+void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT],
                    struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings);
+
+// To be called every MOTORS_PERIOD.
+void motors_step(struct motors *motors);
 
 // A fin's angle (rad, -pi to pi) and speed (rad/s); fins count front right, back right, back left, front
 // left.

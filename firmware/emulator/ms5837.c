@@ -76,14 +76,17 @@ static uint32_t raw_temperature(const struct ms5837 *sensor) {
 }
 
 static uint32_t raw_pressure(const struct ms5837 *sensor) {
-  struct compensation now = compensate(sensor->prom, raw_temperature(sensor));
+  struct compensation found = compensate(sensor->prom, raw_temperature(sensor));
   double counts = sensor->surroundings->pressure / PASCALS;
-  double raw = (counts * 0x1p13 + now.offset) * 0x1p21 / now.sensitivity;
+  double raw = (counts * 0x1p13 + found.offset) * 0x1p21 / found.sensitivity;
   return (uint32_t)lround(fmin(fmax(raw, 0), CONVERSION_MAX));
 }
 
-void ms5837_create(struct ms5837 *sensor, const struct chip *chip, const struct surroundings *surroundings) {
-  *sensor = (struct ms5837){.chip = chip, .surroundings = surroundings};
+static double now(const struct ms5837 *sensor) { return sensor->clock.seconds(sensor->clock.owner); }
+
+void ms5837_create(struct ms5837 *sensor, struct device_clock clock,
+                   const struct surroundings *surroundings) {
+  *sensor = (struct ms5837){.clock = clock, .surroundings = surroundings};
   for (unsigned i = 0; i < MS5837_PROM_WORDS; i++) {
     sensor->prom[i] = calibration[i];
   }
@@ -107,7 +110,7 @@ static void convert(struct ms5837 *sensor, uint8_t command) {
     *last = pressure ? raw_pressure(sensor) : raw_temperature(sensor);
   }
   sensor->conversion = *last;
-  sensor->ready = chip_now(sensor->chip) + chip_cycles(conversion_seconds[step]);
+  sensor->ready = now(sensor) + conversion_seconds[step];
 }
 
 void ms5837_write(void *device, unsigned index, uint8_t byte) {
@@ -118,7 +121,7 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
   sensor->command = byte;
   if (byte == COMMAND_RESET) {
     sensor->conversion = 0;
-    sensor->ready = chip_now(sensor->chip) + chip_cycles(RESET_SECONDS);
+    sensor->ready = now(sensor) + RESET_SECONDS;
   } else if ((byte & 0xf0) == COMMAND_PRESSURE || (byte & 0xf0) == COMMAND_TEMPERATURE) {
     convert(sensor, byte);
   }
@@ -128,7 +131,7 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
 uint8_t ms5837_read(void *device) {
   struct ms5837 *sensor = device;
   unsigned index = sensor->read_index++;
-  if (chip_now(sensor->chip) < sensor->ready) {
+  if (now(sensor) < sensor->ready) {
     return 0;
   }
   if (sensor->command == COMMAND_ADC_READ && index < 3) {

@@ -4,24 +4,27 @@
 #ifndef MS5837_H
 #define MS5837_H
 
-#include "chip.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "device_clock.h"
 #include "surroundings.h"
 
 #define MS5837_PROM_WORDS 7
 
 struct ms5837 {
-  const struct chip *chip;  // whose time it keeps
+  struct device_clock clock;
   const struct surroundings *surroundings;
   uint16_t prom[MS5837_PROM_WORDS];
   uint8_t command;
   unsigned read_index;
-  avr_cycle_count_t ready;  // cycle at which its reset or its conversion is done
+  double ready;  // s at which its reset or its conversion is done
   uint32_t conversion;
   uint32_t pressure, temperature;  // the last conversions
   enum fault fault;
 };
 
-void ms5837_create(struct ms5837 *sensor, const struct chip *chip, const struct surroundings *surroundings);
+void ms5837_create(struct ms5837 *sensor, struct device_clock clock, const struct surroundings *surroundings);
 bool ms5837_start(void *sensor);
 void ms5837_write(void *sensor, unsigned index, uint8_t byte);
 uint8_t ms5837_read(void *sensor);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #define SPEED_MAX 1000.0
+#define LINGER_MAX 86400.0
 #define USAGE_ERROR 2
 
 static const char usage[] =
@@ -19,9 +20,24 @@ static const char usage[] =
     "  --paused          time passes only when the command `run` says so\n"
     "  --eeprom FILE     keep the EEPROM in this file\n"
     "  --reset-on-open   opening the serial port resets the board\n"
-    "  --with-parent     end when the parent process ends\n";
+    "  --with-parent     end when the parent process ends\n"
+    "  --server-lock FILE  end when no server has held this file's lock ...\n"
+    "  --linger SECONDS    ... for so long, 30 by default\n";
 
-enum choice { ELF, BOOTLOADER, TTY, SOCKET, SPEED, PAUSED, EEPROM, RESET_ON_OPEN, WITH_PARENT, HELP };
+enum choice {
+  ELF,
+  BOOTLOADER,
+  TTY,
+  SOCKET,
+  SPEED,
+  PAUSED,
+  EEPROM,
+  RESET_ON_OPEN,
+  WITH_PARENT,
+  SERVER_LOCK,
+  LINGER,
+  HELP
+};
 
 static const struct option long_options[] = {
     {"elf", required_argument, NULL, ELF},
@@ -33,6 +49,8 @@ static const struct option long_options[] = {
     {"eeprom", required_argument, NULL, EEPROM},
     {"reset-on-open", no_argument, NULL, RESET_ON_OPEN},
     {"with-parent", no_argument, NULL, WITH_PARENT},
+    {"server-lock", required_argument, NULL, SERVER_LOCK},
+    {"linger", required_argument, NULL, LINGER},
     {"help", no_argument, NULL, HELP},
     {NULL, 0, NULL, 0},
 };
@@ -42,13 +60,13 @@ static void refuse(const char *what) {
   exit(USAGE_ERROR);
 }
 
-static double read_speed(const char *text) {
+static double read_number(const char *text, double maximum, const char *refusal) {
   char *end;
-  double speed = strtod(text, &end);
-  if (end == text || *end || !(speed >= 0 && speed <= SPEED_MAX)) {
-    refuse("--speed takes a number from 0 to 1000");
+  double number = strtod(text, &end);
+  if (end == text || *end || !(number >= 0 && number <= maximum)) {
+    refuse(refusal);
   }
-  return speed;
+  return number;
 }
 
 static void take(struct options *options, int option) {
@@ -66,7 +84,7 @@ static void take(struct options *options, int option) {
       options->socket = optarg;
       break;
     case SPEED:
-      options->speed = read_speed(optarg);
+      options->speed = read_number(optarg, SPEED_MAX, "--speed takes a number from 0 to 1000");
       break;
     case PAUSED:
       options->paused = true;
@@ -80,6 +98,12 @@ static void take(struct options *options, int option) {
     case WITH_PARENT:
       options->with_parent = true;
       break;
+    case SERVER_LOCK:
+      options->server_lock = optarg;
+      break;
+    case LINGER:
+      options->linger = read_number(optarg, LINGER_MAX, "--linger takes a number from 0 to 86400");
+      break;
     case HELP:
       fputs(usage, stdout);
       exit(0);
@@ -89,7 +113,7 @@ static void take(struct options *options, int option) {
 }
 
 struct options options_read(int count, char **arguments) {
-  struct options options = {.speed = 1};
+  struct options options = {.speed = 1, .linger = 30};
   for (int option; (option = getopt_long(count, arguments, "", long_options, NULL)) != -1;) {
     take(&options, option);
   }

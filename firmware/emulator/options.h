@@ -15,6 +15,8 @@ struct options {
   bool paused;         // time passes only when it is told to
   bool reset_on_open;
   bool with_parent;
+  const char *server_lock;  // NULL: it needs no server
+  double linger;            // s without one
 };
 
 // Ends the process where the command line is wrong or asks for help.

@@ -12,7 +12,7 @@ struct pin {
   uint8_t bit;
 };
 
-static const struct pin select_pins[SELECT_COUNT] = {{'D', 7}, {'B', 0}, {'B', 1}, {'B', 2}};  // D7 to D10
+static const struct pin select_pins[FIN_COUNT] = {{'D', 7}, {'B', 0}, {'B', 1}, {'B', 2}};  // D7 to D10
 static const struct pin beacon_right_pin = {'D', 4};
 static const struct pin beacon_left_pin = {'D', 5};
 static const struct pin led_pin = {'C', 1};          // A1
@@ -34,16 +34,10 @@ static void on_led(avr_irq_t *irq, uint32_t level, void *param) {
   pins->led = level;
 }
 
-static void set_motor_power(struct pins *pins, bool on) {
-  pins->motor_power = on;
-  for (unsigned i = 0; i < SELECT_COUNT && !on; i++) {
-    pins->bridges[i].control = 0;  // they start anew when their power comes back
-  }
-}
-
 static void on_motor_power(avr_irq_t *irq, uint32_t level, void *param) {
   (void)irq;
-  set_motor_power(param, level);
+  struct pins *pins = param;
+  devices_set_motor_power(pins->devices, level);
 }
 
 // Resistors hold the levels of what nothing drives: selects high, LED and motor power low, detectors as
@@ -53,27 +47,25 @@ static void pull(struct pins *pins, char port, uint8_t mask, uint8_t levels) {
   avr_ioctl(pins->chip->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &external);
 }
 
-void pins_create(struct pins *pins, struct chip *chip, struct as5040 encoders[SELECT_COUNT],
-                 struct drv8830 bridges[SELECT_COUNT]) {
-  *pins = (struct pins){.chip = chip, .encoders = encoders, .bridges = bridges};
+void pins_create(struct pins *pins, struct chip *chip, struct devices *devices) {
+  *pins = (struct pins){.chip = chip, .devices = devices};
   pins->beacon_right = pin_irq(chip, beacon_right_pin);
   pins->beacon_left = pin_irq(chip, beacon_left_pin);
   pins->battery = avr_io_getirq(chip->avr, AVR_IOCTL_ADC_GETIRQ, battery_input);
-  for (unsigned i = 0; i < SELECT_COUNT; i++) {
-    bridges[i].powered = &pins->motor_power;
-    avr_irq_register_notify(pin_irq(chip, select_pins[i]), on_select, &encoders[i]);
+  for (unsigned i = 0; i < FIN_COUNT; i++) {
+    avr_irq_register_notify(pin_irq(chip, select_pins[i]), on_select, &devices->encoders[i]);
   }
   avr_irq_register_notify(pin_irq(chip, led_pin), on_led, pins);
   avr_irq_register_notify(pin_irq(chip, motor_power_pin), on_motor_power, pins);
 }
 
-void pins_reset(struct pins *pins, const struct surroundings *surroundings) {
-  for (unsigned i = 0; i < SELECT_COUNT; i++) {
-    as5040_select(&pins->encoders[i], false);
+void pins_reset(struct pins *pins) {
+  for (unsigned i = 0; i < FIN_COUNT; i++) {
+    as5040_select(&pins->devices->encoders[i], false);
     pin_irq(pins->chip, select_pins[i])->flags |= IRQ_FLAG_INIT;
   }
   pins->led = false;
-  set_motor_power(pins, false);
+  devices_set_motor_power(pins->devices, false);
   // The chip has forgotten the levels of its pins; without this flag an unchanged one would not be shown.
   pin_irq(pins->chip, led_pin)->flags |= IRQ_FLAG_INIT;
   pin_irq(pins->chip, motor_power_pin)->flags |= IRQ_FLAG_INIT;
@@ -81,10 +73,11 @@ void pins_reset(struct pins *pins, const struct surroundings *surroundings) {
   pins->beacon_left->flags |= IRQ_FLAG_INIT;
   pull(pins, 'B', 0x07, 0x07);
   pull(pins, 'C', 1 << led_pin.bit | 1 << motor_power_pin.bit, 0);
-  pins_show(pins, surroundings);
+  pins_show(pins);
 }
 
-void pins_show(struct pins *pins, const struct surroundings *surroundings) {
+void pins_show(struct pins *pins) {
+  const struct surroundings *surroundings = &pins->devices->surroundings;
   bool right = surroundings->beacon_right, left = surroundings->beacon_left;
   uint8_t beacons = (uint8_t)(right << beacon_right_pin.bit | left << beacon_left_pin.bit);
   uint8_t select = 1 << select_pins[0].bit;

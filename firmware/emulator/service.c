@@ -67,6 +67,7 @@ bool service_create(struct service *service, const struct options *options, char
   water_create(&service->water, board, &service->clients, paced(service) ? WATER_PATIENCE : INFINITY);
   chip_reset(&board->chip, CHIP_POWER_ON);
   pace_start(&service->pace, options->speed, pace_clock(), chip_now(&board->chip));
+  server_watch(&service->server, options->server_lock, options->linger, pace_clock());
   return true;
 }
 
@@ -181,7 +182,7 @@ static void serve_signals(struct service *service) {
 }
 
 void service_run(struct service *service) {
-  while (!service->quitting) {
+  while (!service->quitting && !server_gone(&service->server, pace_clock())) {
     struct pollfd polls[POLL_COUNT];
     wait_for_events(service, polls);
     if (paced(service)) {

@@ -7,6 +7,7 @@
 #include "clients.h"
 #include "options.h"
 #include "pace.h"
+#include "server.h"
 #include "water.h"
 
 struct service {
@@ -16,6 +17,7 @@ struct service {
   struct clients clients;
   struct water water;
   struct pace pace;
+  struct server server;
   int signals;            // a file descriptor that tells of SIGTERM, SIGINT and SIGUSR1
   struct client *runner;  // who waits for the end of a `run`
   avr_cycle_count_t run_until;

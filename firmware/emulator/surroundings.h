@@ -19,6 +19,12 @@ struct surroundings {
 #define STILL_WATER \
   { .pressure = 101325, .temperature = 20, .force = {0, 0, -9.80665}, .battery = 7.4 }
 
+// PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3
+#define SURROUNDINGS_NUMBERS 15
+
+// Takes over what these numbers tell; false, and nothing taken over, where that cannot be.
+bool surroundings_read(struct surroundings *surroundings, const double numbers[SURROUNDINGS_NUMBERS]);
+
 // What may be wrong with a device: it does not answer, or it goes on showing what it last showed.
 enum fault { FAULT_NONE, FAULT_ABSENT, FAULT_STUCK };
 

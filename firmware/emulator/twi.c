@@ -25,7 +25,7 @@ static void select_device(struct twi *twi, uint8_t address) {
   twi->selected = NULL;
   twi->index = 0;
   for (unsigned i = 0; i < twi->device_count; i++) {
-    struct twi_device *device = &twi->devices[i];
+    struct i2c_device *device = &twi->devices[i];
     if (device->address == address && device->start(device->device)) {
       twi->selected = device;
     }
@@ -45,7 +45,7 @@ static void on_bus(avr_irq_t *irq, uint32_t value, void *param) {
     }
     return;
   }
-  struct twi_device *device = twi->selected;
+  struct i2c_device *device = twi->selected;
   if (!device) {
     return;
   }
@@ -102,7 +102,7 @@ void twi_create(struct twi *twi, struct chip *chip) {
   avr_irq_register_notify(twi->module->io.irq + TWI_IRQ_OUTPUT, on_bus, twi);
 }
 
-void twi_attach(struct twi *twi, struct twi_device device) {
+void twi_attach(struct twi *twi, struct i2c_device device) {
   if (twi->device_count < TWI_DEVICES_MAX) {
     twi->devices[twi->device_count++] = device;
   }

@@ -9,31 +9,24 @@
 #include <avr_twi.h>
 
 #include "chip.h"
+#include "devices.h"
 
 #define TWI_DEVICES_MAX 8
-
-struct twi_device {
-  uint8_t address;  // 7 bits
-  void *device;
-  bool (*start)(void *device);                                // false: there is no acknowledgement
-  void (*write)(void *device, unsigned index, uint8_t byte);  // index: bytes since the start condition
-  uint8_t (*read)(void *device);
-};
 
 struct twi {
   struct chip *chip;
   avr_twi_t *module;
   struct chip_write_hook control_written;
-  struct twi_device devices[TWI_DEVICES_MAX];
+  struct i2c_device devices[TWI_DEVICES_MAX];
   unsigned device_count;
-  struct twi_device *selected;
+  struct i2c_device *selected;
   unsigned index;
   bool addressed;                // the address has gone out, and its outcome has not been put right yet
   avr_cycle_count_t timer_when;  // of the timer that has been put right
 };
 
 void twi_create(struct twi *twi, struct chip *chip);
-void twi_attach(struct twi *twi, struct twi_device device);
+void twi_attach(struct twi *twi, struct i2c_device device);
 void twi_reset(struct twi *twi);
 
 #endif

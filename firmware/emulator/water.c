@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "water.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PERIOD_MIN 0.5e-3
 #define PERIOD_MAX 1.0
-#define NUMBERS 11
-#define NUMBERS_WITH_ENCODERS (NUMBERS + FIN_COUNT)
+#define NUMBERS_WITHOUT_ENCODERS 11
 
 static void on_due(void *owner) {
   struct water *water = owner;
@@ -43,16 +41,17 @@ void water_gone(struct water *water, const struct client *client) {
 
 void water_tell_fins(struct water *water, struct client *client, const char *word) {
   const struct board *board = water->board;
+  const struct devices *devices = &board->devices;
   double angle[FIN_COUNT], speed[FIN_COUNT];
   int drive[FIN_COUNT];
   for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
-    angle[fin] = motors_fin_angle(&board->motors, fin);
-    speed[fin] = motors_fin_speed(&board->motors, fin);
-    drive[fin] = drv8830_drive(&board->bridges[fin]);
+    angle[fin] = motors_fin_angle(&devices->motors, fin);
+    speed[fin] = motors_fin_speed(&devices->motors, fin);
+    drive[fin] = drv8830_drive(&devices->bridges[fin]);
   }
   clients_tell(water->clients, client, "%s %.6f %.5f %.5f %.5f %.5f %.4f %.4f %.4f %.4f %d %d %d %d %d %d",
                word, chip_seconds(chip_now(&board->chip)), angle[0], angle[1], angle[2], angle[3], speed[0],
-               speed[1], speed[2], speed[3], drive[0], drive[1], drive[2], drive[3], board->pins.motor_power,
+               speed[1], speed[2], speed[3], drive[0], drive[1], drive[2], drive[3], devices->motor_power,
                board->pins.led);
 }
 
@@ -89,36 +88,11 @@ static int read_numbers(const char *text, double *numbers, int most) {
   }
 }
 
-static bool possible(const struct surroundings *felt) {
-  double sum = felt->pressure + felt->temperature + felt->battery;
-  for (unsigned axis = 0; axis < 3; axis++) {
-    sum += felt->force[axis] + felt->rate[axis];
-  }
-  for (unsigned fin = 0; fin < FIN_COUNT; fin++) {
-    if (fabs(felt->encoder_error[fin]) > M_PI) {
-      return false;
-    }
-  }
-  return isfinite(sum) && felt->pressure >= 0 && felt->battery >= 0;
-}
-
 bool water_sense(struct water *water, const char *text) {
-  double n[NUMBERS_WITH_ENCODERS] = {0};
-  int count = read_numbers(text, n, NUMBERS_WITH_ENCODERS);
-  if ((count != NUMBERS && count != NUMBERS_WITH_ENCODERS) || !isfinite(n[8]) || !isfinite(n[9])) {
-    return false;
-  }
-  struct surroundings felt = {
-      .pressure = n[0],
-      .temperature = n[1],
-      .force = {n[2], n[3], n[4]},
-      .rate = {n[5], n[6], n[7]},
-      .beacon_right = n[8] != 0,
-      .beacon_left = n[9] != 0,
-      .battery = n[10],
-      .encoder_error = {n[11], n[12], n[13], n[14]},
-  };
-  if (!possible(&felt)) {
+  double n[SURROUNDINGS_NUMBERS] = {0};
+  struct surroundings felt;
+  int count = read_numbers(text, n, SURROUNDINGS_NUMBERS);
+  if ((count != NUMBERS_WITHOUT_ENCODERS && count != SURROUNDINGS_NUMBERS) || !surroundings_read(&felt, n)) {
     return false;
   }
   board_feel(water->board, &felt);

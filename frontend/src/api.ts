@@ -18,6 +18,7 @@ export type ScenarioEvent = Schemas['ScenarioEvent'];
 export type ScenarioCheck = Schemas['ScenarioCheck'];
 export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
+export type View = Schemas['View'];
 export type ThesisTable = Schemas['ThesisTable'];
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
@@ -66,6 +67,7 @@ export const api = {
   setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
   card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
+  view: (view: View) => command('PUT', '/scene/view', view),
   simulator: (here: boolean) => command('PUT', '/simulator', { here }),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),

@@ -1,22 +1,14 @@
-"""A host at the serial port of a paused emulated board: time passes only while the host waits.
+"""A host at the serial port of a paused emulated board: time passes only while the host waits."""
 
-What is written is on the board's side before any time passes, so that a run gives the same bytes every time.
-"""
-
-import os
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import get_args
 
 from robot_runtime.comm_test.faults import RateKind
 from robot_runtime.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, Stop, check
 from robot_runtime.comm_test.results import FaultCounts, LineErrors
-from robot_runtime.link.port import Port
-from robot_runtime.simulation.board import Board, BoardError, LineDirection
+from robot_runtime.simulation.board import Board, LineDirection
+from robot_runtime.simulation.paused_port import PausedPort
 
-PATIENCE = 60.0
-"""s of real time for what the operating system does between two processes, on a busy computer."""
 READ_STEP_BYTES = 1024
 DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)
 
@@ -33,13 +25,7 @@ class EmulatedLine(Line):
         super().__init__(baud)
         self._board = board
         self._stop = stop or Stop()
-        self._port = Port(str(tty), baud)
-        try:
-            self._wait_for(lambda: self._count("baud_host") == baud)
-            board.power()
-        except Exception:
-            self._port.close()
-            raise
+        self._port = PausedPort(board, tty, baud)
 
     def close(self) -> None:
         """Close the port."""
@@ -60,11 +46,10 @@ class EmulatedLine(Line):
 
     def _hand_over(self, data: bytes) -> None:
         # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
-        while self._count("waiting") + len(data) > WRITE_BUFFER_BYTES:
+        while self._port.count("waiting") + len(data) > WRITE_BUFFER_BYTES:
             self.wait(len(data) * self.byte_time)
         self._port.write(data)
         self.written += len(data)
-        self._wait_for(lambda: self._count("bytes_from_host") == self.written)
 
     def _pass(self, seconds: float) -> None:
         end = self.now + seconds
@@ -72,27 +57,7 @@ class EmulatedLine(Line):
         while (left := end - self.now) > TIME_MIN:
             check(self._stop)
             self.now = self._board.run(min(left, step))
-            self._read()
-
-    def _read(self) -> None:
-        given = self._count("bytes_to_host")
-
-        def complete() -> bool:
-            if len(self.heard) < given and self._port.wait(0.001):
-                self.heard += self._port.read()
-            return len(self.heard) >= given
-
-        self._wait_for(complete)
-
-    def _count(self, counter: str) -> int:
-        return int(self._board.stats()[counter])
-
-    def _wait_for(self, condition: Callable[[], bool]) -> None:
-        end = time.monotonic() + PATIENCE
-        while not condition():
-            if time.monotonic() > end:
-                raise BoardError("the emulated board does not serve its serial port")
-            os.sched_yield()
+            self.heard += self._port.receive()
 
 
 class _EmulatedWire:

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 from robot_runtime.clock import Clock
@@ -15,7 +16,8 @@ DEPTH_STALE = 0.5
 """s without a depth after which there is nothing to steer by; more where the line is too slow for that."""
 _STATUS_STALE = 0.5
 _ARM_TRIES = 10
-_ARM_WAIT = 0.1
+ARM_WAIT = 0.1
+"""s between two STARTs."""
 _ARM_BYTES = 96
 """What START and the answer wait for and are themselves, on the line."""
 
@@ -41,6 +43,16 @@ class Line(Protocol):
         ...
 
 
+@dataclass(slots=True)
+class Arming:
+    """An attempt to arm this board; once it is `over`, `refusal` says why it failed, if it did."""
+
+    board: Hello | None
+    tries: int
+    over: bool = False
+    refusal: str = ""
+
+
 class Supervisor:
     """Knows whether the robot is armed, and decides whether it may be.
 
@@ -60,13 +72,13 @@ class Supervisor:
         self._line = line
         self._tell = tell
         self._loop = loop
-        self._arming = False
+        self._arming: Arming | None = None
         self._status: Status | None = None
         self._status_time = float("-inf")
         self._depth_time = float("-inf")
         self._depth_stale = stale_after(DEPTH_STALE, Depth, line.baud)
         self._status_stale = stale_after(_STATUS_STALE, Status, line.baud)
-        self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / _ARM_WAIT)
+        self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
         self._changed = threading.Condition(threading.RLock())
 
@@ -117,25 +129,53 @@ class Supervisor:
         return reasons
 
     def arm(self) -> None:
-        """Arm the board. Raises Refused with every reason where it may not be, or does not follow."""
+        """Arm the board, and wait until it is.
+
+        Raises Refused with every reason where it may not be, or does not follow.
+        """
+        with self._changed:
+            arming = self.begin_arming()
+            while not arming.over:
+                self._changed.wait_for(lambda: self.board_armed or arming.over, ARM_WAIT)
+                self.go_on_arming()
+            if arming.refusal:
+                raise Refused(arming.refusal)
+
+    def begin_arming(self) -> Arming:
+        """Ask the board to arm; `go_on_arming` does the rest. Raises Refused with every reason against it."""
         if self.armed:
-            return
+            return Arming(None, tries=0, over=True)
         reasons = self.refusals()
         board = self._line.board
         if reasons or board is None:
             raise Refused(" ".join(reasons))
         with self._changed:
-            self._arming = True
-            try:
-                self._arm(board)
-            finally:
-                self._arming = False
+            if self._arming is None:
+                self._arming = arming = Arming(board, self._arm_tries)
+                self._ask_to_arm(arming)
+                return arming
+            return self._arming
+
+    def go_on_arming(self) -> None:
+        """See whether the board has followed, or ask again; to be called every `ARM_WAIT` at least."""
+        with self._changed:
+            arming = self._arming
+            if arming is None:
+                return
+            if self.board_armed:
+                self.armed_since = self._clock.now()
+                self._end_arming("")
+                self._event("armed", "info", "Armed.")
+            elif arming.tries > 0:
+                self._ask_to_arm(arming)
+            else:
+                self._line.send(Stop())
+                self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
     def stop(self, why: str, severity: Severity = "info") -> None:
         """Disarm at once, whatever was before."""
         with self._changed:
-            self._arming = False
-            self._changed.notify_all()
+            self._end_arming("Stopped before the board was armed.")
             # First, so that the board's own word of it is no surprise.
             self._disarmed(severity, why)
         self._line.send(Stop())
@@ -149,25 +189,25 @@ class Supervisor:
                 self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
             elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
                 self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
-            elif not self.armed and not self._arming and self._board_armed():
+            elif not self.armed and self._arming is None and self.board_armed:
                 self._line.send(Stop())
 
-    def _arm(self, board: Hello) -> None:
-        for _ in range(self._arm_tries):
-            # Repeated because the board wants half a second of steady traffic first. It ignores what it
-            # has, and the line does not carry the same twice at a time.
-            self._line.send(Start(epoch=board.epoch))
-            self._changed.wait_for(lambda: self._board_armed() or not self._arming, _ARM_WAIT)
-            if not self._arming:
-                raise Refused("Stopped before the board was armed.")
-            if self._board_armed():
-                self.armed_since = self._clock.now()
-                self._event("armed", "info", "Armed.")
-                return
-        self._line.send(Stop())
-        raise Refused("The board did not arm; the console says why. Try again in a moment.")
+    def _ask_to_arm(self, arming: Arming) -> None:
+        # Repeated because the board wants half a second of steady traffic first. It ignores what it has, and
+        # the line does not carry the same twice at a time.
+        arming.tries -= 1
+        if arming.board is not None:
+            self._line.send(Start(epoch=arming.board.epoch))
 
-    def _board_armed(self) -> bool:
+    def _end_arming(self, refusal: str) -> None:
+        if self._arming is not None:
+            self._arming.refusal, self._arming.over = refusal, True
+            self._arming = None
+        self._changed.notify_all()
+
+    @property
+    def board_armed(self) -> bool:
+        """Whether the board says that it is armed."""
         return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)
 
     def _disarmed(self, severity: Severity, text: str) -> None:

@@ -10,11 +10,13 @@ from typing import Self
 
 import serial
 
+from robot_runtime.link.conversation import LineError
+
 _READ_BYTES = 4096
 _WRITE_SECONDS = 0.25
 
 
-class PortError(Exception):
+class PortError(LineError):
     """The port cannot be opened, or has gone away; the text says which and what to do."""
 
 

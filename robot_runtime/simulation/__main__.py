@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.lifetime import end_with_parent
+from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.simulation.loop import Loop
 from robot_runtime.simulation.parameters import Parameters
@@ -40,6 +40,8 @@ def main() -> None:
             process = Loop(simulator, messages)
         else:
             process = Process(simulator, arguments.board, messages, SteadyClock())
+        if arguments.server_lock is not None:
+            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: process.end())
         process.run()
@@ -77,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--seed", type=int, default=1, help="of the sensors' noise")
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    add_server_options(parser)
     return parser
 
 

@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from math import pi, remainder
 from typing import Any
 
+from robot_runtime.cache import Cache
+from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
@@ -43,7 +45,8 @@ class Loop:
     def __init__(self, simulator: Simulator, messages: Messages) -> None:
         self._simulator = simulator
         self._messages = messages
-        self._outbox = Outbox(messages.publish, messages.watched)
+        cache = Cache(messages.run, SteadyClock())
+        self._outbox = Outbox(messages.publish, messages.watched, cache)
         self._waiting: deque[bytes] = deque(maxlen=WAITING_MAX)
         self._arrived = threading.Event()
         self._ending = False
@@ -52,6 +55,7 @@ class Loop:
         self._truth_due = 0.0
         for name, change in changes(simulator).items():
             messages.answer(f"simulator/{name}", _no_bus_errors(change) if name == "fault" else change)
+        messages.answer_bytes("simulator/blocks", cache.answer)
         messages.subscribe("motor", self._receive)
 
     def run(self) -> None:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
@@ -31,13 +32,15 @@ class Process:
     def __init__(self, simulator: Simulator, board: Path, messages: Messages, clock: Clock) -> None:
         self._simulator = simulator
         self._board = board
-        self._outbox = Outbox(messages.publish, messages.watched)
+        cache = Cache(messages.run, clock)
+        self._outbox = Outbox(messages.publish, messages.watched, cache)
         self._clock = clock
         self._truth_due = clock.now()
         self._ending = False
         self._attached: bool | None = None
         for name, change in changes(simulator).items():
             messages.answer(f"simulator/{name}", change)
+        messages.answer_bytes("simulator/blocks", cache.answer)
 
     def run(self) -> None:
         """Swim until `end` is called, through any number of boards."""

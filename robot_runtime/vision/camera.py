@@ -7,7 +7,14 @@ from robot_runtime.vision.colours import Picture
 
 
 class CameraError(Exception):
-    """A camera gives no picture; the text says why and what to do."""
+    """A camera gives no picture; the text says why and what to do.
+
+    For `patience` (s) that is nothing to tell of, as it may pass by itself.
+    """
+
+    def __init__(self, text: str, patience: float = 0.0) -> None:
+        super().__init__(text)
+        self.patience = patience
 
 
 class Frame(NamedTuple):

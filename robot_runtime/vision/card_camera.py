@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from robot_runtime.clock import Clock
 from robot_runtime.vision.camera import Camera, Frame
+from robot_runtime.vision.cards import card_paint
 from robot_runtime.vision.colours import ColourRange, Picture
 
 Floats = NDArray[np.float32]
@@ -26,13 +27,6 @@ CARD_DISTANCE = 0.4
 """m."""
 CARD_SIZE = (0.26, 0.36)
 """Width and height of the card as shares of the picture's height."""
-PAINTS: Mapping[str, tuple[int, int, int]] = {
-    "red": (35, 30, 215),
-    "yellow": (20, 190, 245),
-    "green": (70, 170, 50),
-    "blue": (200, 75, 20),
-}
-"""Blue, green and red of printed cards in daylight."""
 NOISE = 3.0
 """Standard deviation of each byte of the picture."""
 NOISE_SHIFT = 64
@@ -128,11 +122,9 @@ def _water(width: int, height: int) -> Floats:
 
 
 def _paint(name: str, colour: ColourRange) -> tuple[float, float, float]:
-    """A card's blue, green and red as seen through the water; of the range's middle where it has no paint."""
-    middle = np.array([[colour.middle]], np.uint8)
-    own = PAINTS[name] if name in PAINTS else cv2.cvtColor(middle, cv2.COLOR_HSV2BGR)[0, 0].tolist()
+    """A card's blue, green and red as seen through the water."""
     blue, green, red = (
         paint * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
-        for paint, water, loss in zip(own, WATER, ATTENUATION, strict=True)
+        for paint, water, loss in zip(card_paint(name, colour), WATER, ATTENUATION, strict=True)
     )
     return blue, green, red

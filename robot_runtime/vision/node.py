@@ -10,6 +10,7 @@ import cv2
 from robot_runtime.clock import Clock
 from robot_runtime.config import ConfigError, VisionConfig
 from robot_runtime.errors import Refused
+from robot_runtime.messages import Messages
 from robot_runtime.samples import Detection, Event, Severity
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.card_camera import CardCamera
@@ -18,6 +19,7 @@ from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pace import Pace
 from robot_runtime.vision.pi_camera import PiCamera
+from robot_runtime.vision.scene_camera import SceneCamera, SceneMissing
 
 log = logging.getLogger(__name__)
 
@@ -31,8 +33,8 @@ class Vision:
 
     Every picture gives one Detection: of the wanted colour if it is there, else of the largest patch of
     another colour, else of none. Only while `picture_wanted` says that somebody watches is the picture itself
-    handed on, with its time (s), as a JPEG file. All callbacks run on the node's thread. Raises ConfigError
-    where the configuration's colours cannot be used.
+    handed on, with its time (s), as a JPEG file. All callbacks run on the node's thread. The camera "scene"
+    is asked through `messages`. Raises ConfigError where the configuration's colours cannot be used.
     """
 
     def __init__(
@@ -44,6 +46,7 @@ class Vision:
         picture_wanted: Callable[[], bool],
         tell: Callable[[Event], None],
         open_camera: Callable[[], Camera] | None = None,
+        messages: Messages | None = None,
     ) -> None:
         self.colours = parse_colours(config.colours)
         if config.colour not in self.colours:
@@ -53,18 +56,20 @@ class Vision:
         self.colour = config.colour
         """The wanted colour, one of `colours`."""
         self.card: str | None = None
-        """The colour of the card that the card camera shows."""
+        """The colour of the card before the camera."""
         self._config = config
         self._clock = clock
         self._on_detection = on_detection
         self._on_picture = on_picture
         self._picture_wanted = picture_wanted
         self._tell = tell
+        self._messages = messages
         self._open_camera = open_camera or self._configured_camera
         self._detector = Detector(self.colours, config.area_min)
         self._pace = Pace(clock, config.rate)
         self._camera: Camera | None = None
         self._failure: str | None = None
+        self._failing_since: float | None = None
         self._retry_at = clock.now()
         self._ending = False
         self._wake = threading.Event()
@@ -89,10 +94,10 @@ class Vision:
 
     def show_card(self, colour: str | None) -> None:
         """Show a card of this colour, or none. Raises Refused where that cannot be."""
-        if self._config.camera != "card":
+        if self._config.camera not in ("card", "scene"):
             raise Refused(
-                f"the camera is {self._config.camera!r}; cards are shown by the camera 'card' alone: "
-                "choose it in robot.toml, [vision] camera"
+                f"the camera is {self._config.camera!r}; cards are shown to the cameras 'scene' and 'card' "
+                "alone: choose one in robot.toml, [vision] camera"
             )
         if colour is not None and colour not in self.colours:
             raise Refused(f"there is no card of colour {colour!r}; there are {', '.join(self.colours)}")
@@ -114,7 +119,7 @@ class Vision:
         try:
             frame = self._take()
         except CameraError as problem:
-            self._fail(str(problem))
+            self._fail(str(problem), problem.patience)
         except Exception as problem:
             log.exception("the camera failed")
             self._fail(f"the camera failed ({problem}); the log says more")
@@ -122,20 +127,26 @@ class Vision:
             if frame is not None:
                 self._examine(frame)
 
+    def tick(self) -> float:
+        """Look where that is due; s until it will be, 0 where it was."""
+        remaining = self._pace.remaining()
+        if remaining > 0:
+            return remaining
+        self._pace.begin()
+        try:
+            self.look()
+        except Exception:
+            log.exception("a picture could not be searched")
+        return 0.0
+
     def _run(self) -> None:
         # On pictures of this size more threads cost more than they bring, and the robot has one core.
         cv2.setNumThreads(1)
         while not self._ending:
-            remaining = self._pace.remaining()
+            remaining = self.tick()
             if remaining > 0:
                 self._wake.wait(remaining)
                 self._wake.clear()
-                continue
-            self._pace.begin()
-            try:
-                self.look()
-            except Exception:
-                log.exception("a picture could not be searched")
         self._drop_camera()
 
     def _take(self) -> Frame | None:
@@ -145,6 +156,7 @@ class Vision:
                 return None
             self._camera = self._open_camera()
         frame = self._camera.read()
+        self._failing_since = None
         if self._failure is not None:
             self._failure = None
             self._report("info", f"Camera: {self.text}.")
@@ -168,10 +180,13 @@ class Vision:
             _, jpeg = cv2.imencode(".jpg", frame.picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
             self._on_picture(frame.taken, jpeg.tobytes())
 
-    def _fail(self, text: str) -> None:
+    def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
-        self._retry_at = self._clock.now() + RETRY
-        if text != self._failure:
+        now = self._clock.now()
+        self._retry_at = now + RETRY
+        if self._failing_since is None:
+            self._failing_since = now
+        if text != self._failure and now - self._failing_since >= patience:
             self._failure = text
             self._report("caution", f"Camera: {text}. It is tried again every {RETRY:g} s.")
 
@@ -192,4 +207,13 @@ class Vision:
             return PiCamera(config.width, config.height, self._clock)
         if config.camera == "file":
             return FileCamera(Path(config.file), config.width, config.height, self._clock)
+        if config.camera == "scene" and self._messages is not None:
+            try:
+                return SceneCamera(
+                    config.width, config.height, self._messages, self.colours, lambda: self.card
+                )
+            except SceneMissing as missing:
+                self._report(
+                    "caution", f"Camera: the scene cannot be rendered: {missing}. A drawn card stands in."
+                )
         return CardCamera(config.width, config.height, self._clock, self.colours, lambda: self.card)

@@ -22,6 +22,7 @@ from server.comm_tests.reference import Place as Cell
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import Place
 from server.models import CommTestRun
+from server.pidfile import end_parts
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
@@ -105,6 +106,7 @@ def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:
             claimed.enter_context(claim(settings.data))
         except SetupError as problem:
             raise SetupError(f"{problem} Beside a running server, start the test from its page.") from problem
+        end_parts(settings.data.run)
         prepare(settings.data)
         with closing(Store(settings.data.database)) as store:
             return asyncio.run(_perform(text, tests, place, settings, Runs(store)))

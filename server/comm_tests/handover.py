@@ -101,7 +101,8 @@ class Board:
         except TimeoutError:
             return f"there is no {self._port}"
         try:
-            process = Process(command, output.write)
+            with output.open() as file:
+                process = Process(command, file)
             try:
                 async with asyncio.timeout(RESTORE_SECONDS):
                     status = await process.wait()
@@ -112,7 +113,7 @@ class Board:
         except OSError as problem:
             return f"the upload could not be started: {problem.strerror}"
         finally:
-            output.close()
+            output.trim()
         return "" if status == 0 else output.last(LINES_TOLD) or f"the upload ended with exit status {status}"
 
 

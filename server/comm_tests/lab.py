@@ -23,7 +23,7 @@ from robot_runtime.errors import Refused
 from server.comm_tests.runs import End, Runs
 from server.comm_tests.shapes import Cell, Phase, Place
 from server.parts import describe_status
-from server.process import Process
+from server.process import PipedProcess
 from server.settings import Settings
 from server.store import StoreError
 
@@ -88,7 +88,7 @@ class Lab:
         self._tell = tell
         self._lend = lend
         self._task: asyncio.Task[None] | None = None
-        self._process: Process | None = None
+        self._process: PipedProcess | None = None
         self._cancelled = False
 
     @property
@@ -161,7 +161,7 @@ class Lab:
             document.seek(0)
             if self._cancelled:
                 raise Refused("The communication test was cancelled before it began.")
-            self._process = Process(command, output.feed, document)
+            self._process = PipedProcess(command, output.feed, document)
         ending = asyncio.create_task(self._wait_for(self._process, output))
         try:
             while (line := await output.next()) is not None:
@@ -179,7 +179,7 @@ class Lab:
             why = "It was cancelled." if self._cancelled else said or f"It {describe_status(status)}."
             raise LabError(f"The communication test could not begin. {why}")
 
-    async def _wait_for(self, process: Process, output: "_Lines") -> int:
+    async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int:
         status = await process.wait()
         output.end()
         return status

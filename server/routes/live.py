@@ -18,6 +18,8 @@ NONSENSE_MAX = 20
 POLICY_VIOLATION = 1008
 """WebSocket close code for a client that breaks the rules."""
 FAREWELL_SECONDS = 1.0
+WATCHABLE = frozenset({"picture", "observer"})
+"""Topics of pictures that a page can have."""
 
 router = APIRouter()
 
@@ -62,8 +64,10 @@ class _Conversation:
                 client.answer({"op": "pong", "id": number})
             case "stop":
                 self._stop(client)
+            case "watch":
+                self._assembly.hub.show(client, _topics(message.get("pictures")))
             case op:
-                raise Nonsense(f'Unknown op {json.dumps(op)[:80]}; there are "ping" and "stop".')
+                raise Nonsense(f'Unknown op {json.dumps(op)[:80]}; there are "ping", "stop" and "watch".')
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -126,6 +130,12 @@ def _read(text: str | None) -> dict[str, Any]:
     if not isinstance(message, dict):
         raise Nonsense("Messages must be JSON objects.")
     return message
+
+
+def _topics(value: object) -> frozenset[str]:
+    if not isinstance(value, list) or not all(isinstance(one, str) and one in WATCHABLE for one in value):
+        raise Nonsense(f"A watch needs pictures, a list of any of {', '.join(sorted(WATCHABLE))}.")
+    return frozenset(value)
 
 
 def _refuse_constant(name: str) -> None:

@@ -1,5 +1,6 @@
 """The board as a process: how it starts, keeps time, and ends."""
 
+import fcntl
 import os
 import signal
 import socket
@@ -130,6 +131,30 @@ def test_it_ends_with_its_parent(tmp_path: Path) -> None:
     assert not (tmp_path / "tty").is_symlink()
 
 
+def test_it_outlives_its_server_no_longer_than_it_is_told(tmp_path: Path) -> None:
+    lock = tmp_path / "server.lock"
+    with lock.open("w") as server:
+        fcntl.flock(server, fcntl.LOCK_EX)
+        with start(tmp_path, "--server-lock", str(lock), "--linger", "0") as process:
+            with process.connect() as board:
+                before = board.stats()["time"]
+                # It looks for its server twice a second.
+                wait_for(lambda: board.stats()["time"] > before + 1.2, "the board to go on")
+            server.close()
+            wait_for(lambda: process.process.poll() is not None, "its end")
+            assert process.process.returncode == 0
+    assert not (tmp_path / "tty").is_symlink()
+
+
+def test_without_the_server_s_folder_it_ends_at_once(tmp_path: Path) -> None:
+    lock = tmp_path / "server.lock"
+    lock.touch()
+    with start(tmp_path, "--server-lock", str(lock), "--linger", "1000") as process:
+        assert process.process.poll() is None
+        lock.unlink()
+        wait_for(lambda: process.process.poll() is not None, "its end")
+
+
 def test_two_boards_cannot_share_a_socket(tmp_path: Path) -> None:
     with start(tmp_path) as process:
         with pytest.raises(BoardError, match=r"another board answers at .*choose another --socket"):
@@ -199,5 +224,7 @@ def test_help_lists_every_option() -> None:
         "--eeprom",
         "--reset-on-open",
         "--with-parent",
+        "--server-lock",
+        "--linger",
     }
     assert options <= set(done.stdout.replace("[", " ").split())

@@ -28,8 +28,8 @@ def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
     return Block.of(BY_NAME["debug"], len(lines), first, documents(lines))
 
 
-def picture_block(number: int, size: int = 20) -> Block:
-    return Block.of(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
+def picture_block(number: int, size: int = 20, topic: str = "picture") -> Block:
+    return Block.of(BY_NAME[topic], 1, number, row(100.0, bytes([number % 256]) * size))
 
 
 def link_block(first: int, bytes_received: int) -> Block:
@@ -40,6 +40,7 @@ def link_block(first: int, bytes_received: int) -> Block:
 def state_block(first: int, **changes: Any) -> Block:
     document: dict[str, Any] = {
         "time": 100.0,
+        "run": "0123456789abcdef",
         "mode": "disarmed",
         "armed": False,
         "armed_since": None,

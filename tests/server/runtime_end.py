@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
+from robot_runtime.cache import Cache
+from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
@@ -29,6 +31,9 @@ class RuntimeEnd:
             self._answer(name, gate)
         self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
         self._messages.answer("query/frames", lambda _: self.frames)
+        self._cache = Cache(self._messages.run, SteadyClock())
+        for name in ("query/blocks", "simulator/blocks"):
+            self._messages.answer_bytes(name, self._cache.answer)
         # The last of all: who reaches this one reaches every other.
         self._messages.answer("command/there", lambda _: None)
 
@@ -42,6 +47,8 @@ class RuntimeEnd:
         """Send blocks, each as one publication."""
         for block in blocks:
             name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
+            if name == STREAM:
+                self._cache.keep(block.data, {block.topic.name: block.following})
             self._messages.publish(name, block.data)
 
     def publish_bytes(self, data: bytes) -> None:

@@ -14,7 +14,9 @@ import psutil
 import pytest
 
 from server import VERSION
+from server.pidfile import pid_file, running_parts
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
+from tests.server.waiting import alive
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -45,7 +47,9 @@ def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
             wait_for_answer(port, process)
             yield process
         finally:
-            process.kill()
+            # In order: a real robot's runtime outlives a server that is killed.
+            process.terminate()
+            process.wait(15)
 
 
 def wait_for_answer(port: int, process: subprocess.Popen[str]) -> None:
@@ -92,19 +96,19 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
         assert not any(child.is_running() for child in children)
 
 
-def test_a_killed_server_takes_its_processes_along(settings: Settings, port: int) -> None:
+def test_a_killed_server_leaves_the_runtime_to_the_next_one(settings: Settings, port: int) -> None:
     with running(settings, port) as process:
         end = time.monotonic() + 10
-        log = settings.data.logs / "runtime.log"
-        while not log.exists() or not log.read_text():
+        while "runtime" not in running_parts(settings.data.run):
             assert time.monotonic() < end
             time.sleep(0.02)
-        children = psutil.Process(process.pid).children(recursive=True)
+        runtime = running_parts(settings.data.run)["runtime"].pid
         process.kill()
         process.wait()
-        _, alive = psutil.wait_procs(children, timeout=10)
-        assert children
-        assert not alive
+    with running(settings, port):
+        assert running_parts(settings.data.run)["runtime"].pid == runtime
+        assert alive(runtime)
+    assert not alive(runtime)
 
 
 def test_one_server_to_a_folder_and_one_to_a_port(settings: Settings, port: int) -> None:
@@ -169,6 +173,18 @@ def test_run_is_emptied_and_the_rest_is_kept(settings: Settings) -> None:
     assert folder.run.stat().st_mode & 0o777 == 0o700
     with pytest.raises(SetupError, match="cannot be used"):
         make_folders(DataFolder(folder.path / "kept"))
+
+
+def test_run_is_left_alone_while_a_part_of_a_killed_server_lives(settings: Settings) -> None:
+    folder = settings.data
+    (folder.run / "board.sock").touch()
+    with subprocess.Popen(["sleep", "600"]) as part:
+        pid_file(folder.run, "board").write(part.pid, "")
+        make_folders(folder)
+        assert (folder.run / "board.sock").exists()
+        part.kill()
+    make_folders(folder)
+    assert not list(folder.run.iterdir())
 
 
 def test_no_heavy_library_is_in_the_server_s_process() -> None:

@@ -76,7 +76,7 @@ async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]
     async def disarm() -> None:
         await until(lambda: len(served.runtime.asked) > asked, "STOP")
         now = served.assembly.clock.now()
-        served.runtime.publish(state_block(1000 + asked, time=now, armed=False))
+        served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
 
     disarming = asyncio.create_task(disarm())
     async with served.assembly.handover.lend(name) as arguments:
@@ -179,7 +179,7 @@ def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_agai
         async with lent(served):
             pass
         assert robot.marker.exists()
-        served.runtime.publish(state_block(5000, connected=False, connection="no answer"))
+        served.runtime.publish(state_block(1500, connected=False, connection="no answer"))
         await until(lambda: (served.assembly.watch.state() or {}).get("connected") is False, "the state")
         state, words = (await health(served))["link"]
         assert state == "failed"

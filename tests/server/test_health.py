@@ -1,3 +1,4 @@
+import asyncio
 from dataclasses import replace
 from typing import Any
 
@@ -6,6 +7,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.topics import Block
 from server.health import GRACE_SECONDS, Watch
+from server.logs import PartLog
 from server.parts import Command, Part
 from server.settings import Settings
 from server.store import Store
@@ -18,7 +20,13 @@ class Bench:
     def __init__(self, settings: Settings, store: Store, *names: str) -> None:
         self.clock = SimulatedClock(1000.0)
         self.parts = {
-            name: Part(Command(name, name, ()), None, self.clock, lambda *_: None)  # type: ignore[arg-type]
+            name: Part(
+                Command(name, name, ()),
+                PartLog(settings.data.logs),
+                settings.data.run,
+                self.clock,
+                lambda *_: None,
+            )
             for name in names
         }
         self.watch = Watch(settings, self.clock, store, self.parts)  # type: ignore[arg-type]
@@ -116,7 +124,7 @@ def test_what_is_lent_is_absent_and_not_failed(bench: Bench) -> None:
     bench.run_all()
     bench.clock.forward(60)
     bench.watch.see(truth_block(0))
-    bench.parts["runtime"].pause("The board is lent.")
+    asyncio.run(bench.parts["runtime"].pause("The board is lent."))
     for name in ("runtime", "link", "board"):
         assert (bench.state(name), bench.text(name)) == ("absent", "The board is lent.")
     assert bench.status == "ok"

@@ -246,21 +246,47 @@ def test_news_of_one_kind_replace_each_other() -> None:
 
 def test_pictures_are_wanted_only_while_somebody_looks() -> None:
     async def scenario() -> None:
-        wanted: list[bool] = []
+        wanted: list[frozenset[str]] = []
         hub = Hub(SimulatedClock(), wanted.append)
         first, second = Page(hub), Page(hub)
         await until(lambda: hub.clients == 2, "both pages")
         hub.add([picture_block(0)])
-        assert wanted == [True]
+        assert wanted == [{"picture"}]
         await first.leave()
-        assert wanted == [True]
+        assert wanted == [{"picture"}]
         await second.leave()
-        assert wanted == [True, False]
+        assert wanted == [{"picture"}, set()]
         late = Page(hub)
         hub.add([debug_block(0, "x")])
         await until(lambda: late.numbers("debug") == [0], "the newcomer")
         assert late.numbers("picture") == []
         await late.leave()
+
+    asyncio.run(scenario())
+
+
+def test_a_page_has_the_pictures_that_it_watches() -> None:
+    async def scenario() -> None:
+        wanted: list[frozenset[str]] = []
+        hub = Hub(SimulatedClock(), wanted.append)
+        plain, curious = Page(hub), Page(hub)
+        await until(lambda: hub.clients == 2, "both pages")
+        await until(lambda: curious.client, "the curious one's socket")
+        assert curious.client is not None
+        hub.show(curious.client, frozenset({"picture", "observer"}))
+        assert wanted[-1] == {"picture", "observer"}
+        hub.add([picture_block(0), picture_block(0, topic="observer")])
+        await until(lambda: curious.numbers("picture") == [0], "the camera's picture")
+        await until(lambda: curious.numbers("observer") == [0], "the bystander's picture")
+        await until(lambda: plain.numbers("picture") == [0], "the camera's picture, too")
+        assert plain.numbers("observer") == []
+        hub.show(curious.client, frozenset({"picture"}))
+        assert wanted[-1] == {"picture"}
+        hub.add([picture_block(1, topic="observer"), picture_block(1)])
+        await until(lambda: curious.numbers("picture")[-1] == 1, "the next picture")
+        assert curious.numbers("observer") == [0]
+        await plain.leave()
+        await curious.leave()
 
     asyncio.run(scenario())
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 
+from tests.server.waiting import alive
 from tests.stack import Stack
 
 TEST: dict[str, Any] = {
@@ -76,12 +76,14 @@ def test_a_server_killed_in_the_middle_brings_the_firmware_back_at_its_next_star
         assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
         assert stack.api.post("/robot/arm").status_code == 409
         assert stack.api.post("/sessions", json={}).status_code == 409
-        children = stack.process.children(recursive=True)
-        stack.process.kill()
-        _, alive = psutil.wait_procs(children, timeout=30)
-        assert not alive
-    assert away.exists()
-    with Stack(data) as stack:
+        lab = stack.child("robot_runtime.comm_test")
+        board = stack.child("build/board")
+        stack.kill()
+        wait(lambda: not alive(lab.pid), "the test's process to end with its server")
+        assert away.exists()
+        stack.start()
+        stack.wait_ready()
+        assert alive(board.pid)
         wait(lambda: is_back(stack), "the robot")
         assert not away.exists()
         interrupted = get(stack, number)

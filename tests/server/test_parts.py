@@ -1,5 +1,7 @@
 import asyncio
+import json
 import os
+import subprocess
 import sys
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
@@ -12,9 +14,11 @@ import pytest
 import server.parts as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig
+from server.logs import PartLog
 from server.parts import Command, Part, Parts, plan
-from server.settings import Settings
-from tests.server.waiting import until
+from server.pidfile import end_parts, pid_file, running_parts
+from server.settings import DataFolder, Settings, make_folders
+from tests.server.waiting import alive, until
 
 
 class Crew:
@@ -22,8 +26,10 @@ class Crew:
 
     def __init__(self, folder: Path, *commands: Command) -> None:
         self.told: list[tuple[str, str]] = []
+        data = DataFolder(folder)
+        make_folders(data)
         self.parts = Parts(
-            commands, folder, SteadyClock(), lambda kind, _, text: self.told.append((kind, text))
+            commands, data, SteadyClock(), lambda kind, _, text: self.told.append((kind, text))
         )
 
     def part(self, name: str) -> Part:
@@ -77,7 +83,7 @@ def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path)
         assert "started again in 0.0 s" in crew.told[0][1]
 
     run(crew, scenario)
-    assert (tmp_path / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
+    assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
 
 
 def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(tmp_path: Path) -> None:
@@ -94,11 +100,13 @@ def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(
     run(crew, scenario)
 
 
-def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pauses: list[float] = []
     lives = iter([0, 1, 2, 3, 20, 0])
     clock = SimulatedClock()
-    part = Part(Command("engine", "engine", ()), None, clock, lambda *_: None)  # type: ignore[arg-type]
+    part = Part(Command("engine", "engine", ()), PartLog(tmp_path), tmp_path, clock, lambda *_: None)
 
     async def live() -> str:
         clock.forward(next(lives))
@@ -109,12 +117,7 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(monkeypatch: pyte
         if len(pauses) == 6:
             raise asyncio.CancelledError
 
-    class Log:
-        def close(self) -> None:
-            return None
-
     monkeypatch.setattr(part, "_run_once", live)
-    monkeypatch.setattr(part, "_log", Log())
     monkeypatch.setattr(asyncio, "sleep", pause)
     with suppress(asyncio.CancelledError):
         asyncio.run(part.run())
@@ -131,12 +134,12 @@ def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch:
 
     async def scenario() -> None:
         for name in ("polite", "deaf"):
-            log = tmp_path / f"{name}.log"
+            log = tmp_path / "logs" / f"{name}.log"
             await until(lambda log=log: log.exists() and log.read_text() == "up\n", f"{name} to be up")  # type: ignore[misc]
             processes.append(crew.process(name))
 
     run(crew, scenario)
-    assert (tmp_path / "polite.log").read_text() == "up\nbye\n"
+    assert (tmp_path / "logs" / "polite.log").read_text() == "up\nbye\n"
     assert not any(process.is_running() for process in processes)
     assert crew.told == []
 
@@ -144,7 +147,7 @@ def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch:
 def test_children_of_a_part_end_with_it(tmp_path: Path) -> None:
     code = "import subprocess, time; print(subprocess.Popen(['sleep', '600']).pid); time.sleep(600)"
     crew = Crew(tmp_path, program("parent", code))
-    log = tmp_path / "parent.log"
+    log = tmp_path / "logs" / "parent.log"
 
     async def scenario() -> None:
         await until(lambda: log.exists() and log.read_text().endswith("\n"), "the child")
@@ -205,6 +208,129 @@ def test_what_is_paused_does_not_run_until_it_is_resumed(tmp_path: Path) -> None
     run(crew, scenario)
 
 
+class Left:
+    """A part that a killed server has left: started, and no longer anybody's in particular."""
+
+    def __init__(self, folder: Path, command: Command) -> None:
+        self.command = command
+        data = DataFolder(folder)
+        make_folders(data)
+        # Somebody else's child, as a killed server's are.
+        code = (
+            "import subprocess, sys; "
+            "print(subprocess.Popen(sys.argv[1:], start_new_session=True, stdout=2).pid)"
+        )
+        arguments = [sys.executable, "-c", code, *command.arguments]
+        done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        self.process = psutil.Process(int(done.stdout))
+        pid_file(data.run, command.name).write(self.process.pid, command.fingerprint())
+
+
+def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "the adoption")
+        assert crew.part("engine").pid == left.process.pid
+        (tmp_path / "never").touch()
+        left.process.kill()
+        await until(lambda: crew.told, "the news")
+        assert "has ended; how is not known, for an earlier server had started it" in crew.told[0][1]
+        await until(lambda: crew.part("engine").pid not in (None, left.process.pid), "the next")
+
+    run(crew, scenario)
+    assert not alive(left.process.pid)
+    assert not list((tmp_path / "run").iterdir())
+
+
+def test_what_was_adopted_is_ended_in_order_and_then_forced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
+    up = tmp_path / "up"
+    code = "import pathlib, signal, time; signal.signal(15, signal.SIG_IGN)\n"
+    left = Left(tmp_path, program("deaf", code + f"pathlib.Path({str(up)!r}).touch(); time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("deaf").pid == left.process.pid, "the adoption")
+        await until(up.exists, "it to be deaf")
+
+    run(crew, scenario)
+    assert not alive(left.process.pid)
+    assert crew.told == []
+
+
+def test_another_command_or_other_files_are_started_anew(tmp_path: Path) -> None:
+    read = tmp_path / "read"
+    read.write_text("old")
+    commands = [
+        program("argument", "import time; time.sleep(600)"),
+        replace(program("file", "import time; time.sleep(600)"), made_of=(read,)),
+    ]
+    left = [Left(tmp_path, command) for command in commands]
+    read.write_text("new")
+    changed = program("argument", "import time; time.sleep(601)")
+    crew = Crew(tmp_path, changed, commands[1])
+
+    async def scenario() -> None:
+        for one in left:
+            await until(lambda one=one: not alive(one.process.pid), "the end of the old")  # type: ignore[misc]
+        await until(lambda: crew.part("argument").pid and crew.part("file").pid, "the new")
+        assert crew.told == []
+
+    run(crew, scenario)
+
+
+def test_a_number_that_was_given_again_is_not_taken_for_the_part(tmp_path: Path) -> None:
+    command = program("engine", "import time; time.sleep(600)")
+    left = Left(tmp_path, command)
+    file = tmp_path / "run" / "engine.pid"
+    found = json.loads(file.read_text())
+    file.write_text(json.dumps(found | {"started": found["started"] - 1}))
+    crew = Crew(tmp_path, command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        assert crew.part("engine").pid != left.process.pid
+
+    run(crew, scenario)
+    assert left.process.is_running()
+    left.process.kill()
+
+
+@pytest.mark.parametrize("text", ["", "nonsense", "[]", "{}", '{"pid": null}', '{"pid": 1, "started": 1}'])
+def test_a_damaged_note_of_a_part_is_passed_over(tmp_path: Path, text: str) -> None:
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "engine.pid").write_text(text)
+    assert running_parts(tmp_path / "run") == {}
+
+
+def test_a_part_that_is_paused_at_the_start_does_not_go_on_either(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await crew.parts.pause("engine", "It is lent.")
+        assert not alive(left.process.pid)
+
+    asyncio.run(scenario())
+
+
+def test_who_does_not_need_what_was_left_ends_it(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+    asyncio.run(crew.parts.end_others())
+    assert alive(left.process.pid)
+    asyncio.run(Crew(tmp_path, program("another", "")).parts.end_others())
+    assert not alive(left.process.pid)
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    end_parts(tmp_path / "run")
+    assert not alive(left.process.pid)
+    assert running_parts(tmp_path / "run") == {}
+
+
 def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
     crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
 
@@ -220,21 +346,18 @@ def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
 def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(settings: Settings) -> None:
     assert [command.name for command in plan(replace(settings, mode="robot"))] == ["runtime"]
     commands = {command.name: command for command in plan(settings)}
-    assert list(commands) == ["board", "runtime", "simulator"]
-    assert all(command.arguments[-1] == "--with-parent" for command in commands.values())
+    assert list(commands) == ["board", "runtime", "simulator", "scene"]
+    lock = ("--server-lock", str(settings.data.lock))
+    assert all(command.arguments[-2:] == lock for command in commands.values())
     assert str(settings.build / "firmware/optiboot.hex") in commands["board"].arguments
     assert commands["runtime"].needs == (settings.data.board_tty,)
     assert str(settings.data.board_tty) in commands["runtime"].arguments
-    assert "--port" not in plan(replace(settings, mode="robot"))[0].arguments
+    alone = plan(replace(settings, mode="robot"))[0].arguments
+    assert "--port" not in alone
+    assert "--server-lock" not in alone
+    assert "--heartbeat" in alone
 
 
 def test_the_board_runs_the_firmware_for_the_configured_speed(settings: Settings) -> None:
     elf = settings.build / "firmware/9600/robot.elf"
     assert str(elf) in plan(replace(settings, link=LinkConfig(baud=9600)))[0].arguments
-
-
-def alive(pid: int) -> bool:
-    try:
-        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return False

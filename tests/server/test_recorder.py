@@ -13,11 +13,11 @@ from sqlmodel import col, select
 
 import server.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.topics import BY_NAME, Block
+from robot_runtime.topics import BY_NAME, NUMBERS, Block
 from server.chunks import decode_rows
 from server.models import Chunk, Gap
 from server.notices import Notices
-from server.recorder import NUMBERS, Recorder, RecordingRefused
+from server.recorder import Recorder, RecordingRefused
 from server.sessions import find_row, list_sessions, new_row
 from server.settings import Settings
 from server.store import Store, StoreError
@@ -34,6 +34,7 @@ class Deck:
         self.clock = SimulatedClock(50.0)
         self.told: list[str] = []
         self.changes = 0
+        self._with_notices = False
         self.recorder = Recorder(store, self.clock, Notices(self.clock, self._hear), self._count)
 
     async def start(self, name: str = "dive") -> int:
@@ -66,8 +67,14 @@ class Deck:
 
         monkeypatch.setattr(recorder_module, "_insert", refuse)
 
+    def notices_too(self) -> None:
+        """Record what is told, as the server does."""
+        self._with_notices = True
+
     def _hear(self, arrival: Block) -> None:
         self.told.append(json.loads(arrival.payload)[0]["text"])
+        if self._with_notices:
+            self.recorder.add(arrival)
 
     def _count(self) -> None:
         self.changes += 1
@@ -371,7 +378,9 @@ def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) 
         deck.clock.forward(4)
         await deck.recorder.flush()
         after = Deck(deck.store, deck.settings)
-        await after.recorder.recover()
+        left = await after.recorder.recover()
+        assert left is not None
+        await after.recorder.resume(left, {})
         (session,) = list_sessions(deck.store)
         assert (session.state, session.samples, session.duration) == ("interrupted", 5, 4)
         assert session.ended is not None

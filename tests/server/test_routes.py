@@ -34,11 +34,12 @@ def test_health_names_every_part_and_its_words(settings: Settings) -> None:
             assert all(part["text"] for part in answer.json()["parts"])
             return {part["name"]: part["state"] for part in answer.json()["parts"]}
 
-        assert list(await states()) == ["server", "database", "runtime", "link", "board", "simulator"]
+        heard = ["server", "database", "runtime", "link", "board", "simulator"]
+        assert list(await states()) == [*heard, "scene"]
         assert (await served.api.get("/health")).json()["status"] == "starting"
         served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
         await until(lambda: served.assembly.watch.health().status == "ok", "all to be well")
-        assert set((await states()).values()) == {"ok"}
+        assert await states() == dict.fromkeys(heard, "ok") | {"scene": "absent"}
 
     play(settings, scenario)
 

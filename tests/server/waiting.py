@@ -4,6 +4,8 @@ import asyncio
 import time
 from collections.abc import Callable
 
+import psutil
+
 SECONDS = 10.0
 
 
@@ -13,3 +15,11 @@ async def until(condition: Callable[[], object], what: str, seconds: float = SEC
     while not condition():
         assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
         await asyncio.sleep(0.005)
+
+
+def alive(pid: int) -> bool:
+    """Whether a process runs; one that has ended and was not buried yet does not."""
+    try:
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False

@@ -452,6 +452,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/scene/view": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Choose the bystander's view
+         * @description Where the pictures of topic `observer` are taken from.
+         */
+        put: operations["putView"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions": {
         parameters: {
             query?: never;
@@ -793,7 +813,7 @@ export interface components {
         Health: {
             /**
              * Parts
-             * @description server, database, runtime, link, board, simulator
+             * @description server, database, runtime, link, board, simulator, scene
              */
             parts: components["schemas"]["PartHealth"][];
             /** Robot */
@@ -940,7 +960,7 @@ export interface components {
              * Name
              * @enum {string}
              */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene";
             /**
              * State
              * @enum {string}
@@ -1354,6 +1374,8 @@ export interface components {
             port: string;
             /** Refusals */
             refusals: string[];
+            /** Run */
+            run: string;
             /** Set Point */
             set_point: number;
             /** Set Point Default */
@@ -1425,6 +1447,33 @@ export interface components {
             msg: string;
             /** Error Type */
             type: string;
+        };
+        /**
+         * View
+         * @description The bystander's view; all pages share it.
+         */
+        View: {
+            /**
+             * Azimuth
+             * @description ° of the line of sight, from heading or north
+             */
+            azimuth: number;
+            /**
+             * Distance
+             * @description m
+             */
+            distance: number;
+            /**
+             * Elevation
+             * @description ° above the robot
+             */
+            elevation: number;
+            /**
+             * Name
+             * @description follow turns with the robot, the others do not
+             * @enum {string}
+             */
+            name: "follow" | "side" | "top";
         };
         /**
          * Vision
@@ -2310,6 +2359,64 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioState"];
+                };
+            };
+        };
+    };
+    putView: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["View"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The scene refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scene is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The scene did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

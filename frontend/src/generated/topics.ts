@@ -415,6 +415,7 @@ export interface Pace {
 /** The robot as a whole; sent once a second and at every change. */
 export interface State {
   time: number;
+  run: string;
   mode: 'disarmed' | 'automatic';
   armed: boolean;
   armed_since: number | null;

@@ -51,6 +51,8 @@ export class Live {
   /** Hz, as detections really come; null while there are fewer than two */
   detectionRate = $state<number | null>(null);
   picture = $state.raw<Picture | null>(null);
+  /** what a bystander in the simulated water sees; comes only while somebody asked for it with `observe` */
+  observer = $state.raw<Picture | null>(null);
   serverError = $state('');
   readonly rings = createRings();
   readonly debug = new Lines<DebugLine>(CONSOLE_LINES);
@@ -69,6 +71,7 @@ export class Live {
   #tick = $state(0);
   #drawn = 0;
   #awaited = false;
+  #observing = 0;
   readonly #progress = new Progress();
   readonly #steady = new SteadyClock(() => performance.now() / 1000);
   readonly #socket: LiveSocket;
@@ -95,6 +98,22 @@ export class Live {
       window.removeEventListener('online', wake);
       this.#socket.end();
     };
+  }
+
+  /** Have the bystander's pictures sent. Returns what ends that. */
+  observe(): () => void {
+    this.#observing += 1;
+    if (this.#observing === 1) this.#watch();
+    return () => {
+      this.#observing -= 1;
+      if (this.#observing > 0) return;
+      this.observer = null;
+      this.#watch();
+    };
+  }
+
+  #watch(): void {
+    this.#socket.send({ op: 'watch', pictures: this.#observing > 0 ? ['picture', 'observer'] : ['picture'] });
   }
 
   /** The robot's steady clock, s; NaN while unknown. Whoever reads it in an effect runs again with every tick. */
@@ -135,11 +154,13 @@ export class Live {
     if (topic === 'state') return this.state?.time ?? null;
     if (topic === 'detection') return this.detection?.time ?? null;
     if (topic === 'picture') return this.picture?.time ?? null;
+    if (topic === 'observer') return this.observer?.time ?? null;
     return this.rings[topic].newest;
   }
 
   #period(topic: Timed): number {
     if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
+    if (topic === 'observer') return PERIODS.truth;
     if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
   }
@@ -151,6 +172,7 @@ export class Live {
     this.#progress.reconnect();
     this.commTest.reconnect();
     this.gaps.restart();
+    if (this.#observing > 0) this.#watch();
   }
 
   #closed(reason: string): void {
@@ -191,6 +213,7 @@ export class Live {
     this.state = null;
     this.detection = null;
     this.picture = null;
+    this.observer = null;
   }
 
   #take(buffer: ArrayBuffer): void {
@@ -215,6 +238,10 @@ export class Live {
       const picture = readPicture(block);
       if (picture.time > after) this.picture = picture;
       this.#arrived(block.topic, picture.time);
+      return;
+    }
+    if (block.topic === OTHER_TOPICS.observer) {
+      this.observer = readPicture(block);
       return;
     }
     const documents = (readDocuments(block) as { time: number }[]).filter((document) => document.time > after);

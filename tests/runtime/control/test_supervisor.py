@@ -207,3 +207,31 @@ def test_a_board_that_restarts_or_disarms_itself_is_noticed(rig: Rig) -> None:
     rig.report()
     assert "disarmed itself" in rig.events[-1].text
     assert not rig.supervisor.armed
+
+
+def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
+    rig.board.obeys = False
+    arming = rig.supervisor.begin_arming()
+    rig.supervisor.go_on_arming()
+    assert not arming.over
+    assert rig.supervisor.begin_arming() is arming
+    assert rig.board.sent == [Start(epoch=7)] * 2
+    rig.board.obeys = True
+    rig.supervisor.go_on_arming()
+    rig.supervisor.go_on_arming()
+    assert (arming.over, arming.refusal) == (True, "")
+    assert rig.supervisor.armed
+    assert rig.supervisor.begin_arming().over
+    rig.supervisor.go_on_arming()
+    assert len(rig.board.sent) == 3
+
+
+def test_a_board_that_never_follows_ends_the_attempt(rig: Rig) -> None:
+    rig.board.obeys = False
+    arming = rig.supervisor.begin_arming()
+    while not arming.over:
+        rig.supervisor.go_on_arming()
+    assert "did not arm" in arming.refusal
+    assert isinstance(rig.board.sent[-1], Stop)
+    rig.supervisor.tick()
+    assert not rig.supervisor.armed

@@ -1,5 +1,6 @@
 """The process of the water: with a board that a test plays, and with Zenoh as it is."""
 
+import fcntl
 import logging
 import os
 import signal
@@ -318,6 +319,19 @@ def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> N
             wait_for(lambda: accepted(messages), "answer")
         program.send_signal(signal.SIGTERM)
         assert program.wait(DEADLINE) == 0
+
+
+def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> None:
+    lock = folder / "server.lock"
+    with lock.open("w") as server:
+        fcntl.flock(server, fcntl.LOCK_EX)
+        with subprocess.Popen(command(folder, "--server-lock", str(lock), "--linger", "0")) as program:
+            board.accept()
+            board.exchange()
+            assert program.poll() is None
+            server.close()
+            assert board.hear() == ""
+            assert program.wait(DEADLINE) == 0
 
 
 def test_program_ends_with_its_parent(folder: Path, board: Board) -> None:

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is on the board beside the chip, whatever it is that drives it: H-bridges, motors, encoders, IMU and
+// pressure sensor.
+#ifndef DEVICES_H
+#define DEVICES_H
+
+#include "as5040.h"
+#include "device_clock.h"
+#include "drv8830.h"
+#include "motors.h"
+#include "mpu6050.h"
+#include "ms5837.h"
+#include "surroundings.h"
+
+#define I2C_DEVICES (FIN_COUNT + 2)
+
+struct i2c_device {
+  uint8_t address;  // 7 bits
+  void *device;
+  bool (*start)(void *device);                                // false: there is no acknowledgement
+  void (*write)(void *device, unsigned index, uint8_t byte);  // index: bytes since the start condition
+  uint8_t (*read)(void *device);
+};
+
+struct devices {
+  struct surroundings surroundings;
+  bool motor_power;
+  struct drv8830 bridges[FIN_COUNT];
+  struct as5040 encoders[FIN_COUNT];
+  struct motors motors;
+  struct mpu6050 imu;
+  struct ms5837 pressure;
+  struct i2c_device i2c[I2C_DEVICES];
+};
+
+// In still water, as after power-on.
+void devices_create(struct devices *devices, struct device_clock clock);
+
+void devices_set_motor_power(struct devices *devices, bool on);
+
+// What the line from the encoders held during a byte; it is pulled up where none of them is selected.
+uint8_t devices_exchange_spi(struct devices *devices);
+
+// The device of this name, or NULL: imu, pressure, encoder0 to 3, bridge0 to 3.
+enum fault *devices_fault(struct devices *devices, const char *name);
+
+// What is meant by none, absent and stuck; false where it is none of them.
+bool devices_set_fault(enum fault *fault, const char *kind);
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A board that is this computer: the firmware itself, compiled for it, with the emulated board's own devices
+// on its buses. Time passes when told to, and what the firmware computes takes none of it.
+#ifndef HOST_BOARD_H
+#define HOST_BOARD_H
+
+#include <memory>
+#include <vector>
+
+#include "robot.h"
+#include "wire.h"
+
+extern "C" {
+#include "devices.h"
+}
+
+namespace mucat {
+namespace host {
+
+struct Board {
+  Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  // As the reset pin does it: devices, EEPROM and what memory keeps stay.
+  void reset(ResetCause cause);
+  // A millisecond passes.
+  void pass();
+
+  uint64_t now_us = 0;
+  uint64_t ticks_taken = 0;
+  ResetCause cause = ResetCause::kPowerOn;
+  uint16_t epoch = 0;
+  board::KeptMemory kept = {};
+  devices parts;
+  Wire to_board, from_board;
+  std::deque<uint8_t> received;  // by the board, not read yet
+  uint16_t bytes_lost = 0;
+  std::vector<uint8_t> for_host;
+  uint16_t battery_counts = 0;
+  bool led = false;
+  bool resting = false;
+  std::unique_ptr<Robot> robot;
+};
+
+// The board whose firmware runs now: what it calls has no argument that would say so.
+extern Board* current;
+
+}  // namespace host
+}  // namespace mucat
+
+#endif

@@ -1,0 +1,233 @@
+"""What the robot does, step by step: link, control, vision and the way to the others, put together.
+
+It has no thread and waits for nothing. `robot.Robot` gives it threads and the computer's time; in simulated
+time `scenario.run` calls the same steps one after the other.
+"""
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.bus import Bus
+from robot_runtime.clock import Clock
+from robot_runtime.config import Config
+from robot_runtime.control.controllers import Controller
+from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.control.node import ControlNode
+from robot_runtime.control.supervisor import Supervisor
+from robot_runtime.link.conversation import Conversation
+from robot_runtime.link.dissection import dissect
+from robot_runtime.link.pace import periods
+from robot_runtime.link.session import Message
+from robot_runtime.messages import Messages
+from robot_runtime.outbox import Outbox
+from robot_runtime.packets import Beacon, Debug, Depth, Imu, Motor, Navigation, Status
+from robot_runtime.samples import ControllerChoice, DebugLine, Detection, Event, Gain, Pace, Severity, State
+from robot_runtime.topics import TOPICS, Kind
+from robot_runtime.vision.camera import Camera
+from robot_runtime.vision.node import Vision
+
+log = logging.getLogger(__name__)
+
+_ROW_OF = {
+    Imu.type: "imu",
+    Depth.type: "depth",
+    Beacon.type: "beacon",
+    Motor.type: "motor",
+    Status.type: "status",
+}
+PUBLISH_EVERY = 0.1
+"""s between two looks for what the board's own messages have not already taken along."""
+_STATE_EVERY = 1.0
+_STATISTICS_EVERY = 1.0
+
+
+class Core:
+    """The robot without its threads. `run` is this run's name, 16 hexadecimal digits.
+
+    Pictures come from `open_camera`, without it from the configured camera, which may ask by `messages`.
+
+    `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
+    That, `control_tick`, `publish_tick` and `vision.tick` may each have a thread of their own.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        clock: Clock,
+        run: str,
+        line: Conversation,
+        outbox: Outbox,
+        *,
+        loop: InTheLoop | None = None,
+        picture_wanted: Callable[[], bool],
+        open_camera: Callable[[], Camera] | None = None,
+        messages: Messages | None = None,
+    ) -> None:
+        self.config = config
+        self.clock = clock
+        self.bus = Bus()
+        self.outbox = outbox
+        self._run = run
+        self._state_wanted = threading.Event()
+        self.line = line
+        self._paces = [
+            Pace(topic=_ROW_OF[packet.type], period=period)
+            for packet, period in periods(config.link.baud).items()
+        ]
+        self.supervisor = Supervisor(clock, self.line, self.tell, loop)
+        self.control = ControlNode(self.bus, clock, self._navigate)
+        self.vision = Vision(
+            config.vision,
+            clock,
+            self._take_detection,
+            outbox.send_picture,
+            picture_wanted,
+            self.tell,
+            open_camera,
+            messages,
+        )
+        self._every: list[tuple[float, Callable[[], None]]] = [
+            (_STATE_EVERY, self.announce),
+            (_STATISTICS_EVERY, self._publish_statistics),
+        ]
+        self._due = [clock.now()] * len(self._every)
+        self._configure()
+        self._join()
+
+    def tell(self, event: Event) -> None:
+        """Publish an event, and the state that it changed."""
+        self.bus.publish_document("event", event)
+        self._state_wanted.set()
+
+    def announce(self) -> None:
+        """Publish the state soon, since something of it changed."""
+        self._state_wanted.set()
+
+    def control_tick(self) -> None:
+        """Decide and command once; to be called at the control rate."""
+        try:
+            self.supervisor.tick()
+            self.control.tick(self.supervisor.armed)
+        except Exception:
+            log.exception("a control tick failed")
+            self.supervisor.stop("The control loop failed; the log says why.", "alarm")
+
+    def publish_tick(self) -> None:
+        """Send what waits; to be called every `PUBLISH_EVERY`."""
+        now = self.clock.now()
+        for index, (seconds, action) in enumerate(self._every):
+            if now >= self._due[index]:
+                self._due[index] = now + seconds
+                action()
+        if self._state_wanted.is_set():
+            self._state_wanted.clear()
+            self.bus.publish_document("state", self.state())
+        self.outbox.flush()
+
+    def state(self) -> State:
+        """The robot as a whole, now."""
+        board = self.line.board
+        return State(
+            time=self.clock.now(),
+            run=self._run,
+            mode=self.supervisor.mode,
+            armed=self.supervisor.armed,
+            armed_since=self.supervisor.armed_since,
+            refusals=self.supervisor.refusals(),
+            connected=self.line.connected,
+            connection=self.line.text,
+            port=Path(self.line.path).name,
+            baud=self.line.baud,
+            paces=self._paces,
+            epoch=board.epoch if board and self.line.connected else None,
+            controller=self.control.controller.name,
+            controllers=[_choice(one) for one in self.control.controllers.values()],
+            set_point=self.control.set_point,
+            set_point_default=self.control.set_point_default,
+            set_point_detected=self.control.set_point_detected,
+            control_rate=self.config.control.rate,
+            vision_rate=self.vision.rate,
+            vision_colour=self.control.colour,
+            colours=list(self.vision.colours),
+            card=self.vision.card,
+            camera=self.vision.text,
+        )
+
+    def frames(self) -> dict[str, Any]:
+        """The last frames on the serial line, now and at the last fault, in words; for a JSON object."""
+        fault = self.line.fault
+        return {
+            "time": self.clock.now(),
+            "frames": [asdict(dissect(frame)) for frame in self.line.frames()],
+            "fault": fault
+            and {
+                "time": fault.time,
+                "text": fault.text,
+                "frames": [asdict(dissect(frame)) for frame in fault.frames],
+            },
+        }
+
+    def _configure(self) -> None:
+        settings = self.config.control
+        for name, gains in settings.gains.items():
+            self.control.choose(name, gains)
+        self.control.choose(settings.controller)
+        self.control.set_points(settings.set_point, settings.set_point_detected)
+        self.control.colour = self.config.vision.colour
+
+    def _join(self) -> None:
+        for topic in TOPICS:
+            if topic.kind is Kind.ROWS:
+                self.bus.on_row(topic.name, self.outbox.add_row)
+            elif topic.kind is Kind.DOCUMENTS:
+                self.bus.on_document(topic.name, self.outbox.add_document)
+
+    def _publish_statistics(self) -> None:
+        self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
+
+    def _navigate(self, command: Navigation) -> None:
+        self.line.send(command)
+
+    def take_messages(self, messages: list[Message]) -> None:
+        """Publish what the board said, and send it on."""
+        for message in messages:
+            topic = _ROW_OF.get(message.type)
+            if topic is not None:
+                self.bus.publish_row(topic, message.time, message.payload)
+            if message.type == Depth.type:
+                self.supervisor.see_depth()
+            elif message.type == Status.type:
+                self.supervisor.see_status(Status.from_bytes(message.payload))
+            elif message.type == Debug.type:
+                debug = Debug.from_bytes(message.payload)
+                line = DebugLine(time=message.time, level=debug.level, text=debug.text)
+                self.bus.publish_document("debug", line)
+        self.outbox.flush()
+
+    def link_changed(self) -> None:
+        """Tell that the connection was established or lost."""
+        text = self.line.text
+        severity: Severity = "info" if self.line.connected else "caution"
+        self.tell(Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}."))
+
+    def _take_detection(self, detection: Detection) -> None:
+        self.bus.publish_document("detection", detection)
+
+
+def _choice(controller: Controller) -> ControllerChoice:
+    gains = [
+        Gain(
+            name=name,
+            value=controller.gains[name],
+            minimum=limits.minimum,
+            maximum=limits.maximum,
+            unit=limits.unit,
+            meaning=limits.meaning,
+        )
+        for name, limits in controller.limits.items()
+    ]
+    return ControllerChoice(name=controller.name, title=controller.title, gains=gains)

@@ -1,0 +1,194 @@
+"""What the runtime says to the board and makes of its answers, whoever carries bytes and keeps time."""
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robot_runtime.clock import Clock
+from robot_runtime.link.frame_ring import KeptFrame
+from robot_runtime.link.session import Message, Session, Stage
+from robot_runtime.link.statistics import LinkStatistics
+from robot_runtime.packets import Hello, Packet, Status, Stop
+from robot_runtime.packets.layout import LayoutError
+
+log = logging.getLogger(__name__)
+
+PERIOD = 0.03
+"""s to let bytes gather where nothing is urgent: frames come in pieces, a hundred a second, and on a Pi it is
+the waking that costs."""
+_POLL = 0.05
+
+Write = Callable[[bytes], None]
+
+
+class LineError(Exception):
+    """The line takes no bytes, or has gone away; the text says which and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What went wrong at `time` (s), in words, and the last frames each way until then."""
+
+    time: float
+    text: str
+    frames: list[KeptFrame]
+
+
+class Conversation:
+    """Keeps a session with the board from one opening of the line to the next.
+
+    `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
+    lost, both by whoever calls `poll` and `receive`. `send`, `statistics` and `frames` may be called from any
+    thread. `text` says how things stand, in words; `fault` is the last one.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        baud: int,
+        clock: Clock,
+        epoch: int,
+        on_messages: Callable[[list[Message]], None],
+        on_change: Callable[[], None],
+    ) -> None:
+        self.path = path
+        self.baud = baud
+        self.text = "not opened yet"
+        self.fault: Fault | None = None
+        self._clock = clock
+        self._epoch = epoch
+        self._on_messages = on_messages
+        self._on_change = on_change
+        self._write: Write | None = None
+        self._session = Session(epoch, baud)
+        self._stage: Stage | None = None
+        self._faults = 0
+        self._writing = threading.Lock()
+
+    @property
+    def connected(self) -> bool:
+        """Whether the board answers and speaks the same definitions."""
+        return self._write is not None and self._session.stage is Stage.ESTABLISHED
+
+    @property
+    def board(self) -> Hello | None:
+        """The greeting of the board that is connected now, or was last."""
+        return self._session.board
+
+    @property
+    def gathering(self) -> bool:
+        """Whether bytes may gather for `PERIOD`, as nothing is urgent."""
+        return self.connected and not self._session.urgent
+
+    def send(self, *packets: Packet) -> bool:
+        """Hand these packets to the line; False where nobody is there to take them.
+
+        Reliable ones arrive, once and in order, for as long as the connection lives. Of unreliable ones the
+        newest of each type goes out once. STOP goes out at once, and also where no board has answered yet.
+        """
+        with self._writing:
+            write = self._write
+            stops = any(isinstance(packet, Stop) for packet in packets)
+            if write is None or not (self.connected or stops):
+                return False
+            try:
+                write(self._session.send(packets, self._clock.now()))
+            except LineError as problem:
+                log.warning("%s", problem)
+                return False
+        return True
+
+    def statistics(self) -> LinkStatistics:
+        """What the line carried since it was opened."""
+        return self._session.statistics()
+
+    def frames(self) -> list[KeptFrame]:
+        """The last frames each way since the line was opened, in the order of time."""
+        with self._writing:
+            return self._session.ring.frames()
+
+    def open(self, write: Write) -> None:
+        """Begin anew on a line that `write` hands bytes to; it may raise LineError."""
+        with self._writing:
+            # Another epoch each time: the board must not take this for the conversation before.
+            self._epoch = (self._epoch + 1) & 0xFFFF
+            self._session = Session(self._epoch, self.baud)
+            self._write = write
+        self._stage = None
+
+    def shut(self) -> None:
+        """The line is gone."""
+        with self._writing:
+            self._write = None
+
+    def lose(self) -> None:
+        """Keep what was on the line when it went away, where a board was there."""
+        if self._stage is Stage.ESTABLISHED:
+            self._dump("the port went away")
+
+    def poll(self) -> None:
+        """Say how things stand, and what is due. Raises LineError."""
+        if self._session.stage is not self._stage:
+            if self._stage is Stage.ESTABLISHED:
+                self._dump("the connection was lost")
+            self._stage = self._session.stage
+        self.tell(_words(self._stage, self._session))
+        with self._writing:
+            data = self._session.poll(self._clock.now())
+            if data and self._write is not None:
+                self._write(data)
+
+    def wait(self) -> float:
+        """s for which `poll` need not be called unless bytes come."""
+        return max(min(self._session.due() - self._clock.now(), _POLL), 0.0)
+
+    def receive(self, data: bytes) -> None:
+        """Take what came."""
+        with self._writing:
+            discarded = self._session.counters.messages_discarded
+            messages = self._session.receive(data, self._clock.now())
+            discarded = self._session.counters.messages_discarded - discarded
+        if discarded:
+            log.warning("link: the board restarted; %d messages to it were not acknowledged", discarded)
+        for message in messages:
+            if message.type == Status.type:
+                self._see_faults(Status.from_bytes(message.payload).faults)
+        if messages:
+            try:
+                self._on_messages(messages)
+            except LayoutError:
+                log.exception("a packet could not be understood")
+
+    def tell(self, text: str) -> None:
+        """Say how things stand, where that has changed."""
+        if text != self.text:
+            self.text = text
+            log.info("link: %s", text)
+            self._on_change()
+
+    def _see_faults(self, faults: int) -> None:
+        if faults & ~self._faults:
+            self._dump("the board reports a fault")
+        self._faults = faults
+
+    def _dump(self, why: str) -> None:
+        with self._writing:
+            ring = self._session.ring
+            self.fault = Fault(self._clock.now(), why, ring.frames())
+            dump = ring.dump()
+        log.info("link: %s; the last frames, bytes as on the line:\n%s", why, dump)
+
+
+def _words(stage: Stage, session: Session) -> str:
+    if stage is Stage.GREETING and session.garbled:
+        return (
+            "bytes come from the board, but no valid frame: does its firmware run at another speed than"
+            f" link.baud, {session.baud} baud? `make firmware` builds it for that; then upload it"
+        )
+    if stage is not Stage.REFUSED or session.board is None:
+        return stage.value
+    return (
+        f"{stage.value} (board {session.board.definitions:08x}): build and upload the firmware that"
+        " belongs to this software with `make firmware`"
+    )

@@ -1,0 +1,14 @@
+"""The colours in which cards and targets are painted, as daylight shows them."""
+
+from collections.abc import Mapping
+
+Paint = tuple[int, int, int]
+"""Blue, green and red, 0 to 255."""
+
+PAINTS: Mapping[str, Paint] = {
+    "red": (35, 30, 215),
+    "yellow": (20, 190, 245),
+    "green": (70, 170, 50),
+    "blue": (200, 75, 20),
+}
+"""Of printed cards."""

@@ -1,0 +1,5 @@
+"""What there is to see under water, rendered by MuJoCo: for the robot's camera and for a bystander.
+
+MuJoCo moves nothing here; the simulator's `truth` says where the robot is. This package alone needs MuJoCo,
+and no other process of the robot does.
+"""

@@ -1,0 +1,51 @@
+"""`python -m robot_runtime.simulation.scene`: what there is to see in the simulated water."""
+
+import argparse
+import logging
+import signal
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.messages import Messages
+from robot_runtime.simulation.scene.process import Process
+
+
+def main() -> None:
+    """Render until SIGTERM or SIGINT."""
+    arguments = _parser().parse_args()
+    logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
+    if arguments.with_parent:
+        end_with_parent()
+    with Messages(arguments.robot, arguments.listen, arguments.connect) as messages:
+        process = Process(messages, SteadyClock())
+        if arguments.server_lock is not None:
+            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: process.end())
+        process.run()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m robot_runtime.simulation.scene", description=__doc__)
+    parser.add_argument(
+        "--connect",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="Zenoh endpoint of who looks; may repeat",
+    )
+    parser.add_argument(
+        "--listen",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="Zenoh endpoint where the simulator finds the scene; may repeat",
+    )
+    parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
+    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
+    add_server_options(parser)
+    return parser
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,16 @@
+"""Whether this computer can render the scene, found out without loading MuJoCo."""
+
+from ctypes.util import find_library
+from importlib.util import find_spec
+
+
+def missing() -> str | None:
+    """What is not installed, and how to install it; None where everything is there."""
+    if find_spec("mujoco") is None:
+        return (
+            "MuJoCo is not installed; where there is a wheel for this computer, "
+            "“.venv/bin/python -m pip install mujoco” adds it"
+        )
+    if find_library("EGL") is None:
+        return "there is no EGL library; “sudo apt install libegl1 libegl-mesa0 libgl1-mesa-dri” adds it"
+    return None

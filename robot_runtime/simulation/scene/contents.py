@@ -1,0 +1,98 @@
+"""What is in the scene, checked where it is made; nothing here knows how it is drawn."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from robot_runtime.config import Range
+from robot_runtime.paints import PAINTS, Paint
+from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.simulation.scene.water import TURBIDITY, Kind
+from robot_runtime.simulation.surroundings import FAR, Basin, check_beacons
+
+TARGETS_MAX = 16
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """Something of one colour that can be looked for. Raises ValueError on what cannot be."""
+
+    colour: str
+    """One of `PAINTS`."""
+    position: Vector
+    """m north, east, down."""
+    size: Annotated[float, Range(0.02, 2)] = 0.2
+    """m across."""
+    shape: Literal["ball", "box"] = "ball"
+
+    def __post_init__(self) -> None:
+        if self.colour not in PAINTS:
+            raise ValueError(f"a target's colour is {self.colour!r}; it must be one of {', '.join(PAINTS)}")
+        if not all(abs(value) <= FAR for value in self.position):
+            raise ValueError(f"a target's position must be within {FAR:g} m of the start")
+
+    @property
+    def paint(self) -> Paint:
+        """Its blue, green and red."""
+        return PAINTS[self.colour]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """What sort of water it is."""
+
+    kind: Kind | None = None
+    """None: a pool where there are walls, else natural."""
+    turbidity: Annotated[float, TURBIDITY] = 0.1
+    """0: clear, 1: nothing is seen beyond a hand's breadth."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Targets:
+    """All of them. Raises ValueError on too many."""
+
+    targets: tuple[Target, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.targets) > TARGETS_MAX:
+            raise ValueError(f"{len(self.targets)} targets; there can be at most {TARGETS_MAX}")
+
+
+START_BEACONS = Parameters().beacons
+START_BEACONS = Parameters().beacons
+START_BASIN = Basin(Parameters().floor)
+START_TARGETS = (
+    Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
+    Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
+    Target(colour="green", position=(4.2, 0.4, 1.6), size=0.3, shape="box"),
+    Target(colour="blue", position=(3.4, 1.4, 0.7), size=0.28),
+)
+"""Chosen: one of each colour, ahead."""
+
+
+START_BEACONS = Parameters().beacons
+START_BASIN = Basin(Parameters().floor)
+START_TARGETS = (
+    Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
+    Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
+    Target(colour="green", position=(4.2, 0.4, 1.6), size=0.3, shape="box"),
+    Target(colour="blue", position=(3.4, 1.4, 0.7), size=0.28),
+)
+"""Chosen: one of each colour, ahead."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contents:
+    """Everything in the scene but the robot. Raises ValueError on what cannot be."""
+
+    place: Place = Place()
+    basin: Basin = START_BASIN
+    beacons: tuple[Vector, ...] = START_BEACONS
+    targets: tuple[Target, ...] = START_TARGETS
+
+    def __post_init__(self) -> None:
+        check_beacons(self.beacons)
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of scene that is drawn."""
+        return self.place.kind or ("natural" if self.basin.length is None else "pool")

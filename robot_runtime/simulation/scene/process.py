@@ -1,0 +1,219 @@
+"""The scene as a process: it hears where the robot is, and renders when somebody asks or watches.
+
+One thread renders, as OpenGL wants it. MuJoCo is loaded with the first picture: who never asks for one pays
+for nothing.
+"""
+
+import logging
+import queue
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import cv2
+
+from robot_runtime.clock import Clock
+from robot_runtime.config import ConfigError, parse
+from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.messages import Messages
+from robot_runtime.packets.layout import LayoutError
+from robot_runtime.paints import Paint
+from robot_runtime.samples import Truth
+from robot_runtime.scene_picture import Picture, Request, read_request, write_picture
+from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.scene.contents import Contents, Place, Targets
+from robot_runtime.simulation.scene.view import View
+from robot_runtime.simulation.surroundings import Basin, check_beacons
+from robot_runtime.topics import BY_NAME, Block, read_blocks, read_rows, row
+
+if TYPE_CHECKING:
+    from robot_runtime.simulation.scene.scene import Scene
+
+log = logging.getLogger(__name__)
+
+ASK_PERIOD = 1.0
+"""s after which the simulator is asked again what surrounds the robot."""
+ASK_TIMEOUT = 0.3
+ANSWER_TIMEOUT = 15.0
+"""s; the first picture waits for MuJoCo and all textures."""
+OBSERVER_PERIOD = 1 / 12
+"""s between two pictures of the bystander's."""
+OBSERVER_SIZE = (640, 360)
+LOOK_PERIOD = 0.25
+"""s between two looks whether there is a bystander."""
+JPEG_QUALITY = 80
+
+Question = dict[str, Any]
+
+
+class Process:
+    """Answers and publishes until `end`; `run` must be called in the thread that is to render."""
+
+    def __init__(self, messages: Messages, clock: Clock) -> None:
+        self._messages = messages
+        self._clock = clock
+        self._contents = Contents()
+        self._view = View()
+        self._card: Paint | None = None
+        self._lock = threading.Lock()
+        self._truth: tuple[float, Truth] | None = None
+        self._scene: Scene | None = None
+        self._problem = missing()
+        self._jobs: queue.Queue[tuple[Request, Future[Picture]]] = queue.Queue()
+        self._asked = float("-inf")
+        self._observe_due = clock.now()
+        self._observed: tuple[float, View] | None = None
+        self._observer_number = 0
+        self._ending = False
+        if self._problem:
+            log.warning("nothing can be rendered: %s", self._problem)
+        messages.subscribe("truth", self._see_truth)
+        handlers: dict[str, Callable[[Question], Mapping[str, Any] | None]] = {
+            "ready": lambda _: {"missing": self._problem},
+            "world": self._set_place,
+            "targets": self._set_targets,
+            "view": self._set_view,
+        }
+        for name, handler in handlers.items():
+            messages.answer(f"scene/{name}", handler)
+        messages.answer_bytes("scene/picture", self._answer_picture)
+
+    def run(self) -> None:
+        """Render until `end` is called."""
+        try:
+            while not self._ending:
+                try:
+                    request, future = self._jobs.get(timeout=self._observe())
+                except queue.Empty:
+                    continue
+                try:
+                    future.set_result(self._render(request))
+                except Exception as problem:
+                    future.set_exception(problem)
+        finally:
+            if self._scene is not None:
+                self._scene.close()
+
+    def end(self) -> None:
+        """Let `run` return soon; may be called from a signal handler or any thread."""
+        self._ending = True
+
+    def _see_truth(self, _: str, data: bytes) -> None:
+        try:
+            time, truth = read_rows(read_blocks(data)[-1])[-1]
+        except (LayoutError, TypeError, IndexError) as problem:
+            log.warning("a truth was thrown away: %s", problem)
+            return
+        if isinstance(truth, Truth):
+            self._truth = (time, truth)
+
+    def _set_place(self, question: Question) -> None:
+        place = parse(Place, question)
+        with self._lock:
+            self._contents = replace(self._contents, place=place)
+
+    def _set_targets(self, question: Question) -> None:
+        targets = parse(Targets, question).targets
+        with self._lock:
+            self._contents = replace(self._contents, targets=targets)
+
+    def _set_view(self, question: Question) -> None:
+        self._view = parse(View, question)
+
+    def _answer_picture(self, data: bytes) -> bytes:
+        request = read_request(data)
+        future: Future[Picture] = Future()
+        self._jobs.put((request, future))
+        try:
+            return write_picture(future.result(ANSWER_TIMEOUT))
+        except TimeoutError:
+            raise Refused(f"the scene takes longer than {ANSWER_TIMEOUT:g} s for a picture") from None
+
+    def _render(self, request: Request) -> Picture:
+        """The picture of the newest truth. Raises Refused where there is none, or nothing to render with."""
+        if self._truth is None:
+            raise Refused("the simulator has not told yet where the robot is")
+        time, truth = self._truth
+        self._card = request.card
+        pixels = self._ready_scene().render_camera(time, truth, request.width, request.height, request.card)
+        return Picture(time, pixels)
+
+    def _observe(self) -> float:
+        """Publish what a bystander sees, where there is one and it is time. Returns s until it is again."""
+        now = self._clock.now()
+        if now < self._observe_due:
+            return self._observe_due - now
+        period = LOOK_PERIOD
+        if not self._messages.watched("observer"):
+            self._observed = None
+        elif self._truth is not None and self._problem is None:
+            period = OBSERVER_PERIOD
+            try:
+                self._publish_observer(*self._truth)
+            except Refused as problem:
+                log.warning("a bystander sees nothing: %s", problem)
+        done = self._clock.now()
+        # Where a picture takes long, no more than half of the time goes into those of the bystander's.
+        self._observe_due = max(self._observe_due + period, done + (done - now))
+        return self._observe_due - done
+
+    def _publish_observer(self, time: float, truth: Truth) -> None:
+        if self._observed == (time, self._view):
+            return
+        self._observed = (time, self._view)
+        pixels = self._ready_scene().render_observer(time, truth, self._view, *OBSERVER_SIZE, self._card)
+        _, jpeg = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        payload = row(time, jpeg.tobytes())
+        block = Block.of(BY_NAME["observer"], 1, self._observer_number, payload)
+        self._observer_number += 1
+        self._messages.publish("observer", block.data)
+
+    def _ready_scene(self) -> "Scene":
+        """The scene with everything in it. Raises Refused where nothing can be rendered."""
+        self._ask_surroundings()
+        if self._problem is not None:
+            raise Refused(self._problem)
+        with self._lock:
+            contents = self._contents
+        if self._scene is None:
+            self._scene = self._make(contents)
+        elif self._scene.contents != contents:
+            self._scene.fill(contents)
+        return self._scene
+
+    def _make(self, contents: Contents) -> "Scene":
+        try:
+            # Here and not above: this loads MuJoCo and OpenGL.
+            from robot_runtime.simulation.scene.scene import Scene
+
+            return Scene(contents, Parameters())
+        except Exception as problem:
+            # PyOpenGL and MuJoCo raise ImportError, AttributeError, RuntimeError and others of their own.
+            log.exception("the scene cannot be rendered")
+            self._problem = (
+                f"OpenGL does not start ({problem}); "
+                "“sudo apt install libegl1 libegl-mesa0 libgl1-mesa-dri” adds what renders on a CPU"
+            )
+            raise Refused(self._problem) from problem
+
+    def _ask_surroundings(self) -> None:
+        """Floor, walls and beacons are the simulator's; without an answer they stay as they are."""
+        now = self._clock.now()
+        if now - self._asked < ASK_PERIOD:
+            return
+        self._asked = now
+        try:
+            answer = self._messages.ask("simulator/surroundings", {}, ASK_TIMEOUT)
+            basin = parse(Basin, answer["world"])
+            beacons = tuple((north, east, down) for north, east, down in answer["beacons"]["positions"])
+            check_beacons(beacons)
+        except (NoAnswer, Refused):
+            return
+        except (ConfigError, KeyError, TypeError, ValueError) as problem:
+            log.warning("the simulator's surroundings are not understood: %s", problem)
+            return
+        with self._lock:
+            self._contents = replace(self._contents, basin=basin, beacons=beacons)

@@ -1,0 +1,213 @@
+"""The scene: told where the robot is, it gives the pictures that its camera and a bystander take."""
+
+from dataclasses import dataclass
+from math import degrees, floor
+from types import TracebackType
+from typing import Any, Self
+
+import cv2
+import mujoco
+import numpy as np
+from mujoco.egl import GLContext
+from numpy.typing import NDArray
+
+from robot_runtime.paints import Paint
+from robot_runtime.samples import Truth
+from robot_runtime.simulation.geometry import Matrix, normalize, rotation, to_world
+from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.simulation.scene import model as modelling
+from robot_runtime.simulation.scene.contents import Contents
+from robot_runtime.simulation.scene.look import Look, Picture
+from robot_runtime.simulation.scene.view import FIELD_OF_VIEW as OBSERVER_VIEW
+from robot_runtime.simulation.scene.view import View
+from robot_runtime.simulation.scene.water import NOISE, Water, water
+
+Floats = NDArray[np.float32]
+
+DRIFT = 0.12
+"""m/s at which the surface's ripples pass."""
+OBSERVER_CLEARER = 2.5
+"""Times that a bystander sees farther than the camera: the picture is for a person."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Eye:
+    """Who looks: where from, along which axes (forward, right, down), and at what."""
+
+    position: Vector
+    axes: Matrix
+    camera: Any
+    groups: tuple[int, ...]
+
+
+class Scene:
+    """Renders by MuJoCo, in the thread that makes it, and in no other. Close it.
+
+    The same contents, truth and time give the same pictures. Raises RuntimeError or ImportError where there
+    is no OpenGL to render with.
+    """
+
+    def __init__(self, contents: Contents, parameters: Parameters) -> None:
+        self._parameters = parameters
+        self._looks: dict[tuple[int, int, float], Look] = {}
+        self._gl: Any = GLContext(modelling.WIDTH_MAX, modelling.HEIGHT_MAX)
+        self._gl.make_current()
+        self._context: Any = None
+        self._option = mujoco.MjvOption()
+        self._nose = mujoco.MjvCamera()
+        self._nose.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self.contents = contents
+        """What is in it; change it with `fill`."""
+        self.fill(contents)
+
+    def fill(self, contents: Contents) -> None:
+        """Have these contents instead."""
+        if self._context is not None:
+            self._context.free()
+        self.contents = contents
+        self._model = modelling.build(contents, self._parameters)
+        self._data = mujoco.MjData(self._model)
+        self._view = mujoco.MjvScene(self._model, maxgeom=2000)
+        self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self._bodies = {
+            name: self._model.body(name).mocapid[0]
+            for name in ("surface", "ground")
+            if name != "ground" or contents.kind == "natural"
+        }
+        self._nose.fixedcamid = self._model.camera("nose").id
+        self._card = self._model.geom("card").id
+
+    def render_camera(
+        self, time: float, truth: Truth, width: int, height: int, card: Paint | None = None
+    ) -> Picture:
+        """What the robot's camera sees at this time (s), uint8 of shape (height, width, 3); blue, green, red.
+
+        `card` is the paint of the card that is held before it.
+        """
+        picture, depth, eye = self.draw_camera(time, truth, width, height, card)
+        return self.look(picture, depth, eye, time)
+
+    def render_observer(
+        self, time: float, truth: Truth, view: View, width: int, height: int, card: Paint | None = None
+    ) -> Picture:
+        """What somebody sees who swims along and looks at the robot, as `render_camera`."""
+        self._pose(time, truth, card)
+        position, axes = view.eye(truth)
+        eye = _Eye(position, axes, _camera(view, truth), self._groups(position, card, modelling.ROBOT))
+        picture, depth = self._render(eye, width, height)
+        seen = self._water.clearer(OBSERVER_CLEARER)
+        return self._look(width, height, OBSERVER_VIEW).apply(
+            picture, depth, seen, position, axes, time, noise=0.0
+        )
+
+    def draw_camera(
+        self, time: float, truth: Truth, width: int, height: int, card: Paint | None = None
+    ) -> tuple[Picture, Floats, _Eye]:
+        """The camera's picture without water, the depth (m) of each pixel, and the eye that took it."""
+        self._pose(time, truth, card)
+        axes = rotation(normalize(truth.attitude))
+        nose = to_world(axes, (modelling.NOSE, 0.0, 0.0))
+        north, east, down = (at + by for at, by in zip(truth.position, nose, strict=True))
+        position = (north, east, down)
+        eye = _Eye(position, axes, self._nose, self._groups(position, card))
+        return *self._render(eye, width, height), eye
+
+    def look(self, picture: Picture, depth: Floats, eye: _Eye, time: float) -> Picture:
+        """Such a picture as it is through the water."""
+        height, width = depth.shape
+        return self._look(width, height, modelling.FIELD_OF_VIEW).apply(
+            picture, depth, self._water, eye.position, eye.axes, time, NOISE
+        )
+
+    def close(self) -> None:
+        """Give the memory of OpenGL back."""
+        if self._gl is not None:
+            self._context.free()
+            self._gl.free()
+            self._gl = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def _water(self) -> Water:
+        return water(self.contents.kind, self.contents.place.turbidity)
+
+    def _look(self, width: int, height: int, field_of_view: float) -> Look:
+        key = (width, height, field_of_view)
+        if key not in self._looks:
+            self._looks[key] = Look(*key)
+        return self._looks[key]
+
+    @staticmethod
+    def _groups(eye: Vector, card: Paint | None, *more: int) -> tuple[int, ...]:
+        """What this eye is shown; the surface only from below, as from above it would hide everything."""
+        surface = (modelling.SURFACE_BELOW,) if eye[2] > 0 else ()
+        held = (modelling.CARD_HELD,) if card else ()
+        return (modelling.ALWAYS, *surface, *held, *more)
+
+    def _pose(self, time: float, truth: Truth, card: Paint | None) -> None:
+        """Put everything where it is."""
+        north, east, down = truth.position
+        w, x, y, z = truth.attitude
+        self._data.qpos[:3] = north, -east, -down
+        # Forward, right, down turned into north, east, down is forward, left, up into north, west, up.
+        self._data.qpos[3:7] = w, x, -y, -z
+        self._data.qpos[7:11] = truth.fins
+        ripples = DRIFT * time % modelling.SURFACE_TEXTURE
+        self._data.mocap_pos[self._bodies["surface"]] = (
+            _snap(north, modelling.SURFACE_TEXTURE) + ripples,
+            _snap(-east, modelling.SURFACE_TEXTURE),
+            0.0,
+        )
+        if "ground" in self._bodies:
+            self._data.mocap_pos[self._bodies["ground"]] = (
+                _snap(north, modelling.PERIOD),
+                _snap(-east, modelling.PERIOD),
+                0.0,
+            )
+        if card:
+            blue, green, red = card
+            self._model.geom_rgba[self._card] = red / 255, green / 255, blue / 255, 1.0
+
+    def _render(self, eye: _Eye, width: int, height: int) -> tuple[Picture, Floats]:
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
+        self._option.geomgroup[:] = [group in eye.groups for group in range(6)]
+        mujoco.mjv_updateScene(
+            self._model, self._data, self._option, None, eye.camera, mujoco.mjtCatBit.mjCAT_ALL, self._view
+        )
+        frame = mujoco.MjrRect(0, 0, width, height)
+        self._gl.make_current()
+        mujoco.mjr_render(frame, self._view, self._context)
+        colours = np.empty((height, width, 3), np.uint8)
+        nearness = np.empty((height, width), np.float32)
+        mujoco.mjr_readPixels(colours, nearness, frame, self._context)
+        # OpenGL counts lines from below, and has red first.
+        picture = cv2.cvtColor(cv2.flip(colours, 0), cv2.COLOR_RGB2BGR)
+        near, far = modelling.NEAR, modelling.FAR
+        depth = np.float32(near * far) / (cv2.flip(nearness, 0) * np.float32(far - near) + np.float32(near))
+        return picture.astype(np.uint8, copy=False), depth
+
+
+def _camera(view: View, truth: Truth) -> Any:
+    """MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
+    azimuth, elevation = view.line_of_sight(truth)
+    north, east, down = truth.position
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.lookat[:] = north, -east, -down
+    camera.distance = view.distance
+    camera.azimuth, camera.elevation = -degrees(azimuth), -degrees(elevation)
+    return camera
+
+
+def _snap(value: float, period: float) -> float:
+    return period * floor(value / period + 0.5)

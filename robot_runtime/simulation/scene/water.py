@@ -1,0 +1,74 @@
+"""Every number of how the water looks, with its origin.
+
+A picture is taken through I·e^(-βz) + B·(1 - e^(-βz)), for each of the three colours: of the light I that a
+thing sends out, β (1/m) takes away so much on the way z (m), and the water puts its own light B in its place
+(D. Akkaynak and T. Treibitz, A Revised Underwater Image Formation Model, CVPR 2018, with one β for both
+terms). The camera is taken to have balanced white at its own depth, as cameras do: light is not lost on its
+way down.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from robot_runtime.config import Range
+
+Kind = Literal["pool", "natural"]
+Colours = tuple[float, float, float]
+"""Of blue, green and red."""
+
+TURBIDITY = Range(0, 1)
+TURBIDITY_ATTENUATION = 30.0
+"""1/m that a turbidity of 1 adds to all three: a black thing on pale ground is lost at 0.1 m. Chosen."""
+TURBIDITY_POWER = 3
+"""Its power that counts, so that 0.1 is hardly noticed and 0.3 is a harbour. Chosen."""
+SILT: Colours = (135.0, 132.0, 70.0)
+"""The light of particles. Assumed: pale, and greenish as the water around them."""
+SCATTERING = 0.04
+"""1/m, share of the light that is scattered forwards, and blurs. Assumed: a tenth of pure sea water's β."""
+TURBIDITY_SCATTERING = 0.3
+"""Share of what turbidity adds that only blurs. Assumed, within a factor of two."""
+NOISE = 2.5
+"""Standard deviation of each byte of the camera's picture. Assumed: a small sensor in dim light."""
+
+
+@dataclass(frozen=True, slots=True)
+class Water:
+    """How the water looks."""
+
+    attenuation: Colours
+    """β, 1/m."""
+    glow: Colours
+    """B, 0 to 255, of the water itself, looking level."""
+    scattering: float
+    """1/m by which sharpness is lost."""
+    caustics: float
+    """Contrast, 0 to 1, of the light that ripples gather on what is just under the surface."""
+
+    def clearer(self, times: float) -> "Water":
+        """Water through which one sees so many times as far."""
+        blue, green, red = (beta / times for beta in self.attenuation)
+        return Water((blue, green, red), self.glow, self.scattering / times, self.caustics)
+
+
+CLEAN = {
+    "pool": Water((0.030, 0.055, 0.30), (190.0, 164.0, 44.0), SCATTERING, 0.5),
+    # Pure water absorbs 0.009, 0.043 and 0.28 (450, 530, 620 nm; R. M. Pope and E. S. Fry, Applied Optics 36,
+    # 1997, 8710); the rest is scattering, assumed. Its own light is chosen: tiles in daylight.
+    "natural": Water((0.06, 0.09, 0.60), (150.0, 128.0, 30.0), 1.5 * SCATTERING, 0.7),
+    # Chosen: as the card camera's, coastal water in which yellow turns green at about 3 m.
+}
+"""Clean water of each kind of scene."""
+
+
+def water(kind: Kind, turbidity: float) -> Water:
+    """The water of this kind of scene with so much turbidity, 0 to 1."""
+    clean = CLEAN[kind]
+    added = TURBIDITY_ATTENUATION * turbidity**TURBIDITY_POWER
+    blue, green, red = (beta + added for beta in clean.attenuation)
+    glow = tuple(own + (silt - own) * turbidity for own, silt in zip(clean.glow, SILT, strict=True))
+    return Water(
+        (blue, green, red),
+        (glow[0], glow[1], glow[2]),
+        clean.scattering + TURBIDITY_SCATTERING * added,
+        clean.caustics * (1 - turbidity),
+    )

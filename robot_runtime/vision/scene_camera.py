@@ -1,0 +1,71 @@
+"""The camera of a robot in simulated water: the scene's own process renders what it sees."""
+
+from collections.abc import Callable, Mapping
+
+from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.messages import Messages
+from robot_runtime.scene_picture import read_picture, write_request
+from robot_runtime.vision.camera import Camera, CameraError, Frame
+from robot_runtime.vision.cards import card_paint
+from robot_runtime.vision.colours import ColourRange
+
+READY_TIMEOUT = 1.0
+PICTURE_TIMEOUT = 16.0
+"""s; the first picture waits until all of the scene is made."""
+PATIENCE = 8.0
+"""s for which it is not news that there is none: board, simulator and scene start after the runtime."""
+
+
+class SceneMissing(Exception):  # noqa: N818 - it says what happened
+    """Nothing can be rendered where the scene runs; the text says what is missing and how to get it."""
+
+
+class SceneCamera(Camera):
+    """Asks for pictures of `width` × `height` pixels; `card` tells which of the colours is shown, if any.
+
+    Raises CameraError where no scene answers, SceneMissing where it answers that it cannot render.
+    """
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        messages: Messages,
+        colours: Mapping[str, ColourRange],
+        card: Callable[[], str | None],
+    ) -> None:
+        self._size = (width, height)
+        self._messages = messages
+        self._card = card
+        self._paints = {name: card_paint(name, colour) for name, colour in colours.items()}
+        try:
+            missing = messages.ask("scene/ready", {}, READY_TIMEOUT)["missing"]
+        except NoAnswer as problem:
+            raise CameraError(
+                "no scene answers; it belongs to a simulated robot, and starts with the server. A real robot "
+                "has another camera: name it in robot.toml, [vision] camera",
+                PATIENCE,
+            ) from problem
+        if missing is not None:
+            raise SceneMissing(str(missing))
+
+    def read(self) -> Frame:
+        """What the camera sees where the robot was when the simulator last told. Raises CameraError."""
+        card = self._card()
+        request = write_request(*self._size, self._paints[card] if card else None)
+        try:
+            picture = read_picture(self._messages.ask_bytes("scene/picture", request, PICTURE_TIMEOUT))
+        except NoAnswer as problem:
+            raise CameraError(
+                "the scene does not answer any more; the System page tells more", PATIENCE
+            ) from problem
+        except (Refused, ValueError) as problem:
+            raise CameraError(f"the scene gives none: {problem}", PATIENCE) from problem
+        return Frame(picture.pixels, picture.time)
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+    def __str__(self) -> str:
+        card = self._card()
+        return f"rendered scene with a {card} card" if card else "rendered scene"

@@ -1,0 +1,117 @@
+"""Whether a session that a killed server has left recording can go on, and from where."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sqlmodel import col, func, select
+
+from robot_runtime.cache import Kept
+from robot_runtime.clock import boot
+from robot_runtime.packets.layout import LayoutError
+from robot_runtime.topics import NUMBERS, Block, Topic
+from server.models import Chunk, SessionRow
+from server.store import Store
+
+RESUMED_ORIGINS = ("operator", "arming")
+"""A scenario is over where nobody goes on with its events, whatever is recorded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Last:
+    """Where a topic's samples end: the number that comes next, the last one's time, and the chunks so far."""
+
+    following: int
+    time: float
+    chunks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """A session that was left recording, and where its topics (by name) end."""
+
+    row: SessionRow
+    last: Mapping[str, Last]
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
+
+    `same_run`: the sender is the one that was recorded, as a stored sample shows that it still has. `whole`:
+    it has kept all that is missing.
+    """
+
+    first: Mapping[int, int]
+    same_run: bool
+    whole: bool
+
+
+def find_left(store: Store) -> Left | None:
+    """The newest session that was left recording since this computer was started. Raises StoreError."""
+    with store.read() as database:
+        row = database.exec(
+            select(SessionRow)
+            .where(
+                SessionRow.state == "recording",
+                SessionRow.boot == boot(),
+                col(SessionRow.origin).in_(RESUMED_ORIGINS),
+            )
+            .order_by(col(SessionRow.id).desc())
+            .limit(1)
+        ).first()
+        if row is None:
+            return None
+        newest = select(func.max(Chunk.id)).where(Chunk.session_id == row.id).group_by(Chunk.topic)
+        ends = database.exec(select(Chunk).where(col(Chunk.id).in_(newest)))
+        last = {
+            end.topic: Last((end.first + end.count) % NUMBERS, end.last_time, end.number + 1) for end in ends
+        }
+        database.expunge(row)
+    return Left(row, last)
+
+
+def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
+    """Compare what is stored with what the sender of these topics has kept."""
+    blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
+    for block in kept.blocks:
+        blocks[block.topic.id].append(block)
+    first: dict[int, int] = {}
+    proofs: set[bool] = set()
+    whole = True
+    for topic in topics:
+        following, there = kept.next.get(topic.name, 0), blocks[topic.id]
+        last = left.last.get(topic.name)
+        if last is None:
+            first[topic.id] = _first_since(left.row.started_steady, there, following)
+            continue
+        first[topic.id] = last.following
+        ahead = (following - last.following) % NUMBERS
+        proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
+        whole = whole and (ahead == 0 or _holds(there, last.following))
+    return Missing(first, proofs == {True}, whole)
+
+
+def _prove(last: Last, blocks: Sequence[Block]) -> set[bool]:
+    """Whether the last stored sample is the one that was kept under its number; empty where none was."""
+    number = (last.following - 1) % NUMBERS
+    for block in blocks:
+        if _holds([block], number):
+            try:
+                return {block.time_of(number) == last.time}
+            except LayoutError:
+                return {False}
+    return set()
+
+
+def _holds(blocks: Sequence[Block], number: int) -> bool:
+    return any((number - block.first) % NUMBERS < block.count for block in blocks)
+
+
+def _first_since(time: float, blocks: Sequence[Block], following: int) -> int:
+    for block in blocks:
+        try:
+            if block.time_of((block.following - 1) % NUMBERS) >= time:
+                return block.first
+        except LayoutError:
+            continue
+    return following

@@ -1,0 +1,200 @@
+"""The server killed with -9 at random moments of recording, and started again: is anything missing?
+
+The whole robot as a person starts it, in real time. `python -m tests.proofs.kills 100` prints what it finds;
+status 1 where a proof fails. Every fourth time the server is killed again while it starts.
+"""
+
+import json
+import random
+import sqlite3
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import httpx
+
+from robot_runtime.topics import BY_NAME, TIME, Kind
+from server.chunks import decode_documents, decode_rows
+from tests.stack import Stack
+
+RECORDED_MAX = 2.0
+"""s of recording before the next kill."""
+STARTING_MAX = 3.0
+"""s after which a server that starts is killed, now and then."""
+PATIENCE = 60.0
+PARTS = ("board", "runtime", "simulator")
+
+
+class Hole(NamedTuple):
+    """Samples of a topic that are not there, and for how long."""
+
+    topic: str
+    samples: int
+    seconds: float
+
+
+@dataclass
+class Report:
+    """What came of it."""
+
+    kills: int = 0
+    rows: int = 0
+    seconds: float = 0.0
+    lost: int = 0
+    """Samples that the server had told of as stored, and that were not there after its next start."""
+    away: list[float] = field(default_factory=list)
+    """s from each kill until the next server answered."""
+    holes: list[Hole] = field(default_factory=list)
+    doubles: int = 0
+    gaps: list[tuple[str, str, int]] = field(default_factory=list)
+    replaced: list[str] = field(default_factory=list)
+    """Parts that did not outlive the server."""
+    stops: int = 0
+    """Times that the robot was stopped because no server came back in time."""
+    tick_longest: float = 0.0
+    integrity: str = ""
+
+    @property
+    def problems(self) -> list[str]:
+        """What must not be."""
+        found = [f"{hole.samples} samples of {hole.topic} are missing" for hole in self.holes]
+        found += [f"a gap is noted: {missed} of {topic} ({kind})" for topic, kind, missed in self.gaps]
+        found += [f"the {name} did not outlive the server" for name in self.replaced]
+        if self.lost:
+            found.append(f"{self.lost} samples that were stored are gone")
+        if self.doubles:
+            found.append(f"{self.doubles} samples are there twice or out of order")
+        if self.integrity != "ok":
+            found.append(f"the database is damaged: {self.integrity}")
+        return found
+
+    def table(self) -> str:
+        """For a person."""
+        away = sorted(self.away)
+        longest = max((hole.seconds for hole in self.holes), default=0.0)
+        lines = [
+            f"{self.kills} kills in {self.seconds:.0f} s of recording, {self.rows} samples stored",
+            f"holes: {len(self.holes)}, longest {longest:.2f} s; stored and lost again: {self.lost}; "
+            f"twice: {self.doubles}; gaps noted: {len(self.gaps)}; integrity: {self.integrity}",
+            f"server away: median {away[len(away) // 2]:.1f} s, longest {away[-1]:.1f} s; "
+            f"robot stopped for it {self.stops} times",
+            f"longest pause between two control ticks: {self.tick_longest:.3f} s",
+        ]
+        return "\n".join([*lines, *self.problems])
+
+
+def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> Report:
+    """Record, kill, start again, so many times; then look at what is stored."""
+    chance = random.Random(seed)
+    report = Report()
+    with TemporaryDirectory(prefix="mucat-") as name:
+        data = Path(name) / "data"
+        with Stack(data) as stack:
+            parts = {part: _pid(data, part) for part in PARTS}
+            session = stack.api.post("/sessions", json={"name": "kills"}).json()["id"]
+            while report.kills < kills:
+                _arm(stack)
+                time.sleep(chance.uniform(0, RECORDED_MAX))
+                stored = _samples(stack, session)
+                killed = time.monotonic()
+                _kill(stack, report)
+                while chance.random() < 0.25 and report.kills < kills:
+                    time.sleep(chance.uniform(0, STARTING_MAX))
+                    _kill(stack, report)
+                _wait_for_answer(stack)
+                report.away.append(time.monotonic() - killed)
+                report.lost += max(stored - _samples(stack, session), 0)
+                report.replaced += [part for part in PARTS if _pid(data, part) != parts[part]]
+                tell(f"{report.kills:>4} of {kills}: away for {report.away[-1]:.1f} s after {stored} samples")
+            time.sleep(RECORDED_MAX)
+            stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+        _examine(data / "mucat.db", report)
+    return report
+
+
+def _arm(stack: Stack) -> None:
+    """So that it swims; a refusal only means that it has to be asked again after the next kill."""
+    stack.api.post("/robot/arm")
+
+
+def _samples(stack: Stack, session: int) -> int:
+    answer = stack.api.get(f"/sessions/{session}").json()
+    assert answer["state"] == "recording", answer
+    samples: int = answer["samples"]
+    return samples
+
+
+def _kill(stack: Stack, report: Report) -> None:
+    stack.kill()
+    stack.start()
+    report.kills += 1
+
+
+def _wait_for_answer(stack: Stack) -> None:
+    end = time.monotonic() + PATIENCE
+    while True:
+        try:
+            stack.api.get("/health")
+        except httpx.TransportError:
+            assert time.monotonic() < end, stack.log.read_text()[-2000:]
+            time.sleep(0.02)
+        else:
+            return
+
+
+def _pid(data: Path, part: str) -> int:
+    found: int = json.loads((data / "run" / f"{part}.pid").read_text())["pid"]
+    return found
+
+
+def _examine(database: Path, report: Report) -> None:
+    with closing(sqlite3.connect(database)) as connection:
+        (report.integrity,) = connection.execute("PRAGMA integrity_check").fetchone()
+        report.gaps = connection.execute("SELECT topic, kind, missed FROM gap").fetchall()
+        (report.seconds,) = connection.execute("SELECT duration FROM session").fetchone()
+        chunks = connection.execute(
+            "SELECT topic, first, count, first_time, last_time, data FROM chunk ORDER BY topic, number"
+        )
+        ends: dict[str, tuple[int, float]] = {}
+        ticks: list[float] = []
+        told: dict[str, int] = defaultdict(int)
+        for topic, first, count, first_time, last_time, data in chunks:
+            number, time_before = ends.get(topic, (first, first_time))
+            if first > number:
+                report.holes.append(Hole(topic, first - number, first_time - time_before))
+            report.doubles += max(number - first, 0)
+            ends[topic] = (first + count, last_time)
+            report.rows += count
+            if topic == "control":
+                ticks += _times(topic, data)
+            elif topic == "event":
+                for event in decode_documents(data):
+                    told[event["text"].partition(" for ")[0]] += 1
+    report.stops = told["The server has been silent"]
+    report.tick_longest = max((after - before for before, after in pairwise(ticks)))
+
+
+def _times(topic: str, data: bytes) -> list[float]:
+    assert BY_NAME[topic].kind is Kind.ROWS
+    size = BY_NAME[topic].row_bytes
+    rows = decode_rows(data, size)
+    return [TIME.unpack_from(rows, place)[0] for place in range(0, len(rows), size)]
+
+
+def main() -> int:
+    """Exit status."""
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    report = measure(kills, seed=int(time.time()), tell=lambda text: print(text, flush=True))
+    print(report.table())
+    return 1 if report.problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,49 @@
+"""A short version of `make kills`, and the parts killed one by one."""
+
+import json
+import sqlite3
+import tempfile
+import time
+from contextlib import closing
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.proofs.kills import measure
+from tests.stack import READY_SECONDS, Stack
+
+
+@pytest.mark.timeout(300)
+def test_a_server_that_is_killed_leaves_no_hole() -> None:
+    report = measure(3, seed=4)
+    assert not report.problems, report.table()
+    assert report.rows > 0
+
+
+def ask(data: Path, question: str) -> set[tuple[str, ...]]:
+    with closing(sqlite3.connect(f"file:{data / 'mucat.db'}?mode=ro", uri=True)) as database:
+        return set(database.execute(question))
+
+
+def wait_for(row: tuple[str, ...], data: Path, question: str) -> None:
+    end = time.monotonic() + READY_SECONDS
+    while row not in ask(data, question):
+        assert time.monotonic() < end, f"no {row}"
+        time.sleep(0.05)
+
+
+@pytest.mark.timeout(300)
+def test_a_part_that_is_killed_alone_is_a_new_one_and_the_session_goes_on() -> None:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        data = Path(name) / "data"
+        with Stack(data) as stack:
+            session = stack.api.post("/sessions", json={"name": "parts"}).json()["id"]
+            for part, topic in (("simulator", "truth"), ("runtime", "state")):
+                wait_for((topic,), data, "SELECT DISTINCT topic FROM chunk")
+                psutil.Process(json.loads((data / "run" / f"{part}.pid").read_text())["pid"]).kill()
+                wait_for((topic, "restarted"), data, "SELECT topic, kind FROM gap")
+            stack.wait_ready()
+            assert stack.api.get(f"/sessions/{session}").json()["state"] == "recording"
+            stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+        assert ask(data, "SELECT kind FROM gap") == {("restarted",)}

@@ -1,0 +1,28 @@
+"""Scenes that are rendered, where this computer can."""
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+import pytest
+
+from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.scene.contents import Contents
+
+if TYPE_CHECKING:
+    from robot_runtime.simulation.scene.scene import Scene
+
+Make = Callable[[Contents], "Scene"]
+
+
+@pytest.fixture
+def scene() -> Iterator[Make]:
+    """Makes scenes, which are closed with the test."""
+    problem = missing()
+    if problem:
+        pytest.skip(problem)
+    from robot_runtime.simulation.scene.scene import Scene
+
+    with ExitStack() as stack:
+        yield lambda contents: stack.enter_context(Scene(contents, Parameters()))

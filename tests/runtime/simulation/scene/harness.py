@@ -1,0 +1,48 @@
+"""Where the robot is, in degrees, for pictures to look at."""
+
+from math import cos, radians, sin
+
+import cv2
+import numpy as np
+
+from robot_runtime.samples import Truth
+from robot_runtime.simulation.parameters import Vector
+from robot_runtime.simulation.scene.contents import Contents, Place, Target
+from robot_runtime.simulation.scene.water import Kind
+from robot_runtime.simulation.surroundings import Basin
+from robot_runtime.vision.colours import Picture
+
+
+def truth(
+    position: Vector = (0.0, 0.0, 5.0), roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0
+) -> Truth:
+    """At rest there (m), turned so (°)."""
+    r, p, y = (radians(angle) / 2 for angle in (roll, pitch, yaw))
+    attitude = (
+        cos(r) * cos(p) * cos(y) + sin(r) * sin(p) * sin(y),
+        sin(r) * cos(p) * cos(y) - cos(r) * sin(p) * sin(y),
+        cos(r) * sin(p) * cos(y) + sin(r) * cos(p) * sin(y),
+        cos(r) * cos(p) * sin(y) - sin(r) * sin(p) * cos(y),
+    )
+    still = (0.0, 0.0, 0.0)
+    return Truth(position=position, attitude=attitude, velocity=still, rate=still, fins=(0.0,) * 4)
+
+
+def open_water(*targets: Target, kind: Kind = "pool", turbidity: float = 0.0) -> Contents:
+    """Deep water with nothing else in it; a pool, unless it is said, whose walls are far away."""
+    place = Place(kind=kind, turbidity=turbidity)
+    return Contents(place=place, basin=Basin(40.0), beacons=(), targets=targets)
+
+
+def changed(picture: Picture, empty: Picture, least: int = 25) -> Picture:
+    """255 where a byte differs by more than `least`, 0 elsewhere, also on the lines on which targets hang."""
+    apart = np.abs(picture.astype(int) - empty.astype(int)).max(axis=2)
+    mask = np.where(apart > least, 255, 0).astype(np.uint8)
+    return cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((5, 5), np.uint8)).astype(np.uint8)
+
+
+def centre(mask: Picture) -> tuple[float, float]:
+    """The middle of what is not 0, as shares of the picture's width and height."""
+    down, right = np.nonzero(mask)
+    assert len(down) > 20
+    return float(right.mean() / mask.shape[1]), float(down.mean() / mask.shape[0])

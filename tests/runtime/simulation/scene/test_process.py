@@ -1,0 +1,266 @@
+"""The scene's process: asked over Zenoh as it is, rendering in a thread of its own."""
+
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from robot_runtime.clock import SimulatedClock, SteadyClock
+from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.messages import Messages
+from robot_runtime.samples import Detection, Event, Truth
+from robot_runtime.scene_picture import Picture, read_picture, read_request, write_picture, write_request
+from robot_runtime.simulation.changes import changes
+from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.simulation.scene import process as process_module
+from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.scene.process import Process
+from robot_runtime.simulation.simulator import Simulator
+from robot_runtime.topics import BY_NAME, Block, Kind, read_blocks, row
+from robot_runtime.vision.node import Vision
+from tests.runtime.simulation.scene.harness import truth
+
+rendered = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+SIZE = (160, 120)
+SLOW = 30.0
+"""s; making a scene takes a while on a busy machine."""
+
+
+class Ends:
+    """The scene's process, and the other end of its conversation."""
+
+    def __init__(self, process: Process, other: Messages) -> None:
+        self.process = process
+        self.other = other
+
+    def ask(self, name: str, question: dict[str, Any]) -> dict[str, Any]:
+        """Zenoh tells of new answerers in its own time."""
+        answer: dict[str, Any] = patiently(lambda: self.other.ask(f"scene/{name}", question))
+        return answer
+
+    def picture(self, card: tuple[int, int, int] | None = None) -> Picture:
+        request = write_request(*SIZE, card)
+        return read_picture(patiently(lambda: self.other.ask_bytes("scene/picture", request, SLOW)))
+
+    def tell(self, seconds: float, where: Truth) -> None:
+        """Say where the robot is, until the scene knows."""
+        block = Block.of(BY_NAME["truth"], 1, 0, row(seconds, where.to_bytes()))
+        end = time.monotonic() + SLOW
+        while self.process._truth is None or self.process._truth[0] != seconds:
+            assert time.monotonic() < end
+            self.other.publish("truth", block.data)
+            time.sleep(0.01)
+
+
+def patiently(ask: Callable[[], Any]) -> Any:
+    while True:
+        try:
+            return ask()
+        except NoAnswer:
+            continue
+
+
+@contextmanager
+def conversation() -> Iterator[Ends]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        endpoint = f"unixsock-stream/{folder}/zenoh"
+        with Messages("turtle", [endpoint]) as other, Messages("turtle", connect=[endpoint]) as own:
+            process = Process(own, SteadyClock())
+            thread = threading.Thread(target=process.run)
+            thread.start()
+            try:
+                yield Ends(process, other)
+            finally:
+                process.end()
+                thread.join()
+
+
+@rendered
+def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
+    with conversation() as ends:
+        with pytest.raises(Refused, match="not told yet where the robot is"):
+            ends.picture()
+        ends.tell(12.5, truth((0.0, 0.0, 1.0)))
+        first = ends.picture()
+        assert (first.time, first.pixels.shape) == (12.5, (120, 160, 3))
+        ends.tell(13.5, truth((0.0, 0.0, 1.0), yaw=90.0))
+        second = ends.picture()
+        assert second.time == 13.5
+        assert np.abs(first.pixels.astype(int) - second.pixels).mean() > 2
+
+
+@rendered
+def test_floor_walls_and_beacons_are_the_simulators() -> None:
+    simulator = Simulator(Parameters(), 1)
+    with conversation() as ends:
+        for name, change in changes(simulator).items():
+            ends.other.answer(f"simulator/{name}", change)
+        ends.tell(1.0, truth((0.0, 0.0, 1.0)))
+        ends.picture()
+        changes(simulator)["world"]({"depth": 2.0, "length": 8.0, "width": 5.0})
+        changes(simulator)["beacons"]({"positions": [[1.0, 0.0, 0.5]]})
+        end = time.monotonic() + SLOW
+        while ends.process._contents.basin.length != 8.0:
+            assert time.monotonic() < end
+            ends.picture()
+        assert ends.process._contents.kind == "pool"
+        assert ends.process._contents.beacons == ((1.0, 0.0, 0.5),)
+
+
+@rendered
+def test_targets_and_water_change_what_is_seen() -> None:
+    with conversation() as ends:
+        ends.tell(1.0, truth((0.0, 0.0, 1.0)))
+        ends.ask("targets", {"targets": []})
+        empty = ends.picture().pixels
+        target = {"colour": "red", "position": [0.8, 0, 1], "size": 0.2}
+        ends.ask("targets", {"targets": [target]})
+        assert np.abs(ends.picture().pixels[50:70, 70:90].astype(int) - empty[50:70, 70:90]).mean() > 30
+        ends.ask("world", {"kind": "pool", "turbidity": 1.0})
+        assert ends.picture().pixels[60, 80].tolist() != pytest.approx([35, 30, 215], abs=60)
+
+
+@pytest.mark.parametrize(
+    ("name", "question", "words"),
+    [
+        ("world", {"kind": "lake"}, "must be one of 'pool', 'natural'"),
+        ("world", {"turbidity": 2}, "must lie between 0 and 1"),
+        ("world", {"depth": 2}, "'depth' is not known here"),
+        ("targets", {}, "targets is missing"),
+        ("targets", {"targets": [{"colour": "pink", "position": [1, 0, 1]}]}, "must be one of red, yellow"),
+        ("targets", {"targets": [{"colour": "red", "position": [1, 0]}]}, "must have 3 numbers"),
+        ("targets", {"targets": [{"colour": "red", "position": [1, 0, 1], "size": 9}]}, "0.02 and 2"),
+        ("view", {"name": "below"}, "must be one of 'follow', 'side', 'top'"),
+        ("view", {"elevation": 100}, "must lie between -60 and 89"),
+    ],
+)
+def test_bad_questions_are_refused_in_words(name: str, question: dict[str, Any], words: str) -> None:
+    with conversation() as ends, pytest.raises(Refused, match=words):
+        ends.ask(name, question)
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        (b'{"width": 5000, "height": 100}', "must lie between 16 and 1280"),
+        (b'{"width": 100, "height": 100, "card": [0, 0, 300]}', "must be 0 to 255"),
+        (b'{"width": 100}', "height is missing"),
+        (b"[]", "must be a JSON object"),
+        (b"\xff", "must be JSON"),
+    ],
+)
+def test_bad_requests_for_pictures_are_refused_in_words(question: bytes, words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        read_request(question)
+
+
+@pytest.mark.parametrize("size", [0, 15, 33])
+def test_what_is_no_picture_is_refused(size: int) -> None:
+    whole = write_picture(Picture(1.0, np.zeros((2, 3, 3), np.uint8)))
+    assert len(whole) == 34
+    with pytest.raises(ValueError, match="picture"):
+        read_picture(whole[:size])
+
+
+@rendered
+def test_a_client_that_goes_away_harms_nobody() -> None:
+    with conversation() as ends:
+        ends.tell(1.0, truth((0.0, 0.0, 1.0)))
+        ends.picture()
+        with pytest.raises(NoAnswer):
+            # Gone long before there can be an answer.
+            ends.other.ask_bytes("scene/picture", write_request(1280, 960, None), timeout=0.001)
+        assert ends.picture().time == 1.0
+
+
+@rendered
+def test_a_bystander_is_drawn_only_while_somebody_watches() -> None:
+    seen: list[Block] = []
+    with conversation() as ends:
+        ends.tell(5.0, truth((0.0, 0.0, 1.0)))
+        ends.picture()
+        assert ends.process._observer_number == 0
+        subscription = ends.other.subscribe("observer", lambda _, data: seen.extend(read_blocks(data)))
+        wait_until(lambda: len(seen) == 1)
+        ends.ask("view", {"name": "side", "azimuth": 90, "elevation": 0, "distance": 1})
+        wait_until(lambda: len(seen) == 2)
+        subscription.close()
+        wait_until(lambda: ends.process._observed is None)
+        ends.tell(6.0, truth((0.0, 0.0, 1.5)))
+        assert len(seen) == ends.process._observer_number == 2
+    assert all(block.topic.kind is Kind.PICTURE for block in seen)
+    pictures = [cv2.imdecode(np.frombuffer(block.payload[8:], np.uint8), cv2.IMREAD_COLOR) for block in seen]
+    assert [picture is not None and picture.shape for picture in pictures] == [(360, 640, 3)] * 2
+    assert np.abs(pictures[0].astype(int) - pictures[1]).mean() > 2  # type: ignore[union-attr]
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + SLOW
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def look(messages: Messages, until: Callable[[Vision], bool], config: VisionConfig) -> list[Event]:
+    """Let a vision node look through the camera "scene" until something holds; what it told."""
+    events: list[Event] = []
+    found: list[Detection] = []
+    vision = Vision(
+        config, SteadyClock(), found.append, lambda *_: None, lambda: False, events.append, messages=messages
+    )
+    vision.card = "yellow"
+    try:
+        end = time.monotonic() + SLOW
+        while not until(vision):
+            assert time.monotonic() < end
+            vision.look()
+    finally:
+        vision.close()
+    vision.look()
+    assert found[-1].colour == "yellow"
+    return events
+
+
+@rendered
+def test_the_vision_node_sees_the_card_in_the_scene() -> None:
+    with conversation() as ends:
+        ends.tell(1.0, truth((0.0, 0.0, 1.0)))
+        ends.picture()
+        events = look(ends.other, lambda vision: "rendered" in vision.text, VisionConfig(camera="scene"))
+        assert events == []
+
+
+def test_without_mujoco_a_drawn_card_stands_in_and_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(process_module, "missing", lambda: "MuJoCo is not installed; do this")
+    with conversation() as ends:
+        ends.ask("ready", {})
+        ends.tell(1.0, truth())
+        with pytest.raises(Refused, match="do this"):
+            ends.picture()
+        events = look(ends.other, lambda vision: "drawn" in vision.text, VisionConfig(camera="scene"))
+        assert [event.severity for event in events] == ["caution"]
+        assert "MuJoCo is not installed; do this. A drawn card stands in." in events[0].text
+
+
+def test_without_a_scene_there_is_no_picture_and_it_is_news_only_after_a_while() -> None:
+    events: list[Event] = []
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        clock = SimulatedClock()
+        with Messages("turtle", [f"unixsock-stream/{folder}/zenoh"]) as alone:
+            vision = Vision(
+                VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda: False,
+                events.append, messages=alone,
+            )  # fmt: skip
+            vision.look()
+            assert (vision.text, events) == ("starting", [])
+            clock.forward(9.0)
+            vision.look()
+    assert "no scene answers" in vision.text
+    assert [event.severity for event in events] == ["caution"]

@@ -1,0 +1,89 @@
+"""`python -m tests.server.full_disk FOLDER`: record on a disk that fills up, and gets room again.
+
+FOLDER is on a disk of its own. Tells in JSON what came of it.
+"""
+
+import asyncio
+import json
+import os
+import random
+import sqlite3
+import sys
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.topics import BY_NAME, Block, row
+from server.notices import Notices
+from server.recorder import Recorder
+from server.schema import prepare
+from server.sessions import new_row
+from server.settings import DataFolder, Settings, make_folders
+from server.store import Store, StoreError
+from tests.server.blocks import depth_record
+
+LEFT_BYTES = 400_000
+"""Room for the database when recording begins."""
+COUNT = 1000
+FULL_TIMES = 5
+
+
+def noisy_block(first: int, chance: random.Random) -> Block:
+    """Rows that no compression makes small."""
+    size = len(depth_record(0).to_bytes())
+    rows = b"".join(row(first + place, chance.randbytes(size)) for place in range(COUNT))
+    return Block.of(BY_NAME["depth"], COUNT, first, rows)
+
+
+async def record(data: DataFolder, config: Path) -> dict[str, Any]:
+    """Record until the disk has been full for a while, make room, and record on."""
+    settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
+    store = Store(data.database)
+    recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+    session = await recorder.start(new_row(settings, clock, "full", "", "null"))
+    ballast = data.path / "ballast"
+    with ballast.open("wb") as file:
+        free = os.statvfs(data.path)
+        file.write(bytes(free.f_bavail * free.f_frsize - LEFT_BYTES))
+    first = 0
+    refusals: list[str] = []
+    while len(refusals) < FULL_TIMES:
+        recorder.add(noisy_block(first, chance))
+        first += COUNT
+        try:
+            await recorder.flush()
+        except StoreError as problem:
+            refusals.append(str(problem))
+    stored_when_full = recorder.session.samples if recorder.session else -1
+    ballast.unlink()
+    recorder.add(noisy_block(first, chance))
+    done = await recorder.stop(session.id)
+    store.close()
+    return {
+        "refusals": sorted(set(refusals)),
+        "sent": first + COUNT,
+        "stored_when_full": stored_when_full,
+        "stored": done.samples,
+        "state": done.state,
+    }
+
+
+def main() -> None:
+    data = DataFolder(Path(sys.argv[1]) / "data")
+    make_folders(data)
+    prepare(data)
+    config = data.path / "robot.toml"
+    config.touch()
+    told = asyncio.run(record(data, config))
+    with closing(sqlite3.connect(data.database)) as database:
+        (told["integrity"],) = database.execute("PRAGMA integrity_check").fetchone()
+        told["gaps"] = database.execute("SELECT kind FROM gap").fetchall()
+        chunks = database.execute("SELECT first, count FROM chunk ORDER BY number").fetchall()
+    ends = [0, *(first + count for first, count in chunks)]
+    told["holes"] = sum(first != end for (first, _), end in zip(chunks, ends, strict=False))
+    sys.stdout.write(json.dumps(told))
+
+
+if __name__ == "__main__":
+    main()
