@@ -63,7 +63,6 @@ class Core:
         line: Conversation,
         outbox: Outbox,
         *,
-        loop: InTheLoop | None = None,
         picture_wanted: Callable[[], bool],
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,
