@@ -7,7 +7,7 @@ import base64
 import heapq
 import json
 from collections.abc import Iterator
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 from sqlmodel import col, select
 
@@ -25,18 +25,14 @@ IMAGE = "foxglove.CompressedImage"
 LOGGED = ("debug", "event", "notice")
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
+ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 DEBUG_LEVEL_OFFSET = 1
 """From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
 
 
-class _Sample(NamedTuple):
-    """In the order of time; `place` is the topic's, so that equal times stay in one order."""
-
-    time: int
-    place: int
-    data: bytes
-    told: dict[str, Any] | None
-    """What is to be said in the log; None where nothing is."""
+_Sample = tuple[int, int, bytes, dict[str, Any] | None]
+"""Time (ns, UTC); the topic's place, so that equal times stay in one order; the message; and what is to be
+said in the log, None where nothing is."""
 
 
 def check_mcap() -> None:
@@ -148,14 +144,14 @@ def _rows(source: Source, name: str, place: int) -> Iterator[_Sample]:
     for times, columns in rows.batches():
         since = [source.since_start(time) for time in times]
         for time, text in zip(times, rows.texts('"time":%.6f', [since], columns), strict=True):
-            yield _Sample(source.utc_ns(time), place, text.encode(), None)
+            yield source.utc_ns(time), place, text.encode(), None
 
 
 def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
         data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
-        yield _Sample(time, place, data, {**document, "topic": name} if name in LOGGED else None)
+        yield (time, place, data, {**document, "topic": name} if name in LOGGED else None)
 
 
 def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
@@ -167,7 +163,7 @@ def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
             "data": base64.b64encode(jpeg).decode(),
             "format": "jpeg",
         }
-        yield _Sample(time, place, _dump(image), None)
+        yield (time, place, _dump(image), None)
 
 
 def _markers(store: Reader, source: Source) -> Iterator[_Sample]:
@@ -176,8 +172,11 @@ def _markers(store: Reader, source: Source) -> Iterator[_Sample]:
         markers = database.exec(query).all()
     for marker in markers:
         if source.start <= marker.time <= source.end:
-            yield _Sample(
-                source.utc_ns(marker.time), len(source.names), b"", {"topic": "marker", "text": marker.text}
+            yield (
+                source.utc_ns(marker.time),
+                len(source.names),
+                b"",
+                {"topic": "marker", "text": marker.text},
             )
 
 
@@ -198,4 +197,4 @@ def _log(told: dict[str, Any], time: int) -> bytes:
 
 
 def _dump(message: dict[str, Any]) -> bytes:
-    return json.dumps(message, ensure_ascii=False, separators=(",", ":")).encode()
+    return ENCODE(message).encode()

@@ -5,8 +5,9 @@ from typing import Any
 
 from server.exports.source import Source
 
-PERIOD_NS = 33_000_000
-"""Between two poses: more than a screen shows only costs room."""
+PERIOD_NS = 100_000_000
+"""Between two poses: 3-D panels interpolate, and more would only cost time and room."""
+ENCODE = json.JSONEncoder(separators=(",", ":")).encode
 WORLD, LEVEL, BODY = "world", "ned", "turtle"
 
 
@@ -86,4 +87,4 @@ def stamp(time: int) -> dict[str, int]:
 
 
 def _dump(message: dict[str, Any]) -> bytes:
-    return json.dumps(message, separators=(",", ":")).encode()
+    return ENCODE(message).encode()
