@@ -1,0 +1,65 @@
+"""An hour of a dive at the robot's full rate, stored by the server's own recorder.
+
+`python -m bench.hour DATA [--seconds S] [--sessions N]` puts it into the data folder of `mucat run --data DATA`.
+"""
+
+import argparse
+import asyncio
+from pathlib import Path
+
+from bench.dive import Dive
+from robot_runtime.clock import SimulatedClock
+from server.notices import Notices
+from server.recorder import PERIOD, Recorder
+from server.schema import prepare
+from server.sessions import new_row
+from server.settings import DataFolder, Settings, make_folders
+from server.store import Store
+
+SECONDS = 3600.0
+STARTED_STEADY = 5000.0
+CONFIG = Path(__file__).parents[1] / "robot.toml"
+
+
+def record_hour(data: Path, seconds: float = SECONDS, seed: int = 1, name: str = "an hour") -> int:
+    """Record `seconds` of a dive into a data folder that no server uses. Returns the session's number.
+
+    Chunks are as long as in real time. The same seed gives the same samples.
+    """
+    settings = Settings(data=DataFolder(data.absolute()), config=CONFIG)
+    make_folders(settings.data)
+    prepare(settings.data)
+    store = Store(settings.data.database)
+    try:
+        return asyncio.run(_record(store, settings, seconds, seed, name))
+    finally:
+        store.close()
+
+
+async def _record(store: Store, settings: Settings, seconds: float, seed: int, name: str) -> int:
+    clock = SimulatedClock(STARTED_STEADY)
+    recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+    dive = Dive(STARTED_STEADY, seconds, seed)
+    session = await recorder.start(new_row(settings, clock, name, "made for measurements", "{}"))
+    while clock.now() < STARTED_STEADY + seconds:
+        clock.forward(min(PERIOD, STARTED_STEADY + seconds - clock.now()))
+        for block in dive.until(clock.now()):
+            recorder.add(block)
+        await recorder.flush()
+    await recorder.stop(session.id)
+    return session.id
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m bench.hour", description=__doc__)
+    parser.add_argument("data", type=Path, help="data folder; it is made where there is none")
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="length of each session")
+    parser.add_argument("--sessions", type=int, default=1, help="how many, each with noise of its own")
+    wanted = parser.parse_args()
+    for seed in range(1, wanted.sessions + 1):
+        number = record_hour(wanted.data, wanted.seconds, seed, f"dive {seed}")
+        print(f"session {number}")
+
+
+if __name__ == "__main__":
+    main()
