@@ -1,6 +1,6 @@
 """An hour of a dive at the robot's full rate, stored by the server's own recorder.
 
-`python -m bench.hour DATA [--seconds S] [--sessions N]` puts it into the data folder of `mucat run --data DATA`.
+`python -m bench.hour DATA [--seconds S] [--sessions N]` puts it where `mucat run --data DATA` shows it.
 """
 
 import argparse
