@@ -14,7 +14,7 @@ from server.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.parts import Command
 from server.recorder import RecordingRefused
-from server.routes import comm_tests, health, link, live, robot, sessions
+from server.routes import comm_tests, health, link, live, replay, robot, sessions
 from server.security import Guard
 from server.settings import Settings
 from server.store import StoreError
@@ -46,7 +46,7 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    for module in (health, robot, link, sessions, comm_tests, live):
+    for module in (health, robot, link, sessions, replay, comm_tests, live):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app

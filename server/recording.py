@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from sqlmodel import col, func, select
+from sqlmodel import Session, col, desc, func, select
 
 from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, decode_documents, decode_rows, row_layout
 from server.models import Chunk, SessionRow
@@ -39,6 +39,12 @@ class Recording:
         """What `chunks.describe_topics` said when it was recorded, by name."""
         self._store = store
 
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """The database, for a query of one's own; as `Store.read`."""
+        with self._store.read() as database:
+            yield database
+
     def counts(self) -> dict[str, int]:
         """Samples by topic; topics without any are left out."""
         query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
@@ -47,24 +53,40 @@ class Recording:
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
         """The chunks that may have samples between `start` and `end`, in order."""
-        number = -1
-        while True:
+        with self._store.read() as database:
+            first, last = self.numbers(database, topic, start, end)
+        while first <= last:
             query = (
                 select(Chunk)
-                .where(Chunk.session_id == self.row.id, Chunk.topic == topic, Chunk.number > number)
+                .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+                .where(col(Chunk.number).between(first, last))
                 .order_by(col(Chunk.number))
                 .limit(CHUNKS_AT_ONCE)
             )
-            if start > -inf:
-                query = query.where(Chunk.last_time >= start)
-            if end < inf:
-                query = query.where(Chunk.first_time <= end)
             with self._store.read() as database:
                 found = database.exec(query).all()
-            yield from found
+            yield from (chunk for chunk in found if chunk.last_time >= start and chunk.first_time <= end)
             if len(found) < CHUNKS_AT_ONCE:
                 return
-            number = found[-1].number
+            first = found[-1].number + 1
+
+    def numbers(self, database: Session, topic: str, start: float, end: float) -> tuple[int, int]:
+        """The first and the last number of the chunks that may have samples between these times.
+
+        Found by the index of times, however long the session is. One more at either end, since the times of
+        samples may overlap a little where two chunks meet. The last is before the first where there are none.
+        """
+        newest = (
+            select(Chunk.number)
+            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+            .order_by(desc(col(Chunk.first_time)))
+            .limit(1)
+        )
+        last = database.exec(newest.where(Chunk.first_time <= end)).first()
+        if last is None:
+            return 0, -1
+        first = None if start == -inf else database.exec(newest.where(Chunk.first_time <= start)).first()
+        return (0 if first is None else max(first - 1, 0)), last + 1
 
     def rows(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[bytes]:
         """The rows of each such chunk, as `robot_runtime.topics` has them; not cut to the range."""

@@ -392,6 +392,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/sessions/{session}/blocks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A stretch of a session
+         * @description The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+         *
+         *     With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
+         *     of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
+         *     that are damaged or cannot be said in this version's definitions.
+         */
+        get: operations["getBlocks"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions/{session}/csv": {
         parameters: {
             query?: never;
@@ -426,6 +450,26 @@ export interface paths {
          * @description Stop recording; everything that arrived before is stored when this answers.
          */
         post: operations["stopSession"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/timeline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Events and markers
+         * @description What happened when in a session, and where nothing was recorded.
+         */
+        get: operations["getTimeline"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -616,6 +660,16 @@ export interface components {
             version: string;
         };
         /**
+         * Hole
+         * @description A time without a sample of the robot's state; s since the session's start.
+         */
+        Hole: {
+            /** End */
+            end: number;
+            /** Start */
+            start: number;
+        };
+        /**
          * LinkFault
          * @description The last time that something went wrong on the line, and the frames until then.
          */
@@ -693,6 +747,41 @@ export interface components {
             /**
              * Time
              * @description now, s, steady clock
+             */
+            time: number;
+        };
+        /**
+         * Mark
+         * @description A moment that somebody pointed out.
+         */
+        Mark: {
+            /** Id */
+            id: number;
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+        };
+        /**
+         * Moment
+         * @description An event: something that happened, in words.
+         */
+        Moment: {
+            /** Kind */
+            kind: string;
+            /**
+             * Severity
+             * @enum {string}
+             */
+            severity: "info" | "caution" | "alarm";
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s since the session's start
              */
             time: number;
         };
@@ -1059,6 +1148,47 @@ export interface components {
             name: "table5" | "table6";
             /** Title */
             title: string;
+        };
+        /**
+         * Timeline
+         * @description A session as a whole, for whoever moves about in it.
+         */
+        Timeline: {
+            /**
+             * Duration
+             * @description s, up to the last samples that are stored
+             */
+            duration: number;
+            /**
+             * Events
+             * @description in order of time, the first 2000
+             */
+            events: components["schemas"]["Moment"][];
+            /** Holes */
+            holes: components["schemas"]["Hole"][];
+            /**
+             * Markers
+             * @description in order of time
+             */
+            markers: components["schemas"]["Mark"][];
+            /** Name */
+            name: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * Started Steady
+             * @description the same moment on the steady clock of its samples, s
+             */
+            started_steady: number;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "recording" | "complete" | "interrupted";
         };
         /** ValidationError */
         ValidationError: {
@@ -1897,6 +2027,50 @@ export interface operations {
             };
         };
     };
+    getBlocks: {
+        parameters: {
+            query: {
+                start: number;
+                end: number;
+                history?: number | null;
+            };
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Blocks, as on the live socket */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     downloadSession: {
         parameters: {
             query?: never;
@@ -1991,6 +2165,46 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTimeline: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Timeline"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };
