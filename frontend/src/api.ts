@@ -14,6 +14,14 @@ export type CommTestRun = Schemas['Run'];
 export type Cell = Schemas['Cell'];
 export type ThesisTable = Schemas['ThesisTable'];
 
+export type Timeline = Schemas['Timeline'];
+
+/** Blocks as on the live socket, and how many samples could not be given. */
+export interface Stretch {
+  readonly blocks: ArrayBuffer;
+  readonly leftOut: number;
+}
+
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
 const TIMEOUT = 5000;
@@ -21,7 +29,13 @@ const TIMEOUT_STOP = 2000;
 /** ms; a board may have to be handed over first, or to get its firmware back */
 const TIMEOUT_COMM_TEST = 120_000;
 
-async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
+async function send<T>(
+  method: string,
+  path: string,
+  body: object | undefined,
+  timeout: number,
+  read: (response: Response) => Promise<T>,
+): Promise<Answer<T>> {
   try {
     const response = await fetch(`/api${path}`, {
       method,
@@ -29,12 +43,22 @@ async function request<T>(method: string, path: string, body?: object, timeout =
       ...(body ? { body: JSON.stringify(body) } : {}),
       signal: AbortSignal.timeout(timeout),
     });
-    const text = await response.text();
-    if (!response.ok) return { problem: describe(response.status, text) };
-    return { value: (text === '' ? null : JSON.parse(text)) as T };
+    if (!response.ok) return { problem: describe(response.status, await response.text()) };
+    return { value: await read(response) };
   } catch {
     return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
   }
+}
+
+function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
+  return send(method, path, body, timeout, async (response) => {
+    const text = await response.text();
+    return (text === '' ? null : JSON.parse(text)) as T;
+  });
+}
+
+async function readStretch(response: Response): Promise<Stretch> {
+  return { blocks: await response.arrayBuffer(), leftOut: Number(response.headers.get('Left-Out')) };
 }
 
 function describe(status: number, text: string): string {
@@ -53,18 +77,41 @@ async function command(method: string, path: string, body?: object, timeout?: nu
   return 'problem' in answer ? answer.problem : null;
 }
 
+/** why the robot cannot be commanded from this page now; STOP always can */
+let refusal: string | null = null;
+
+/** Refuse every command to the robot but STOP, with this reason, until told otherwise by null. */
+export function refuseCommands(reason: string | null): void {
+  refusal = reason;
+}
+
+function order(method: string, path: string, body?: object): Promise<string | null> {
+  return refusal === null ? command(method, path, body) : Promise.resolve(refusal);
+}
+
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
-  arm: () => command('POST', '/robot/arm'),
-  controller: (name: string, gains: Record<string, number>) => command('PUT', '/robot/controller', { name, gains }),
-  setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
-  card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
-  vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
+  arm: () => order('POST', '/robot/arm'),
+  controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
+  setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
+  card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
+  vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: () => request<Session[]>('GET', '/sessions'),
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
+  timeline: (id: Session['id']) => request<Timeline>('GET', `/sessions/${id}/timeline`),
+  blocks: (id: Session['id'], start: number, end: number, history?: number) =>
+    send(
+      'GET',
+      `/sessions/${id}/blocks?start=${start}&end=${end}${history === undefined ? '' : `&history=${history}`}`,
+      undefined,
+      TIMEOUT,
+      readStretch,
+    ),
+  mark: (id: Session['id'], time: number, text: string) =>
+    request<Timeline['markers'][number]>('POST', `/sessions/${id}/markers`, { time, text }),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),
