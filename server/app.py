@@ -11,10 +11,12 @@ from robot_runtime.errors import Refused
 from server import VERSION
 from server.assembly import Assembly
 from server.bridge import RuntimeSilent
+from server.markers import UnknownMark
 from server.page import Page, make_router
 from server.parts import Command
+from server.presence import NotNow, UnknownSession
 from server.recorder import RecordingRefused
-from server.routes import comm_tests, health, link, live, replay, robot, sessions
+from server.routes import comm_tests, health, link, live, marks, replay, robot, sessions, storage
 from server.security import Guard
 from server.settings import Settings
 from server.store import StoreError
@@ -44,9 +46,12 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
+    app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(UnknownSession, _absent)
+    app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    for module in (health, robot, link, sessions, replay, comm_tests, live):
+    for module in (health, robot, link, sessions, marks, replay, storage, comm_tests, live):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app
@@ -62,6 +67,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _absent(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(404, str(problem))
 
 
 async def _silent(_: Request, problem: Exception) -> JSONResponse:

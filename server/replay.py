@@ -14,9 +14,16 @@ from typing import Any
 
 from sqlmodel import col, select
 
-from robot_runtime.topics import BY_NAME, TIME, Block, Topic
+from robot_runtime.topics import BY_NAME, TIME, Block, Kind, Topic
 from server import VERSION
-from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, decode_rows, describe_topics
+from server.chunks import (
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_pictures,
+    decode_rows,
+    describe_topics,
+)
 from server.models import Chunk
 from server.recording import Recording
 from server.rewriting import NoCounterpart, rewrite_document, rewrite_rows
@@ -46,7 +53,8 @@ class TooMuch(Exception):  # noqa: N818 - it says what is the matter
 @dataclass(slots=True)
 class Stretch:
     """Blocks one after the other, in order of the times of their first samples, and how many samples were
-    left out since they are damaged or have no counterpart in this version's definitions."""
+    left out since they are damaged or have no counterpart in this version's definitions. Thumbnails come as
+    the camera's pictures."""
 
     data: bytes
     left_out: int
@@ -131,7 +139,9 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Pi
 
 
 class _Rows:
-    """The rows of one chunk."""
+    """The rows of one chunk; `most` of them make a block."""
+
+    most = COUNT_MAX
 
     def __init__(self, rows: bytes, size: int) -> None:
         self._rows = rows
@@ -147,6 +157,8 @@ class _Rows:
 class _Lines:
     """The documents of one chunk, as lines of JSON; rewritten to `topic` where one is given."""
 
+    most = COUNT_MAX
+
     def __init__(self, lines: list[bytes], topic: Topic | None) -> None:
         self._lines = lines
         self._topic = topic
@@ -161,12 +173,31 @@ class _Lines:
         return len(lines), b"[" + b",".join(lines) + b"]"
 
 
+class _Pictures:
+    """The pictures of one chunk."""
+
+    most = 1
+
+    def __init__(self, pictures: list[tuple[float, bytes]]) -> None:
+        self._pictures = pictures
+
+    def time(self, place: int) -> float:
+        return self._pictures[place][0]
+
+    def payload(self, first: int, last: int) -> tuple[int, bytes]:
+        return last - first, b"".join(TIME.pack(time) + jpeg for time, jpeg in self._pictures[first:last])
+
+
+_Samples = _Rows | _Lines | _Pictures
+
+
 class _Reader:
     """Makes blocks of one topic's chunks; `recorded` describes the topic where it was another then."""
 
     def __init__(self, topic: Topic, recorded: Mapping[str, Any] | None) -> None:
         self.left_out = 0
         self._topic = topic
+        self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
         self._recorded = recorded
 
     def read(self, pieces: list[_Piece], wanted: _Range) -> Iterator[tuple[float, Block]]:
@@ -195,7 +226,7 @@ class _Reader:
             if samples is not None:
                 yield from self._blocks(samples, piece, count - 1, count)
 
-    def _open(self, piece: _Piece) -> _Rows | _Lines | None:
+    def _open(self, piece: _Piece) -> _Samples | None:
         try:
             if piece.encoding == ROWS_ENCODING:
                 recorded = self._recorded
@@ -207,23 +238,25 @@ class _Reader:
             if piece.encoding == DOCUMENTS_ENCODING:
                 lines = zlib.decompress(piece.data).splitlines()
                 return _Lines(lines, None if self._recorded is None else self._topic)
+            if piece.encoding == PICTURES_ENCODING:
+                return _Pictures(list(decode_pictures(piece.data)))
         except (ValueError, KeyError, zlib.error) as problem:
             log.warning("a chunk of %s cannot be read: %s", self._topic.name, problem)
         self.left_out += piece.count
         return None
 
     def _blocks(
-        self, samples: _Rows | _Lines, piece: _Piece, first: int, last: int
+        self, samples: _Samples, piece: _Piece, first: int, last: int
     ) -> Iterator[tuple[float, Block]]:
-        for start in range(first, last, COUNT_MAX):
-            end = min(last, start + COUNT_MAX)
+        for start in range(first, last, samples.most):
+            end = min(last, start + samples.most)
             count, payload = samples.payload(start, end)
             self.left_out += end - start - count
             if count:
-                yield samples.time(start), Block.of(self._topic, count, piece.first + start, payload)
+                yield samples.time(start), Block.of(self._given_as, count, piece.first + start, payload)
 
 
-def _count_before(samples: _Rows | _Lines, piece: _Piece, time: float) -> int:
+def _count_before(samples: _Samples, piece: _Piece, time: float) -> int:
     """How many of the chunk's samples, from its first on, are earlier."""
     if piece.last_time < time:
         return piece.count

@@ -8,9 +8,10 @@ from typing import Literal
 from pydantic import BaseModel, Field
 from sqlmodel import col, select
 
+from server.markers import show_marks
 from server.models import Chunk, Marker
 from server.recording import Recording
-from server.sessions import State, from_row
+from server.sessions import Mark, State, from_row
 
 EVENTS_MAX = 2000
 HOLE_SECONDS = 3.0
@@ -23,14 +24,6 @@ class Moment(BaseModel):
     time: float = Field(description="s since the session's start")
     kind: str
     severity: Literal["info", "caution", "alarm"]
-    text: str
-
-
-class Mark(BaseModel):
-    """A moment that somebody pointed out."""
-
-    id: int
-    time: float = Field(description="s since the session's start")
     text: str
 
 
@@ -58,9 +51,7 @@ def read_timeline(recording: Recording) -> Timeline:
     """The timeline of a session. Raises StoreError, RecordingError."""
     row = recording.row
     with recording.read() as database:
-        markers = database.exec(
-            select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time))
-        ).all()
+        markers = database.exec(select(Marker).where(Marker.session_id == row.id)).all()
         stretches = database.exec(
             select(Chunk.first_time, Chunk.last_time)
             .where(Chunk.session_id == row.id, Chunk.topic == "state")
@@ -74,11 +65,7 @@ def read_timeline(recording: Recording) -> Timeline:
         started_steady=row.started_steady,
         duration=session.duration,
         events=_events(recording),
-        markers=[
-            Mark(id=one.id, time=one.time - row.started_steady, text=one.text)
-            for one in markers
-            if one.id is not None
-        ],
+        markers=show_marks(markers, row.started_steady),
         holes=_holes(stretches, row.started_steady, row.duration),
     )
 

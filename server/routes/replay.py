@@ -2,25 +2,21 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Query, Request
+from fastapi import APIRouter, HTTPException, Query, Request
 from fastapi.responses import Response
 
 from server.assembly import Assembly
 from server.recording import Recording
 from server.replay import HISTORY_MAX, TooMuch, read_stretch
-from server.routes.problems import answers
-from server.sessions import IDENTIFIER_MAX, find_row
+from server.routes.sessions import UNKNOWN, Identifier
 from server.timeline import Timeline, read_timeline
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
 """The header that says how many samples could not be given."""
 
-UNKNOWN = answers(_404="There is no such session")
-
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 
 
@@ -68,8 +64,5 @@ def get_blocks(
 
 
 def _open(request: Request, session: int) -> Recording:
-    store = Assembly.of(request).store
-    row = find_row(store, session)
-    if row is None:
-        raise HTTPException(404, f"There is no session {session}; GET /api/sessions lists those there are.")
-    return Recording(store, row)
+    assembly = Assembly.of(request)
+    return Recording(assembly.store, assembly.catalogue.row(session))

@@ -13,7 +13,7 @@ from sqlalchemy import Connection, insert, text
 
 from robot_runtime import samples
 from robot_runtime.packets import Depth
-from robot_runtime.topics import BY_NAME, Block, documents, read_blocks, read_rows
+from robot_runtime.topics import BY_NAME, Block, documents, read_blocks, read_rows, row
 from server.chunks import encode_rows
 from server.models import Marker
 from server.recording import Recording
@@ -225,6 +225,24 @@ def test_documents_of_this_version_pass_unchanged(dive: Recording, store: Store)
     change(store, "UPDATE session SET version = 'older'")
     assert dive.row.id is not None
     assert told(read_stretch(read(store, dive.row.id), 100.0, 110.0).data, "state") == before
+
+
+def thumbnails(first: int, *times: float) -> list[Block]:
+    topic = BY_NAME["thumbnail"]
+    return [
+        Block.of(topic, 1, first + place, row(time, b"jpeg %d" % (first + place)))
+        for place, time in enumerate(times)
+    ]
+
+
+def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
+    batches = [thumbnails(0, 100.0, 100.4), thumbnails(2, 102.0, 102.4)]
+    recording = read(store, record(store, settings, *batches))
+    stretch = read_stretch(recording, 102.2, 103.0, history=0.0)
+    assert [(one.topic.name, one.count, one.payload) for one in read_blocks(stretch.data)] == [
+        ("picture", 1, row(102.0, b"jpeg 2")),
+        ("picture", 1, row(102.4, b"jpeg 3")),
+    ]
 
 
 def test_a_topic_that_is_unknown_now_is_counted(store: Store, dive: Recording) -> None:
