@@ -23,6 +23,7 @@ PARTS = (
     "start",
     "stack",
     "latency",
+    "replay",
 )
 RESULT = Path("build/bench.json")
 

@@ -39,6 +39,7 @@ CHARTED = frozenset({"depth", "control", "navigation", "detection"})
 LISTED = frozenset({"debug", "event", "notice"})
 """Topics that the page lists line by line."""
 LISTED_CHUNKS = 300
+STATE = BY_NAME["state"]
 COUNT_MAX = 65_535
 """Samples in one block."""
 
@@ -108,8 +109,20 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
                 raise TooMuch(f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time.")
             timed.append((time, block))
         left_out += reader.left_out
+    if history is not None and not any(block.topic is STATE and time < start for time, block in timed):
+        timed += _first_state(recording)
     timed.sort(key=lambda one: one[0])
     return Stretch(b"".join(block.data for _, block in timed), left_out)
+
+
+def _first_state(recording: Recording) -> list[tuple[float, Block]]:
+    """The robot's state when the session began, which it tells of before its first sample."""
+    try:
+        state = rewrite_document(json.loads(recording.row.robot_state), STATE)
+    except (ValueError, TypeError):
+        return []
+    payload = json.dumps([state], separators=(",", ":")).encode()
+    return [(float(state["time"]), Block.of(STATE, 1, 0, payload))]
 
 
 def _range(name: str, start: float, end: float, history: float | None) -> _Range:

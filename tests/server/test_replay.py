@@ -137,6 +137,22 @@ def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, set
     assert [int(record.time) for _, record in at] == [49, 50]
 
 
+def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, dive: Recording) -> None:
+    (state,) = json.loads(state_block(0, time=99.0, set_point=0.3).payload)
+
+    def tell(connection: Connection) -> None:
+        connection.execute(text("UPDATE session SET robot_state = :state"), {"state": json.dumps(state)})
+
+    asyncio.run(store.write(tell))
+    assert dive.row.id is not None
+    recording = read(store, dive.row.id)
+    seen = [
+        [one["set_point"] for one in told(read_stretch(recording, start, start, 0).data, "state")]
+        for start in (99.9, 100.5)
+    ]
+    assert seen == [[0.3], [0.0]]
+
+
 def test_before_the_beginning_there_is_nothing(dive: Recording) -> None:
     assert read_stretch(dive, 90.0, 99.0, history=300.0).data == b""
 
