@@ -130,9 +130,7 @@ class Tidying:
     def _tell(self, rows: list[_Candidate], why: str) -> None:
         names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_TOLD])
         more = f" and {len(rows) - NAMES_TOLD} more" if len(rows) > NAMES_TOLD else ""
-        text = (
-            f"{why}: {names}{more} went into the bin of the Sessions page. Restore and keep what is to stay."
-        )
+        text = f"{why}: {names}{more} went into the bin. Restore and keep what is to stay."
         self._notices.tell("storage", "caution", text)
 
     async def _unprotected(self) -> list[_Candidate]:
@@ -194,12 +192,16 @@ class Tidying:
         def give_back_some(connection: Connection) -> int:
             if connection.exec_driver_sql("PRAGMA auto_vacuum").scalar_one() != INCREMENTAL:
                 return 0
-            connection.exec_driver_sql(f"PRAGMA incremental_vacuum({PAGES_AT_ONCE})").all()
+            # The driver takes one step of such a statement only, and each step is one page.
+            for _ in range(PAGES_AT_ONCE):
+                connection.exec_driver_sql("PRAGMA incremental_vacuum(1)")
             left: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
             return left
 
-        while await self._store.write(give_back_some) > 0:
+        before, left = None, await self._store.write(give_back_some)
+        while left > 0 and left != before:
             await asyncio.sleep(PAUSE)
+            before, left = left, await self._store.write(give_back_some)
 
 
 def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:
