@@ -15,7 +15,7 @@ import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
 import type { Part, Session } from '../api';
 import type { Hello } from './messages';
-import { PERIODS, type Timed } from './periods';
+import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
 import { createRings, Gaps } from './store';
 
@@ -123,6 +123,7 @@ export class Live {
   }
 
   #period(topic: Timed): number {
+    if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
     if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
     if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
