@@ -34,8 +34,8 @@ HISTORY_MAX = 300.0
 """s before the start that the page's charts can show."""
 BYTES_MAX = 16_000_000
 """Of one answer; two minutes at the robot's full rate are 2 MB."""
-CHARTED = frozenset({"depth", "control", "navigation", "detection"})
-"""Topics of which the page shows the time before, too."""
+CHARTED = {"depth": HISTORY_MAX, "control": HISTORY_MAX, "navigation": 60.0, "detection": 10.0}
+"""Topics of which the page shows the time before, too, and how much of it at most (s)."""
 LISTED = frozenset({"debug", "event", "notice"})
 """Topics that the page lists line by line."""
 LISTED_CHUNKS = 300
@@ -87,7 +87,7 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
-    before it, of `CHARTED` so much time before it, of `LISTED` the last lines. Raises TooMuch, StoreError.
+    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises TooMuch, StoreError.
     """
     if end - start > RANGE_MAX:
         raise TooMuch(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
@@ -128,7 +128,7 @@ def _first_state(recording: Recording) -> list[tuple[float, Block]]:
 def _range(name: str, start: float, end: float, history: float | None) -> _Range:
     if history is None:
         return _Range(start, start, end, newest=False)
-    since = -inf if name in LISTED else start - history if name in CHARTED else start
+    since = -inf if name in LISTED else start - min(history, CHARTED.get(name, 0.0))
     return _Range(since, start, end, newest=True)
 
 
