@@ -77,7 +77,11 @@ export class Live {
 
   /** Let time pass for what is read at leisure. Returns what ends it. */
   beat(): () => void {
-    const beat = setInterval(() => (this.#tick += 1), TICK_EVERY);
+    const beat = setInterval(() => {
+      this.#tick += 1;
+      // Nothing arrives while a replay rests, but a chart may have got another size.
+      if (this.replayed) this.redraw();
+    }, TICK_EVERY);
     return () => clearInterval(beat);
   }
 
