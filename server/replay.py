@@ -87,7 +87,8 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
-    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises TooMuch, StoreError.
+    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises TooMuch,
+    StoreError.
     """
     if end - start > RANGE_MAX:
         raise TooMuch(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
