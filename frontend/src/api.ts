@@ -127,8 +127,6 @@ export const api = {
       TIMEOUT,
       readStretch,
     ),
-  mark: (id: Session['id'], time: number, text: string) =>
-    request<Timeline['markers'][number]>('POST', `/sessions/${id}/markers`, { time, text }),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
   commTestDocuments: () => request<CommTestDocument[]>('GET', '/comm-tests/documents'),
   checkCommTest: (text: string) => request<CommTestCheck>('POST', '/comm-tests/check', { text }),

@@ -30,7 +30,7 @@ class Session implements Source {
         markers: [],
         holes: [],
         ...this.made,
-      } as Timeline,
+      },
     });
   }
 
