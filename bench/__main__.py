@@ -28,6 +28,7 @@ PARTS = (
     "stack",
     "latency",
     "compare",
+    "replay",
 )
 RESULT = Path("build/bench.json")
 

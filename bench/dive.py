@@ -8,6 +8,7 @@ takes up as much room. Nothing here is physics.
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,7 +25,8 @@ from robot_runtime.samples import (
     Pace,
     State,
 )
-from robot_runtime.topics import BY_NAME, Block, Kind, documents
+from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
+from robot_runtime.vision.node import THUMBNAIL_SECONDS, THUMBNAIL_WIDTH
 
 Floats = NDArray[np.float64]
 Fields = dict[str, Any]
@@ -63,7 +65,8 @@ class Dive:
         self._chance = np.random.default_rng(seed)
         self._rows = {name: self._make_rows(name, rate, seconds) for name, rate in RATES.items()}
         self._documents = _make_documents(start, seconds)
-        self._numbers = dict.fromkeys([*self._rows, *self._documents], 0)
+        self._thumbnails = _make_thumbnails(self._chance, start, seconds)
+        self._numbers = dict.fromkeys([*self._rows, *self._documents, "thumbnail"], 0)
 
     def until(self, time: float) -> Iterator[Block]:
         """The blocks of what comes before `time` (s, steady clock) and was not taken yet."""
@@ -80,6 +83,13 @@ class Dive:
             if last > first:
                 yield Block.of(BY_NAME[name], last - first, first, documents(all_of_them[first:last]))
                 self._numbers[name] = last
+
+        while (number := self._numbers["thumbnail"]) < len(self._thumbnails):
+            taken, jpeg = self._thumbnails[number]
+            if taken >= time:
+                break
+            yield Block.of(BY_NAME["thumbnail"], 1, number, row(taken, jpeg))
+            self._numbers["thumbnail"] += 1
 
     def _make_rows(self, name: str, rate: float, seconds: float) -> NDArray[np.void]:
         topic = BY_NAME[name]
@@ -241,6 +251,21 @@ def _make_documents(start: float, seconds: float) -> dict[str, list[Document]]:
             if since < seconds
         ],
     }
+
+
+def _make_thumbnails(chance: np.random.Generator, start: float, seconds: float) -> list[tuple[float, bytes]]:
+    """Water with a little noise, and a yellow card in it where one is shown; times in s, steady clock."""
+    since = np.arange(0.0, seconds, THUMBNAIL_SECONDS)
+    made = []
+    for at, wanted in zip(since.tolist(), _set_point(since).tolist(), strict=True):
+        height = THUMBNAIL_WIDTH * 3 // 4
+        picture = np.full((height, THUMBNAIL_WIDTH, 3), (120, 90, 20), np.uint8)
+        if wanted == DEEP:
+            picture[36:84, 48:112] = (30, 210, 230)
+        picture += chance.integers(0, 12, picture.shape, np.uint8)
+        _, jpeg = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 50])
+        made.append((start + at, jpeg.tobytes()))
+    return made
 
 
 def _state(start: float, since: float) -> State:

@@ -43,6 +43,7 @@ GOALS = {
     "firmware.missed_ticks.500000": _most(0),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
+    "replay.seek_ms_p95": _most(150),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),
     "scenario.speed_x": _least(15),

@@ -26,6 +26,7 @@ from server.routes import (
     link,
     live,
     marks,
+    replay,
     robot,
     scenarios,
     scene,
@@ -70,7 +71,8 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live)
-    for module in (*robots, sessions, marks, storage, compare, exports, comm_tests, scenarios):
+    kept = (sessions, marks, replay, storage, compare, exports)
+    for module in (*robots, *kept, comm_tests, scenarios):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app

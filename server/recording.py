@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from sqlmodel import col, func, select
+from sqlmodel import Session, col, desc, func, select
 
 from server.chunks import (
     DOCUMENTS_ENCODING,
@@ -48,6 +48,12 @@ class Recording:
         """What `chunks.describe_topics` said when it was recorded, by name."""
         self._store = store
 
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """The database, for a query of one's own; as `Store.read`."""
+        with self._store.read() as database:
+            yield database
+
     def counts(self, start: float = -inf, end: float = inf) -> dict[str, int]:
         """Samples by topic, of the chunks that may have some between `start` and `end`; no topics without."""
         query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
@@ -77,6 +83,24 @@ class Recording:
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
         """The chunks that may have samples between `start` and `end`, in order."""
         return self._found(select(Chunk), CHUNKS_AT_ONCE, topic, start, end)
+
+    def numbers(self, database: Session, topic: str, start: float, end: float) -> tuple[int, int]:
+        """The first and the last number of the chunks that may have samples between these times.
+
+        Found by the index of times, however long the session is. One more at either end, since the times of
+        samples may overlap a little where two chunks meet. The last is before the first where there are none.
+        """
+        newest = (
+            select(Chunk.number)
+            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+            .order_by(desc(col(Chunk.first_time)))
+            .limit(1)
+        )
+        last = database.exec(newest.where(Chunk.first_time <= end)).first()
+        if last is None:
+            return 0, -1
+        first = None if start == -inf else database.exec(newest.where(Chunk.first_time <= start)).first()
+        return (0 if first is None else max(first - 1, 0)), last + 1
 
     def rows(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[bytes]:
         """The rows of each such chunk, as `robot_runtime.topics` has them; not cut to the range."""
@@ -174,20 +198,18 @@ class Recording:
 
     def _found(self, query: Any, limit: int, topic: str, start: float, end: float) -> Iterator[Any]:
         """What `query` selects of the chunks that may have samples in this range; `limit` at a time."""
-        number = -1
+        with self._store.read() as database:
+            first, last = self.numbers(database, topic, start, end)
         query = query.where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+        query = query.where(Chunk.last_time >= start, Chunk.first_time <= end)
         query = query.order_by(col(Chunk.number)).limit(limit)
-        if start > -inf:
-            query = query.where(Chunk.last_time >= start)
-        if end < inf:
-            query = query.where(Chunk.first_time <= end)
-        while True:
+        while first <= last:
             with self._store.read() as database:
-                found = database.exec(query.where(col(Chunk.number) > number)).all()
+                found = database.exec(query.where(col(Chunk.number).between(first, last))).all()
             yield from found
             if len(found) < limit:
                 return
-            number = found[-1].number
+            first = found[-1].number + 1
 
 
 @contextmanager

@@ -39,6 +39,13 @@ export type FigureMeaning = Schemas['FigureMeaning'];
 export type FigureMark = Schemas['FigureMark'];
 export type WantedLines = Schemas['WantedLines'];
 export type WantedComparison = Schemas['WantedComparison'];
+export type Timeline = Schemas['Timeline'];
+
+/** Blocks as on the live socket, and how many samples could not be given. */
+export interface Stretch {
+  readonly blocks: ArrayBuffer;
+  readonly leftOut: number;
+}
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
@@ -49,7 +56,13 @@ const TIMEOUT_COMM_TEST = 120_000;
 /** ms; hours of recordings are read */
 const TIMEOUT_COMPARE = 60_000;
 
-async function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
+async function send<T>(
+  method: string,
+  path: string,
+  body: object | undefined,
+  timeout: number,
+  read: (response: Response) => Promise<T>,
+): Promise<Answer<T>> {
   try {
     const response = await fetch(`/api${path}`, {
       method,
@@ -57,12 +70,22 @@ async function request<T>(method: string, path: string, body?: object, timeout =
       ...(body ? { body: JSON.stringify(body) } : {}),
       signal: AbortSignal.timeout(timeout),
     });
-    const text = await response.text();
-    if (!response.ok) return { problem: describe(response.status, text) };
-    return { value: (text === '' ? null : JSON.parse(text)) as T };
+    if (!response.ok) return { problem: describe(response.status, await response.text()) };
+    return { value: await read(response) };
   } catch {
     return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
   }
+}
+
+function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
+  return send(method, path, body, timeout, async (response) => {
+    const text = await response.text();
+    return (text === '' ? null : JSON.parse(text)) as T;
+  });
+}
+
+async function readStretch(response: Response): Promise<Stretch> {
+  return { blocks: await response.arrayBuffer(), leftOut: Number(response.headers.get('Left-Out')) };
 }
 
 /** Fetch tells nothing of how far it has sent a body. */
@@ -96,15 +119,27 @@ async function command(method: string, path: string, body?: object, timeout?: nu
   return 'problem' in answer ? answer.problem : null;
 }
 
+/** why the robot cannot be commanded from this page now; STOP always can */
+let refusal: string | null = null;
+
+/** Refuse every command to the robot but STOP, with this reason, until told otherwise by null. */
+export function refuseCommands(reason: string | null): void {
+  refusal = reason;
+}
+
+function order(method: string, path: string, body?: object): Promise<string | null> {
+  return refusal === null ? command(method, path, body) : Promise.resolve(refusal);
+}
+
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
-  arm: () => command('POST', '/robot/arm'),
-  controller: (name: string, gains: Record<string, number>) => command('PUT', '/robot/controller', { name, gains }),
-  setPoints: (points: Schemas['SetPoints']) => command('PUT', '/robot/set-points', points),
-  card: (colour: string | null) => command('PUT', '/robot/card', { colour }),
-  vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
-  simulator: (here: boolean) => command('PUT', '/simulator', { here }),
-  view: (view: View) => command('PUT', '/scene/view', view),
+  arm: () => order('POST', '/robot/arm'),
+  controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
+  setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
+  card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
+  vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
+  simulator: (here: boolean) => order('PUT', '/simulator', { here }),
+  view: (view: View) => order('PUT', '/scene/view', view),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: (deleted = false) => request<Session[]>('GET', `/sessions?deleted=${deleted}`),
@@ -127,6 +162,15 @@ export const api = {
   compare: (wanted: WantedComparison) => request<Comparison>('POST', '/compare', wanted, TIMEOUT_COMPARE),
   compareLines: (wanted: WantedLines) => request<ComparedLines>('POST', '/compare/lines', wanted, TIMEOUT_COMPARE),
   compareReport: (query: URLSearchParams) => `/api/compare/report?${query.toString()}`,
+  timeline: (id: Session['id']) => request<Timeline>('GET', `/sessions/${id}/timeline`),
+  blocks: (id: Session['id'], start: number, end: number, history?: number) =>
+    send(
+      'GET',
+      `/sessions/${id}/blocks?start=${start}&end=${end}${history === undefined ? '' : `&history=${history}`}`,
+      undefined,
+      TIMEOUT,
+      readStretch,
+    ),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
   exports: () => request<ExportJob[]>('GET', '/exports'),
   startExport: (wanted: NewExport) => request<ExportJob>('POST', '/exports', wanted),

@@ -4,7 +4,7 @@ import './styles/base.css';
 import './styles/listing.css';
 import { mount } from 'svelte';
 import App from './App.svelte';
-import { Live } from './live/live.svelte';
+import { LiveFeed } from './live/feed';
 import { Router } from './router.svelte';
 import { Theme } from './theme.svelte';
 
@@ -13,5 +13,5 @@ if (place === null) throw new Error('index.html has no element "page"');
 const protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
 mount(App, {
   target: place,
-  props: { live: new Live(`${protocol}//${location.host}/api/live`), router: new Router(), theme: new Theme() },
+  props: { feed: new LiveFeed(`${protocol}//${location.host}/api/live`), router: new Router(), theme: new Theme() },
 });

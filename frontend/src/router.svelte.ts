@@ -8,7 +8,10 @@ export const PAGES = [
   { name: 'system', title: 'System' },
 ] as const;
 
-export type PageName = (typeof PAGES)[number]['name'];
+/** Pages that are reached from others. */
+const INNER = ['replay'] as const;
+
+export type PageName = (typeof PAGES)[number]['name'] | (typeof INNER)[number];
 
 /** The page that the address names after its hash; Operate where it names none. */
 export class Router {
@@ -19,7 +22,7 @@ export class Router {
   constructor() {
     const read = () => {
       const [name, ...within] = location.hash.replace(/^#\/?/, '').split('/');
-      this.current = PAGES.find((page) => page.name === name)?.name ?? 'operate';
+      this.current = [...PAGES.map((page) => page.name), ...INNER].find((one) => one === name) ?? 'operate';
       this.within = within;
     };
     window.addEventListener('hashchange', read);

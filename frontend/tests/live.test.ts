@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { DEFINITIONS_HASH, OTHER_TOPICS } from '../src/generated/topics';
-import { Live } from '../src/live/live.svelte';
+import { LiveFeed } from '../src/live/feed';
+import type { Live } from '../src/live/live.svelte';
 import { blockBytes, depthBlock, documentBlock, join } from './bytes';
 
 /** Stands in for the browser's WebSocket; the test plays the server. */
@@ -51,8 +52,9 @@ beforeEach(() => {
   vi.stubGlobal('WebSocket', ServerEnd);
   vi.stubGlobal('window', new EventTarget());
   vi.stubGlobal('requestAnimationFrame', () => 0);
-  live = new Live('ws://robot/api/live');
-  end = live.start();
+  const feed = new LiveFeed('ws://robot/api/live');
+  live = feed.live;
+  end = feed.start();
 });
 
 afterEach(() => {

@@ -32,7 +32,7 @@ describe.each([
 ] as const)('%s', (_theme, tokens, textLeast, lineLeast) => {
   const of = (name: string) => tokens.get(name) ?? '';
 
-  it.each(['text', 'muted', 'accent', 'caution', 'alarm'])('text in %s can be read on every ground', (name) => {
+  it.each(['text', 'muted', 'accent', 'caution', 'alarm', 'replay'])('text in %s can be read on every ground', (name) => {
     for (const ground of ['ground', 'panel', 'well']) {
       expect(contrast(of(name), of(ground)), `${name} on ${ground}`).toBeGreaterThanOrEqual(textLeast);
     }
@@ -41,6 +41,7 @@ describe.each([
   it('buttons can be read', () => {
     expect(contrast(of('text'), of('raised'))).toBeGreaterThanOrEqual(textLeast);
     expect(contrast(of('on-accent'), of('accent'))).toBeGreaterThanOrEqual(textLeast);
+    expect(contrast(of('on-replay'), of('replay'))).toBeGreaterThanOrEqual(textLeast);
     expect(contrast(of('on-stop'), of('stop'))).toBeGreaterThanOrEqual(4.5);
   });
 

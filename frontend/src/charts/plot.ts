@@ -22,6 +22,8 @@ export interface PlotOptions {
   readonly seconds: number;
   /** values grow downwards */
   readonly downwards: boolean;
+  /** the right edge in words */
+  readonly edge: string;
   readonly unit: string;
   readonly flags: () => readonly Flag[];
   /** places of the two traces whose distance is filled */
@@ -32,7 +34,7 @@ export interface PlotOptions {
 const FONT = "12px 'Inter', system-ui, sans-serif";
 const FLAG_COLOURS = { info: 'accent', caution: 'caution', alarm: 'alarm' } as const;
 
-/** A chart in `host` whose right edge is now; its data are set by `setData` and its y range by `setScale`. */
+/** A chart in `host` whose right edge is the present moment; its data are set by `setData` and its y range by `setScale`. */
 export function createPlot(host: HTMLElement, options: PlotOptions): uPlot {
   const { traces, seconds, downwards, unit } = options;
   const grid = { stroke: token('line'), width: 1 };
@@ -55,7 +57,7 @@ export function createPlot(host: HTMLElement, options: PlotOptions): uPlot {
           size: 28,
           gap: 9,
           splits: () => Array.from({ length: seconds / step + 1 }, (_, index) => -seconds + index * step),
-          values: (_plot, splits) => splits.map((at) => timeLabel(at)),
+          values: (_plot, splits) => splits.map((at) => (at === 0 ? options.edge : timeLabel(at))),
         },
         {
           ...axis,
@@ -89,7 +91,6 @@ export function createPlot(host: HTMLElement, options: PlotOptions): uPlot {
 }
 
 function timeLabel(at: number): string {
-  if (at === 0) return 'now';
   return at % 60 === 0 && at <= -60 ? `\u2212${-at / 60} min` : `\u2212${-at} s`;
 }
 

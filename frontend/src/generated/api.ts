@@ -672,6 +672,30 @@ export interface paths {
         patch: operations["changeSession"];
         trace?: never;
     };
+    "/api/sessions/{session}/blocks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A stretch of a session
+         * @description The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+         *
+         *     With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
+         *     of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
+         *     that are damaged or cannot be said in this version's definitions.
+         */
+        get: operations["getBlocks"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/sessions/{session}/csv": {
         parameters: {
             query?: never;
@@ -828,6 +852,26 @@ export interface paths {
          * @description The first from this time on.
          */
         get: operations["getThumbnail"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/timeline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Events and markers
+         * @description What happened when in a session, and where nothing was recorded.
+         */
+        get: operations["getTimeline"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1337,6 +1381,16 @@ export interface components {
             version: string;
         };
         /**
+         * Hole
+         * @description A time without a sample of the robot's state; s since the session's start.
+         */
+        Hole: {
+            /** End */
+            end: number;
+            /** Start */
+            start: number;
+        };
+        /**
          * Job
          * @description One file, made or to be made. It is kept for some days.
          */
@@ -1520,6 +1574,26 @@ export interface components {
             text?: string | null;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * Moment
+         * @description An event: something that happened, in words.
+         */
+        Moment: {
+            /** Kind */
+            kind: string;
+            /**
+             * Severity
+             * @enum {string}
+             */
+            severity: "info" | "caution" | "alarm";
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
         };
         /**
          * NewExport
@@ -2432,6 +2506,47 @@ export interface components {
             end: number;
             /** Start */
             start: number;
+        };
+        /**
+         * Timeline
+         * @description A session as a whole, for whoever moves about in it.
+         */
+        Timeline: {
+            /**
+             * Duration
+             * @description s, up to the last samples that are stored
+             */
+            duration: number;
+            /**
+             * Events
+             * @description in order of time, the first 2000
+             */
+            events: components["schemas"]["Moment"][];
+            /** Holes */
+            holes: components["schemas"]["Hole"][];
+            /**
+             * Markers
+             * @description in order of time
+             */
+            markers: components["schemas"]["Mark"][];
+            /** Name */
+            name: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * Started Steady
+             * @description the same moment on the steady clock of its samples, s
+             */
+            started_steady: number;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "recording" | "complete" | "interrupted";
         };
         /**
          * Told
@@ -4209,6 +4324,50 @@ export interface operations {
             };
         };
     };
+    getBlocks: {
+        parameters: {
+            query: {
+                start: number;
+                end: number;
+                history?: number | null;
+            };
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Blocks, as on the live socket */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     downloadSession: {
         parameters: {
             query?: never;
@@ -4673,6 +4832,46 @@ export interface operations {
                 };
                 content: {
                     "image/jpeg": unknown;
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    getTimeline: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Timeline"];
                 };
             };
             /** @description There is no such session */

@@ -44,8 +44,16 @@ export class SteadyClock {
   }
 }
 
+/** One moment on both clocks. */
+export interface Instant {
+  /** s, the robot's steady clock */
+  readonly steady: number;
+  /** s since 1970 */
+  readonly utc: number;
+}
+
 /** The calendar's instant of `steady`, told by a moment that is known on both clocks. */
-export function calendar(steady: number, known: { steady: number; utc: number } | null): Date {
+export function calendar(steady: number, known: Instant | null): Date {
   if (known === null) return new Date(NaN);
   return new Date((known.utc + steady - known.steady) * 1000);
 }

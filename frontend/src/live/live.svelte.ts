@@ -1,7 +1,6 @@
 import { createContext } from 'svelte';
 import { SvelteMap } from 'svelte/reactivity';
 import {
-  DEFINITIONS_HASH,
   OTHER_TOPICS,
   type DebugLine,
   type Detection,
@@ -9,17 +8,16 @@ import {
   type Rows,
   type State,
 } from '../generated/topics';
-import { readBlocks, readDocuments, readPicture, type Block } from './blocks';
-import { calendar, SteadyClock } from './clock';
+import { readDocuments, readPicture, type Block } from './blocks';
+import { calendar, type Instant } from './clock';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
 import type { Part, ScenarioState, Session } from '../api';
-import { readMessage, type Hello } from './messages';
-import { PERIODS, type Timed } from './periods';
-import { LiveSocket } from './socket';
-import { Stop } from './stop.svelte';
-import { createRings, Gaps, Progress } from './store';
+import type { Hello } from './messages';
+import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
+import type { Stop } from './stop.svelte';
+import { createRings, Gaps } from './store';
 
 const FRAME_LEAST = 30;
 const TICK_EVERY = 125;
@@ -27,15 +25,13 @@ const CONSOLE_LINES = 2000;
 const EVENT_LINES = 500;
 /** how many detections a rate is counted over */
 const RATE_OVER = 12;
-/** s by which the robot's clock may seem to jump before it is taken for another clock. */
-const CLOCK_JUMP = 5;
 
 export interface Picture {
   readonly time: number;
   readonly jpeg: Blob;
 }
 
-/** Everything the page knows of the robot, as it comes through the live socket. */
+/** Everything the page shows of the robot. It comes from the live socket (feed.ts) or from a replay. */
 export class Live {
   connection = $state<'connecting' | 'open' | 'lost'>('connecting');
   /** why the server ended the connection, where it said so */
@@ -43,6 +39,8 @@ export class Live {
   /** ms to the server and back; null while unknown */
   roundTrip = $state<number | null>(null);
   hello = $state.raw<Hello | null>(null);
+  /** a moment that is known on both the steady clock and the calendar */
+  instant = $state.raw<Instant | null>(null);
   outdated = $state(false);
   parts = $state.raw<readonly Part[]>([]);
   recording = $state.raw<Session | null>(null);
@@ -60,7 +58,6 @@ export class Live {
   /** per topic, how many samples the server could not send to this page */
   readonly dropped = new SvelteMap<string, number>();
   readonly gaps = new Gaps();
-  readonly stop: Stop;
   readonly commTest = new CommTestWatch();
   /** null until the server has said whether a scenario runs */
   scenario = $state.raw<ScenarioState | null>(null);
@@ -72,60 +69,56 @@ export class Live {
   #drawn = 0;
   #awaited = false;
   #observing = 0;
-  readonly #progress = new Progress();
-  readonly #steady = new SteadyClock(() => performance.now() / 1000);
-  readonly #socket: LiveSocket;
+  /** called where `observed` changes; a recording has no such pictures */
+  onObserve: (() => void) | null = null;
 
-  constructor(url: string) {
-    this.#socket = new LiveSocket(url, {
-      opened: () => this.#opened(),
-      closed: (reason) => this.#closed(reason),
-      text: (text) => this.#read(text),
-      bytes: (buffer) => this.#take(buffer),
-      roundTrip: (milliseconds) => (this.roundTrip = milliseconds),
-    });
-    this.stop = new Stop(() => this.#socket.send({ op: 'stop' }));
+  /**
+   * @param clock the steady clock of what is shown, s; NaN while unknown
+   * @param replayed whether this shows the past, where nothing can be commanded
+   */
+  constructor(
+    private readonly clock: () => number,
+    readonly stop: Stop,
+    readonly replayed = false,
+  ) {}
+
+  /** Let time pass for what is read at leisure. Returns what ends it. */
+  beat(): () => void {
+    const beat = setInterval(() => {
+      this.#tick += 1;
+      // Nothing arrives while a replay rests, but a chart may have got another size.
+      if (this.replayed) this.redraw();
+    }, TICK_EVERY);
+    return () => clearInterval(beat);
   }
 
-  /** Open the socket and keep it open. Returns what ends it. */
-  start(): () => void {
-    this.#socket.start();
-    const beat = setInterval(() => (this.#tick += 1), TICK_EVERY);
-    const wake = () => this.#socket.retryNow();
-    window.addEventListener('online', wake);
-    return () => {
-      clearInterval(beat);
-      window.removeEventListener('online', wake);
-      this.#socket.end();
-    };
-  }
-
-  /** Have the bystander's pictures sent. Returns what ends that. */
+  /** Look at the bystander's pictures. Returns what ends that. */
   observe(): () => void {
     this.#observing += 1;
-    if (this.#observing === 1) this.#watch();
+    if (this.#observing === 1) this.onObserve?.();
     return () => {
       this.#observing -= 1;
       if (this.#observing > 0) return;
       this.observer = null;
-      this.#watch();
+      this.onObserve?.();
     };
   }
 
-  #watch(): void {
-    this.#socket.send({ op: 'watch', pictures: this.#observing > 0 ? ['picture', 'observer'] : ['picture'] });
+  /** whether somebody looks at the bystander's pictures */
+  get observed(): boolean {
+    return this.#observing > 0;
   }
 
   /** The robot's steady clock, s; NaN while unknown. Whoever reads it in an effect runs again with every tick. */
   get now(): number {
     void this.#tick;
-    return this.#steady.now();
+    return this.clock();
   }
 
   /** As `now`, for what is drawn with every frame. */
   get frameNow(): number {
     void this.#frame;
-    return this.#steady.now();
+    return this.clock();
   }
 
   /** The newest row of a topic, as often as the screen is drawn. */
@@ -147,7 +140,7 @@ export class Live {
 
   /** The instant of a steady time on this computer's calendar. */
   date(steady: number): Date {
-    return calendar(steady, this.hello);
+    return calendar(steady, this.instant);
   }
 
   #newest(topic: Timed): number | null {
@@ -159,96 +152,52 @@ export class Live {
   }
 
   #period(topic: Timed): number {
+    if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
     if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
     if (topic === 'observer') return PERIODS.truth;
     if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
   }
 
-  #opened(): void {
-    this.connection = 'open';
-    this.serverError = '';
-    this.farewell = '';
-    this.#progress.reconnect();
-    this.commTest.reconnect();
-    this.gaps.restart();
-    if (this.#observing > 0) this.#watch();
-  }
-
-  #closed(reason: string): void {
-    this.connection = 'lost';
-    this.roundTrip = null;
-    if (reason !== '') this.farewell = reason;
-  }
-
-  #read(text: string): void {
-    const message = readMessage(text);
-    if (message === null) return;
-    if (message.op === 'hello') this.#greet(message);
-    else if (message.op === 'health') this.parts = message.parts;
-    else if (message.op === 'session') this.recording = message.recording;
-    else if (message.op === 'scenario') this.scenario = message;
-    else if (message.op === 'comm_test') this.commTest.take(message.active, message.cell);
-    else if (message.op === 'error') this.serverError = message.text;
-    else if (message.op === 'pong') this.#socket.answered(message.id);
-    else this.dropped.set(message.topic, (this.dropped.get(message.topic) ?? 0) + message.count);
-  }
-
-  #greet(hello: Hello): void {
-    const before = this.hello;
-    this.outdated =
-      hello.definitions !== DEFINITIONS_HASH || (before !== null && before.page_version !== hello.page_version);
-    if (this.#steady.known && Math.abs(this.#steady.now() - hello.steady) > CLOCK_JUMP) this.#forget();
-    this.#steady.observe(hello.steady);
-    this.hello = hello;
-  }
-
-  /** The robot's computer was restarted: times from before mean nothing on its new clock. */
-  #forget(): void {
-    this.#steady.reset();
-    this.#progress.forget();
+  /** Forget what was shown; times from before mean nothing any more. */
+  clear(): void {
     for (const ring of Object.values(this.rings)) ring.clear();
     this.debug.clear();
     this.events.clear();
     this.state = null;
     this.detection = null;
+    this.detectionRate = null;
+    this.#detected = [];
     this.picture = null;
     this.observer = null;
   }
 
-  #take(buffer: ArrayBuffer): void {
-    // Rows of other definitions would be read as nonsense: wait for the reload instead.
-    if (this.hello !== null && this.hello.definitions !== DEFINITIONS_HASH) return;
-    for (const block of readBlocks(buffer)) {
-      this.gaps.observe(block.topic, block.first, block.count);
-      this.#takeBlock(block);
-    }
-    this.#redraw();
-  }
-
-  #takeBlock(block: Block): void {
-    const after = this.#progress.knownUntil(block.topic);
+  /** Take in what of a block is later than `after`. Returns the time up to which its topic is known (s), if any. */
+  take(block: Block, after = -Infinity): number | null {
     for (const ring of Object.values(this.rings)) {
       if (ring.topic.id !== block.topic) continue;
       ring.append(block.payload, after);
-      if (ring.newest !== null) this.#arrived(block.topic, ring.newest);
-      return;
+      return ring.newest;
     }
     if (block.topic === OTHER_TOPICS.picture) {
       const picture = readPicture(block);
       if (picture.time > after) this.picture = picture;
-      this.#arrived(block.topic, picture.time);
-      return;
+      return picture.time;
     }
     if (block.topic === OTHER_TOPICS.observer) {
       this.observer = readPicture(block);
-      return;
+      return this.observer.time;
     }
     const documents = (readDocuments(block) as { time: number }[]).filter((document) => document.time > after);
+    return this.takeDocuments(block.topic, documents);
+  }
+
+  /** Take in documents of one topic, in order of time. Returns the time of the last, if there is one. */
+  takeDocuments(topic: number, documents: { time: number }[]): number | null {
     const last = documents.at(-1);
-    if (last === undefined) return;
-    this.#arrived(block.topic, last.time);
-    this.#keep(block.topic, documents, last);
+    if (last === undefined) return null;
+    this.#keep(topic, documents, last);
+    return last.time;
   }
 
   #keep(topic: number, documents: { time: number }[], last: { time: number }): void {
@@ -267,12 +216,14 @@ export class Live {
     this.detectionRate = last.time > first ? (this.#detected.length - 1) / (last.time - first) : null;
   }
 
-  #arrived(topic: number, time: number): void {
-    this.#steady.observe(time);
-    this.#progress.reach(topic, time);
+  /** Show at once what has become another, digits too. */
+  refresh(): void {
+    this.#tick += 1;
+    this.#frame += 1;
   }
 
-  #redraw(): void {
+  /** Draw soon, and not more often than eyes can tell. */
+  redraw(): void {
     if (this.#awaited) return;
     this.#awaited = true;
     const draw = (at: number) => {

@@ -16,5 +16,8 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
   state: 1,
 };
 
+/** s between two pictures of a recording: its thumbnails */
+export const THUMBNAIL_PERIOD = 2;
+
 /** s that the rings hold: what the server keeps, and a little more. */
 export const HISTORY = 310;

@@ -1,0 +1,84 @@
+"""How soon a moment of an hour is there, after somebody has sought it."""
+
+import random
+import tempfile
+import time
+from pathlib import Path
+from statistics import quantiles
+
+import httpx
+from playwright.sync_api import Page, sync_playwright
+
+from bench.hour import SECONDS, record_hour
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.stack import Stack
+
+_SEEKS = 200
+_PAGE_SEEKS = 50
+_AHEAD = 5.0
+_HISTORY = 300.0
+"""s after and before the moment, as the page asks for them."""
+_SLIDER = "Time since the session's start"
+
+
+def measure() -> dict[str, float]:
+    """ms from a seek to a random moment until all of its answer is there, by HTTP; and until the page shows
+    the depth of that moment, with the whole robot running beside."""
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder)
+        session = record_hour(data)
+        with Stack(data) as stack:
+            by_http = _seek(stack.api, session)
+            with sync_playwright() as playwright:
+                browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+                page = browser.new_page(viewport={"width": 1440, "height": 900})
+                page.goto(f"{stack.url}/#/replay/{session}/60")
+                in_page = _seek_in(page)
+                browser.close()
+    return {
+        "replay.seek_ms_p50": quantiles(by_http, n=100)[49],
+        "replay.seek_ms_p95": quantiles(by_http, n=100)[94],
+        "replay.page_seek_ms_p50": quantiles(in_page, n=100)[49],
+        "replay.page_seek_ms_p95": quantiles(in_page, n=100)[94],
+    }
+
+
+def _seek(api: httpx.Client, session: int) -> list[float]:
+    chance = random.Random(1)
+    delays = []
+    for _ in range(_SEEKS):
+        start = chance.uniform(0.0, SECONDS)
+        query = {"start": start, "end": start + _AHEAD, "history": _HISTORY}
+        began = time.perf_counter()
+        answer = api.get(f"/sessions/{session}/blocks", params=query)
+        delays.append((time.perf_counter() - began) * 1000)
+        answer.raise_for_status()
+    return delays
+
+
+def _seek_in(page: Page) -> list[float]:
+    """The dive's console says a line every five seconds: its newest one tells which moment is shown."""
+    chance = random.Random(2)
+    page.get_by_label(_SLIDER).wait_for()
+    delays = []
+    for _ in range(_PAGE_SEEKS):
+        number = chance.randrange(20, 700)
+        delays.append(
+            page.evaluate(
+                """([label, to, line]) => new Promise((resolve) => {
+                    const slider = document.querySelector(`[aria-label="${label}"]`);
+                    const log = document.querySelector('[role="log"]');
+                    const began = performance.now();
+                    const look = () => {
+                        const there = log.textContent.trim().endsWith(line);
+                        if (there) resolve(performance.now() - began);
+                        else requestAnimationFrame(look);
+                    };
+                    slider.value = to;
+                    slider.dispatchEvent(new Event('input', { bubbles: true }));
+                    look();
+                })""",
+                [_SLIDER, 5 * number + 3, f"pass {5 * number + 0.5:.0f}: all well"],
+            )
+        )
+    return delays

@@ -1,0 +1,114 @@
+import { DEFINITIONS_HASH } from '../generated/topics';
+import { readBlocks, type Block } from './blocks';
+import { SteadyClock } from './clock';
+import { Live } from './live.svelte';
+import { readMessage, type Hello } from './messages';
+import { LiveSocket } from './socket';
+import { Stop } from './stop.svelte';
+import { Progress } from './store';
+
+/** s by which the robot's clock may seem to jump before it is taken for another clock. */
+const CLOCK_JUMP = 5;
+
+/** The robot as it is now: fills a `Live` from the live socket. */
+export class LiveFeed {
+  readonly live: Live;
+  readonly #progress = new Progress();
+  readonly #steady = new SteadyClock(() => performance.now() / 1000);
+  readonly #socket: LiveSocket;
+
+  constructor(url: string) {
+    this.#socket = new LiveSocket(url, {
+      opened: () => this.#opened(),
+      closed: (reason) => this.#closed(reason),
+      text: (text) => this.#read(text),
+      bytes: (buffer) => this.#take(buffer),
+      roundTrip: (milliseconds) => (this.live.roundTrip = milliseconds),
+    });
+    const stop = new Stop(() => this.#socket.send({ op: 'stop' }));
+    this.live = new Live(() => this.#steady.now(), stop);
+    this.live.onObserve = () => this.#watch();
+  }
+
+  /** Open the socket and keep it open. Returns what ends it. */
+  start(): () => void {
+    this.#socket.start();
+    const rest = this.live.beat();
+    const wake = () => this.#socket.retryNow();
+    window.addEventListener('online', wake);
+    return () => {
+      rest();
+      window.removeEventListener('online', wake);
+      this.#socket.end();
+    };
+  }
+
+  #opened(): void {
+    const { live } = this;
+    live.connection = 'open';
+    live.serverError = '';
+    live.farewell = '';
+    this.#progress.reconnect();
+    live.commTest.reconnect();
+    live.gaps.restart();
+    if (live.observed) this.#watch();
+  }
+
+  #watch(): void {
+    this.#socket.send({ op: 'watch', pictures: this.live.observed ? ['picture', 'observer'] : ['picture'] });
+  }
+
+  #closed(reason: string): void {
+    this.live.connection = 'lost';
+    this.live.roundTrip = null;
+    if (reason !== '') this.live.farewell = reason;
+  }
+
+  #read(text: string): void {
+    const { live } = this;
+    const message = readMessage(text);
+    if (message === null) return;
+    if (message.op === 'hello') this.#greet(message);
+    else if (message.op === 'health') live.parts = message.parts;
+    else if (message.op === 'session') live.recording = message.recording;
+    else if (message.op === 'scenario') live.scenario = message;
+    else if (message.op === 'comm_test') live.commTest.take(message.active, message.cell);
+    else if (message.op === 'error') live.serverError = message.text;
+    else if (message.op === 'pong') this.#socket.answered(message.id);
+    else live.dropped.set(message.topic, (live.dropped.get(message.topic) ?? 0) + message.count);
+  }
+
+  #greet(hello: Hello): void {
+    const { live } = this;
+    const before = live.hello;
+    live.outdated =
+      hello.definitions !== DEFINITIONS_HASH || (before !== null && before.page_version !== hello.page_version);
+    if (this.#steady.known && Math.abs(this.#steady.now() - hello.steady) > CLOCK_JUMP) {
+      // The robot's computer was restarted: times from before mean nothing on its new clock.
+      this.#steady.reset();
+      this.#progress.forget();
+      live.clear();
+    }
+    this.#steady.observe(hello.steady);
+    live.hello = hello;
+    live.instant = hello;
+  }
+
+  #take(buffer: ArrayBuffer): void {
+    const { live } = this;
+    // Rows of other definitions would be read as nonsense: wait for the reload instead.
+    if (live.hello !== null && live.hello.definitions !== DEFINITIONS_HASH) return;
+    for (const block of readBlocks(buffer)) {
+      live.gaps.observe(block.topic, block.first, block.count);
+      this.#takeBlock(block);
+    }
+    live.redraw();
+  }
+
+  #takeBlock(block: Block): void {
+    const time = this.live.take(block, this.#progress.knownUntil(block.topic));
+    if (time === null) return;
+    this.#steady.observe(time);
+    this.#progress.reach(block.topic, time);
+  }
+}

@@ -1,0 +1,100 @@
+"""A session replayed in the page that shows the robot: the depth of a moment, its label, and no commands."""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from robot_runtime.packets import Depth
+from robot_runtime.topics import read_blocks, read_rows
+from tests.browser.test_swim import depth, hold_to_arm, wait_for_depth
+from tests.stack import Stack
+
+SEEK_MS = 10_000
+
+
+def record_a_dive(page: Page, stack: Stack) -> tuple[int, float, float]:
+    """Record a dive to 0.5 m. Returns the session, where a marker stands (s), and the depth there (m)."""
+    session = stack.api.post("/sessions", json={"name": "to be replayed"}).json()["id"]
+    hold_to_arm(page)
+    wait_for_depth(page, 0.2, 0.3)
+    mark = stack.api.post(f"/sessions/{session}/markers", json={"text": "on the way down"}).json()
+    wait_for_depth(page, 0.45, 0.55)
+    stack.api.post("/robot/stop").raise_for_status()
+    expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    exact = stack.api.get(f"/sessions/{session}/blocks", params=at(mark["time"])).content
+    return session, mark["time"], newest_depth(exact)
+
+
+def at(time: float) -> dict[str, float]:
+    return {"start": time, "end": time, "history": 0}
+
+
+def newest_depth(data: bytes) -> float:
+    (block,) = (one for one in read_blocks(data) if one.topic.name == "depth")
+    _, newest = read_rows(block)[-1]
+    assert isinstance(newest, Depth)
+    return newest.depth
+
+
+def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
+    session, marked, there = record_a_dive(page, stack)
+    commands: list[str] = []
+    page.on("request", lambda request: commands.append(request.url) if "/api/robot/" in request.url else None)
+    page.goto(f"{stack.url}/#/replay/{session}")
+
+    label = page.get_by_role("heading", name=re.compile("of to be replayed"))
+    expect(label).to_be_visible()
+    expect(page.get_by_text("Replay", exact=True)).to_be_visible()
+    expect(page.get_by_role("button", name="Hold to arm")).to_have_count(0)
+    expect(page.get_by_role("button", name="Apply")).to_have_count(0)
+    expect(page.get_by_label("default")).to_be_disabled()
+    expect(page.get_by_role("button", name="no card")).to_be_disabled()
+    expect(page.get_by_text("Robot now")).to_be_visible()
+
+    # At the beginning the robot was disarmed; at the marker it dived.
+    expect(page.get_by_text("Disarmed", exact=True).first).to_be_visible()
+    page.get_by_role("button", name="Next marker").click()
+    page.wait_for_function(
+        """(wanted) => {
+            const readings = [...document.querySelectorAll('.reading')];
+            const shown = readings.find((one) => one.textContent.includes('Depth'));
+            return Math.abs(Number(shown?.querySelector('.value')?.textContent) - wanted) < 0.0051;
+        }""",
+        arg=there,
+        timeout=SEEK_MS,
+    )
+    expect(page.get_by_text("The fins may move")).to_have_count(0)
+    expect(page.get_by_text(re.compile("^ARMED"))).to_be_visible()
+    assert page.url.endswith(f"#/replay/{session}/{marked:.1f}")
+    events = page.get_by_role("region", name="Events")
+    expect(events.get_by_text("Armed.")).to_be_visible()
+    expect(events.get_by_text("Stopped by the operator.")).to_have_count(0)
+
+    page.keyboard.press("Space")
+    wait_for_depth(page, 0.45, 0.55)
+    page.keyboard.press("Shift+ArrowRight")
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+    expect(events.get_by_text("Stopped by the operator.")).to_be_visible()
+
+    page.keyboard.press("Shift+ArrowLeft")
+    page.get_by_role("button", name="Mark", exact=True).click()
+    page.get_by_label(re.compile("^Mark 00:00")).fill("the beginning")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="Marker the beginning")).to_be_attached()
+    marks = stack.api.get(f"/sessions/{session}/timeline").json()["markers"]
+    assert [one["text"] for one in marks] == ["the beginning", "on the way down"]
+    assert commands == []
+
+    # The robot itself can be stopped from here, and is.
+    stack.api.post("/robot/arm").raise_for_status()
+    expect(page.get_by_text("ARMED", exact=True)).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.locator(".now")).to_contain_text("disarmed")
+    assert all(one.endswith("/robot/stop") for one in commands)
+    assert depth(page) < 0.2
+
+
+def test_a_session_that_is_not_there(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/replay/999999")
+    expect(page.get_by_role("alert").get_by_text("There is no session 999999")).to_be_visible()
