@@ -61,7 +61,7 @@ def wait_for_answer(port: int, process: subprocess.Popen[str]) -> None:
             time.sleep(0.05)
         else:
             return
-    process.kill()
+    process.terminate()
     raise AssertionError(f"the server did not answer: {process.stdout and process.stdout.read()}")
 
 
