@@ -34,7 +34,7 @@ PERIOD = 10.0
 """m after which the natural floor repeats."""
 RELIEF = 0.35
 """m between the highest and the lowest places of the natural floor; the highest is the simulator's floor."""
-RELIEF_SIDE = 65
+RELIEF_SIDE = 49
 STONES, PLANTS = 26, 34
 """In each period."""
 TILE_TEXTURE = 1.2

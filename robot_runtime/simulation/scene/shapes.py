@@ -19,7 +19,7 @@ def stone(seed: int) -> tuple[Vertices, Faces]:
     """A rounded stone, 7 to 30 cm high; `seed` makes it another one."""
     rng = np.random.default_rng(seed)
     size = 0.07 + 0.22 * (seed / KINDS) ** 2
-    around, up = 18, 11
+    around, up = 14, 8
     faces = []
     rows = []
     for row in range(up):
