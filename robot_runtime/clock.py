@@ -1,6 +1,7 @@
 """Time, as one injected thing: the computer's steady clock, or one that a test pushes forward."""
 
 import time
+from pathlib import Path
 from typing import Protocol
 
 
@@ -18,6 +19,11 @@ class SteadyClock:
     def now(self) -> float:
         """Seconds since an arbitrary moment, usually the start of the computer."""
         return time.monotonic()
+
+
+def boot() -> str:
+    """Tells this start of the computer from others: the steady clocks of two cannot be compared."""
+    return Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
 
 
 class SimulatedClock:

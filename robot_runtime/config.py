@@ -108,6 +108,16 @@ class ServerConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SessionsConfig:
+    """What is recorded and removed by itself; times in days, room in GB of 10^9 bytes, 0: no such rule."""
+
+    record_at_arming: bool = True
+    undo_days: Annotated[float, Range(0, 3650)] = 7.0
+    keep_days: Annotated[float, Range(0, 36500)] = 0.0
+    keep_free: Annotated[float, Range(0, 100_000)] = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Config:
     """All of robot.toml."""
 
@@ -117,6 +127,7 @@ class Config:
     vision: VisionConfig = VisionConfig()
     zenoh: ZenohConfig = ZenohConfig()
     server: ServerConfig = ServerConfig()
+    sessions: SessionsConfig = SessionsConfig()
 
 
 def load(path: Path) -> Config:

@@ -34,6 +34,11 @@ class Outbox:
         with self._lock:
             self._rows[topic].append(row(time, record))
 
+    def add_picture(self, topic: str, time: float, jpeg: bytes) -> None:
+        """Queue a picture, in place of one of its topic that still waits."""
+        with self._lock:
+            self._rows[topic] = [row(time, jpeg)]
+
     def add_document(self, topic: str, document: Document) -> None:
         """Queue one document."""
         with self._lock:

@@ -70,6 +70,7 @@ class Robot:
             self._take_picture,
             self._picture_wanted,
             self.tell,
+            on_thumbnail=self._take_thumbnail,
         )
         self._configure()
         self._join()
@@ -222,6 +223,9 @@ class Robot:
 
     def _take_picture(self, time: float, jpeg: bytes) -> None:
         self.outbox.send_picture(time, jpeg)
+
+    def _take_thumbnail(self, time: float, jpeg: bytes) -> None:
+        self.outbox.add_picture("thumbnail", time, jpeg)
 
     def _picture_wanted(self) -> bool:
         return self._messages.watched("picture")

@@ -12,11 +12,13 @@ from server import VERSION
 from server.assembly import Assembly
 from server.bridge import RuntimeSilent
 from server.comparison.shapes import NoSessionError
+from server.markers import UnknownMark
 from server.page import Page, make_router
 from server.parts import Command
+from server.presence import NotNow, UnknownSession
 from server.recorder import RecordingRefused
 from server.recording import RecordingError
-from server.routes import comm_tests, compare, health, link, live, robot, sessions
+from server.routes import comm_tests, compare, health, link, live, marks, robot, sessions, storage
 from server.security import Guard
 from server.settings import Settings
 from server.store import StoreError
@@ -46,11 +48,14 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
+    app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(UnknownSession, _absent)
+    app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    app.add_exception_handler(NoSessionError, _not_there)
+    app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    for module in (health, robot, link, sessions, compare, comm_tests, live):
+    for module in (health, robot, link, sessions, marks, storage, compare, comm_tests, live):
         app.include_router(module.router)
     app.include_router(make_router(Page(settings.page)))
     return app
@@ -68,6 +73,10 @@ async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
 
 
+async def _absent(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(404, str(problem))
+
+
 async def _silent(_: Request, problem: Exception) -> JSONResponse:
     assert isinstance(problem, RuntimeSilent)
     return _tell(504 if problem.waited else 503, str(problem))
@@ -75,10 +84,6 @@ async def _silent(_: Request, problem: Exception) -> JSONResponse:
 
 async def _not_stored(_: Request, problem: Exception) -> JSONResponse:
     return _tell(503, f"The database does not work: {problem}.")
-
-
-async def _not_there(_: Request, problem: Exception) -> JSONResponse:
-    return _tell(404, str(problem))
 
 
 async def _unreadable(_: Request, problem: Exception) -> JSONResponse:

@@ -11,19 +11,25 @@ from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
+from server.arming import ArmingRecording
 from server.bridge import Bridge
+from server.catalogue import Catalogue
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
 from server.health import Watch
 from server.hub import Hub
+from server.markers import Markers
+from server.models import SessionRow
 from server.notices import Notices
 from server.page import Page
 from server.parts import Command, Parts
 from server.recorder import Recorder, RecordingRefused
+from server.sessions import new_row
 from server.settings import Settings
 from server.store import Store, StoreError
+from server.tidying import Tidying
 
 if TYPE_CHECKING:
     from server.comparison.comparing import Comparer
@@ -43,6 +49,10 @@ class Assembly:
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
+        self.catalogue = Catalogue(self.store, self.recorder)
+        self.markers = Markers(self.store, self.clock, self.recorder)
+        self.tidying = Tidying(self.store, settings, self.notices)
+        self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
         self.parts = Parts(commands, settings.data.logs, self.clock, self.notices.tell)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         board = Board(settings, self.notices.tell)
@@ -79,6 +89,7 @@ class Assembly:
                     self.handover.start_parts(),
                     self.recorder.run(),
                     self.hub.watch(),
+                    self.tidying.run(),
                     self._tell_health(),
                 )
             ]
@@ -89,6 +100,7 @@ class Assembly:
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.lab.close()
             await self.parts.stop()
+            await self.arming.close()
             await self._end_session()
             await self.bridge.close()
             await asyncio.to_thread(self.store.close)
@@ -98,10 +110,18 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
+            if block.topic.name == "state" and self.settings.sessions.record_at_arming:
+                self.arming.see(block)
 
     def _board_occupied(self) -> str | None:
         session = self.recorder.session
-        return None if session is None else f"“{session.name}” is being recorded. Stop the recording first."
+        # What arming has begun ends by itself: lending the board disarms the robot.
+        if session is None or session.origin == "arming":
+            return None
+        return f"“{session.name}” is being recorded. Stop the recording first."
+
+    async def _armed_row(self, name: str, state: str) -> SessionRow:
+        return await asyncio.to_thread(new_row, self.settings, self.clock, name, "", state, origin="arming")
 
     def _tell_session(self) -> None:
         session = self.recorder.session
@@ -109,6 +129,7 @@ class Assembly:
 
     async def _tell_health(self) -> None:
         while True:
+            self.arming.tick()
             health = self.watch.health()
             self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
             await asyncio.sleep(HEALTH_SECONDS)

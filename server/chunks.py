@@ -3,6 +3,7 @@
 "shuffle-zlib": rows of equal size (the sample's time, then its record, as `robot_runtime.topics` says), with
 all first bytes of the rows first, then all second bytes, and so on; then zlib. Slowly changing numbers have
 nearly equal high bytes, which lie side by side that way. "lines-zlib": a JSON object a line; then zlib.
+"pictures": of each picture its size (u32, little-endian), its time (f64), and the JPEG file, of that size.
 What the fields of a row are is stored with each session (`describe_topics`), so that a recording stays
 readable when the definitions have changed.
 """
@@ -20,6 +21,10 @@ from robot_runtime.topics import TIME, TOPICS, Kind, Topic
 
 ROWS_ENCODING = "shuffle-zlib"
 DOCUMENTS_ENCODING = "lines-zlib"
+PICTURES_ENCODING = "pictures"
+RECORDED = tuple(topic for topic in TOPICS if topic.kind is not Kind.PICTURE or topic.name == "thumbnail")
+"""All but the pictures that only a watcher is shown."""
+PICTURE_SIZE = Struct("<I")
 LEVEL = 1
 """zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""
 
@@ -52,6 +57,18 @@ def unshuffle(shuffled: bytes, size: int) -> bytes:
     for place in range(size):
         rows[place::size] = shuffled[place * count : (place + 1) * count]
     return bytes(rows)
+
+
+def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
+    """How these payloads of a topic's blocks are encoded, their chunk, and its first and last sample's times.
+
+    Raises ValueError, RecursionError or zlib.error where they are not what the topic says.
+    """
+    if topic.kind is Kind.ROWS:
+        return ROWS_ENCODING, *encode_rows(payloads, topic.row_bytes)
+    if topic.kind is Kind.PICTURE:
+        return PICTURES_ENCODING, *encode_pictures(payloads)
+    return DOCUMENTS_ENCODING, *encode_documents(payloads, count)
 
 
 def encode_rows(payloads: Sequence[bytes], size: int) -> tuple[bytes, float, float]:
@@ -95,9 +112,37 @@ def decode_documents(data: bytes) -> Iterator[dict[str, Any]]:
         yield json.loads(line)
 
 
+def encode_pictures(payloads: Sequence[bytes]) -> tuple[bytes, float, float]:
+    """The chunk of these pictures, each with its time first, and the times of the first and the last.
+
+    Raises ValueError where they have none.
+    """
+    if any(len(payload) <= TIME.size for payload in payloads):
+        raise ValueError("a picture without a time or without bytes")
+    first, last = TIME.unpack_from(payloads[0])[0], TIME.unpack_from(payloads[-1])[0]
+    if not (isfinite(first) and isfinite(last)):
+        raise ValueError(f"pictures from {first} s to {last} s")
+    return b"".join(PICTURE_SIZE.pack(len(one) - TIME.size) + one for one in payloads), first, last
+
+
+def decode_pictures(data: bytes) -> Iterator[tuple[float, bytes]]:
+    """The time (s) and the JPEG file of each picture of a chunk. Raises ValueError where it is damaged."""
+    at = 0
+    while at < len(data):
+        start = at + PICTURE_SIZE.size + TIME.size
+        if start > len(data):
+            raise ValueError("a picture is cut off")
+        (size,) = PICTURE_SIZE.unpack_from(data, at)
+        (time,) = TIME.unpack_from(data, at + PICTURE_SIZE.size)
+        at = start + size
+        if at > len(data):
+            raise ValueError("a picture is cut off")
+        yield time, data[start:at]
+
+
 def describe_topics() -> dict[str, Any]:
     """What the recorded topics' samples consist of, for a reader who has nothing but the database."""
-    return {topic.name: _describe(topic) for topic in TOPICS if topic.kind is not Kind.PICTURE}
+    return {topic.name: _describe(topic) for topic in RECORDED}
 
 
 def row_layout(topic: dict[str, Any]) -> RowLayout:
@@ -117,9 +162,10 @@ def row_layout(topic: dict[str, Any]) -> RowLayout:
 
 
 def _describe(topic: Topic) -> dict[str, Any]:
-    assert topic.record is not None
     described: dict[str, Any] = {"meaning": topic.meaning, "kind": topic.kind.name.lower()}
-    if issubclass(topic.record, Record):
+    if topic.record is None:
+        described["fields"] = []
+    elif issubclass(topic.record, Record):
         described["row_bytes"] = topic.row_bytes
         described["fields"] = [
             {

@@ -44,7 +44,7 @@ class Export:
             )
             counts = self._recording.counts()
             for name, topic in self._recording.topics.items():
-                if name not in counts:
+                if name not in counts or topic["kind"] == "picture":
                     continue
                 with archive.open(f"{name}.csv", "w") as file:
                     for lines in self._lines(name, topic):

@@ -163,6 +163,8 @@ class Hub:
         rows: list[Block] = []
         documents: list[Block] = []
         for block in blocks:
+            if block.topic.name == "thumbnail":
+                continue
             if block.topic.kind is Kind.PICTURE:
                 self.picture = block.data
                 self.picture_number += 1

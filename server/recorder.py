@@ -19,8 +19,8 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col
 
 from robot_runtime.clock import Clock
-from robot_runtime.topics import Block, Kind, Topic
-from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, encode_documents, encode_rows
+from robot_runtime.topics import Block, Topic
+from server.chunks import RECORDED, encode
 from server.models import Chunk, Gap, SessionRow
 from server.notices import Notices
 from server.sessions import Session, from_row
@@ -139,10 +139,17 @@ class Recorder:
         self._changed()
         return done
 
+    def amend(self, session: Session) -> None:
+        """Take over what people have written about the session, if it is the one that records."""
+        if self.session is not None and self.session.id == session.id:
+            written = session.model_dump(include={"name", "note", "tags", "markers", "kept"})
+            self.session = self.session.model_copy(update=written)
+            self._changed()
+
     def add(self, block: Block) -> None:
         """Take in a block; without a session it is passed over."""
         topic = block.topic
-        if not self._accepts or topic.kind is Kind.PICTURE:
+        if not self._accepts or topic not in RECORDED:
             return
         run = self._runs.get(topic.id)
         expected = self._expected.get(topic.id, block.first)
@@ -219,7 +226,8 @@ class Recorder:
         self._waiting = _Batch()
         if final:
             changes["ended"] = datetime.fromtimestamp(changes["ended"], UTC)
-        self.session = session.model_copy(update=changes)
+        # Somebody may have written about it meanwhile.
+        self.session = self.session.model_copy(update=changes)
         self._changed()
         return self.session
 
@@ -228,12 +236,7 @@ class Recorder:
             run = batch.runs.pop(0)
             name = run.topic.name
             try:
-                if run.topic.kind is Kind.ROWS:
-                    encoding = ROWS_ENCODING
-                    data, first_time, last_time = encode_rows(run.payloads, run.topic.row_bytes)
-                else:
-                    encoding = DOCUMENTS_ENCODING
-                    data, first_time, last_time = encode_documents(run.payloads, run.count)
+                encoding, data, first_time, last_time = encode(run.topic, run.payloads, run.count)
             except (ValueError, RecursionError, zlib.error) as problem:
                 log.warning("samples of %s cannot be recorded: %s", name, problem)
                 batch.note(name, "damaged", run.count, now)

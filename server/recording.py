@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from sqlmodel import col, func, select
 
-from server.chunks import DOCUMENTS_ENCODING, ROWS_ENCODING, decode_documents, decode_rows, row_layout
+from server.chunks import (
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_documents,
+    decode_pictures,
+    decode_rows,
+    row_layout,
+)
 from server.models import Chunk, SessionRow
 from server.store import Store
 
@@ -70,6 +78,13 @@ class Recording:
             with _reading(chunk, topic, DOCUMENTS_ENCODING):
                 documents = list(decode_documents(chunk.data))
             yield from (one for one in documents if start <= one["time"] <= end)
+
+    def pictures(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
+        """The pictures between `start` and `end`: their times and their JPEG files."""
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, PICTURES_ENCODING):
+                pictures = list(decode_pictures(chunk.data))
+            yield from (one for one in pictures if start <= one[0] <= end)
 
     def columns(
         self, topic: str, names: Sequence[str], start: float = -inf, end: float = inf

@@ -10,6 +10,9 @@ from pathlib import Path
 from migrations import HEAD
 from server.settings import DataFolder, SetupError
 
+INCREMENTAL = 2
+"""SQLite's auto_vacuum in which pages that became free are given back a few at a time, when asked for."""
+
 
 def prepare(folder: DataFolder) -> None:
     """Create or upgrade the database; an older one is copied to `backups` first.
@@ -23,6 +26,7 @@ def prepare(folder: DataFolder) -> None:
         if revision is not None:
             _refuse_unknown(revision, folder.database)
             _back_up(folder, revision)
+            _make_shrinkable(folder.database)
         _upgrade(folder.database)
     except sqlite3.DatabaseError as problem:
         raise SetupError(
@@ -70,6 +74,15 @@ def _back_up(folder: DataFolder, revision: str) -> None:
     _sync(folder.backups)
 
 
+def _make_shrinkable(database: Path) -> None:
+    """Have room given back of which an older version only made use again; it takes a copy of everything."""
+    with closing(sqlite3.connect(database, isolation_level=None)) as connection:
+        (kind,) = connection.execute("PRAGMA auto_vacuum").fetchone()
+        if kind != INCREMENTAL:
+            connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
+            connection.execute("VACUUM")
+
+
 def _upgrade(database: Path) -> None:
     # Alembic is loaded only where there is something to do: it costs a Raspberry Pi time and memory.
     from alembic import command
@@ -81,6 +94,8 @@ def _upgrade(database: Path) -> None:
     config.set_main_option("script_location", str(_scripts()))
     config.set_main_option("path_separator", "os")
     with _driver_errors(), engine.connect() as connection:
+        # Of a database that has tables already this changes nothing.
+        connection.exec_driver_sql(f"PRAGMA auto_vacuum = {INCREMENTAL}")
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
         connection.commit()

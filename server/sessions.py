@@ -1,14 +1,16 @@
-"""Sessions as the interface shows them, and how they are found in the database."""
+"""Sessions as the interface shows them, and how a new one begins."""
 
 import json
+from collections.abc import Sequence
 from datetime import UTC, datetime
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, Field
-from sqlmodel import col, desc, select
 
-from robot_runtime.clock import Clock
+from robot_runtime.clock import Clock, boot
+from robot_runtime.firmware import firmware_path
 from robot_runtime.packets import DEFINITIONS_HASH
+from robot_runtime.provenance import hash_firmware, hash_software
 from server import VERSION
 from server.chunks import describe_topics
 from server.models import SessionRow
@@ -17,8 +19,11 @@ from server.store import Store
 
 IDENTIFIER_MAX = 2**63 - 1
 """SQLite's largest number."""
+REMOVING = "removing"
+"""State of a row whose samples are being removed: to everybody it is gone already."""
 
 State = Literal["recording", "complete", "interrupted"]
+Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
 
 class Session(BaseModel):
@@ -27,18 +32,95 @@ class Session(BaseModel):
     id: int
     name: str
     note: str
+    tags: list[str] = Field(description="in alphabetical order")
+    markers: int = Field(description="how many moments are marked")
     state: State
+    origin: Origin = Field(
+        description="who began it: an operator, arming, a scenario in real time, one in simulated time; "
+        "or it was imported"
+    )
     started: datetime = Field(description="UTC")
     ended: datetime | None = Field(description="UTC; null while it records")
     duration: float = Field(description="s, up to the last samples that are stored")
     samples: int = Field(description="samples stored, all topics together")
     bytes: int = Field(description="bytes stored, compressed")
     robot: str
+    version: str = Field(description="of the server that recorded it")
     definitions: str = Field(description="hash of the packet definitions, 8 hexadecimal digits")
+    firmware: str = Field(description="hash of the firmware, 16 hexadecimal digits; empty where unknown")
+    software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
+    scenario_name: str = Field(description="empty without a scenario")
+    seed: int | None
+    kept: bool = Field(description="the retention rule leaves it alone")
+    deleted: datetime | None = Field(description="UTC; since when it has been in the bin")
 
 
-def new_row(settings: Settings, clock: Clock, name: str, note: str, robot_state: str) -> SessionRow:
-    """A session that begins now; without a name it is called after its moment. Raises OSError."""
+class Mark(BaseModel):
+    """A moment that somebody pointed out."""
+
+    id: int
+    time: float = Field(description="s since the session's start")
+    text: str
+    made: datetime = Field(description="UTC")
+
+
+class SessionGap(BaseModel):
+    """Samples that are not in the session: `missed` of them, noticed at `time`."""
+
+    topic: str
+    kind: Literal["missed", "restarted", "not stored", "damaged"]
+    time: float = Field(description="s since the session's start")
+    missed: int
+
+
+class RecordedColumn(BaseModel):
+    """One column of a topic, as it is exported."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class RecordedTopic(BaseModel):
+    """What a session holds of one topic; times are of the first and the last sample, s since its start."""
+
+    name: str
+    meaning: str
+    kind: Literal["rows", "documents", "picture"]
+    count: int
+    first: float
+    last: float
+    columns: list[RecordedColumn]
+
+
+class SessionDetail(Session):
+    """A session with everything that is known of it but the samples."""
+
+    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
+    scenario: str = Field(description="TOML; empty without one")
+    configuration: str = Field(description="robot.toml as it was at the start")
+    robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
+    marks: list[Mark] = Field(description="in the order of their times")
+    gaps: list[SessionGap]
+    topics: list[RecordedTopic]
+
+
+def new_row(
+    settings: Settings,
+    clock: Clock,
+    name: str,
+    note: str,
+    robot_state: str,
+    *,
+    origin: Origin = "operator",
+    scenario: str = "",
+    scenario_name: str = "",
+    seed: int | None = None,
+) -> SessionRow:
+    """A session that begins now; without a name it is called after its moment. Raises OSError.
+
+    It reads files: not for the event loop.
+    """
     now = datetime.now(UTC)
     return SessionRow(
         name=name or f"{now:%Y-%m-%d %H:%M} UTC",
@@ -52,23 +134,35 @@ def new_row(settings: Settings, clock: Clock, name: str, note: str, robot_state:
         configuration=settings.config.read_text(encoding="utf-8", errors="replace"),
         robot_state=robot_state,
         topics=json.dumps(describe_topics(), ensure_ascii=False),
+        boot=boot(),
+        origin=origin,
+        scenario=scenario,
+        scenario_name=scenario_name,
+        seed=seed,
+        firmware=hash_firmware(firmware_path(settings.build, settings.link.baud, ".hex")),
+        software=hash_software(),
     )
 
 
-def from_row(row: SessionRow) -> Session:
+def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Session:
     """The session that a row of the database is."""
-    values = row.model_dump(include=set(Session.model_fields) - {"started", "ended"})
-    ended = None if row.ended is None else datetime.fromtimestamp(row.ended, UTC)
-    return Session(**values, started=datetime.fromtimestamp(row.started, UTC), ended=ended)
-
-
-def list_sessions(store: Store) -> list[Session]:
-    """All sessions, newest first. Raises StoreError."""
-    with store.read() as database:
-        return [from_row(row) for row in database.exec(select(SessionRow).order_by(desc(col(SessionRow.id))))]
+    values = row.model_dump(include=set(Session.model_fields) - {"started", "ended", "deleted"})
+    return Session(
+        **values,
+        tags=sorted(tags, key=str.casefold),
+        markers=markers,
+        started=datetime.fromtimestamp(row.started, UTC),
+        ended=_moment(row.ended),
+        deleted=_moment(row.deleted),
+    )
 
 
 def find_row(store: Store, session: int) -> SessionRow | None:
-    """The row of a session; None where there is none of this number. Raises StoreError."""
+    """The row of a session, also from the bin; None where there is none of this number. Raises StoreError."""
     with store.read() as database:
-        return database.get(SessionRow, session)
+        row = database.get(SessionRow, session)
+        return None if row is None or row.state == REMOVING else row
+
+
+def _moment(time: float | None) -> datetime | None:
+    return None if time is None else datetime.fromtimestamp(time, UTC)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, LinkConfig, load
+from robot_runtime.config import ConfigError, LinkConfig, SessionsConfig, load
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
@@ -41,6 +41,11 @@ class DataFolder:
     def logs(self) -> Path:
         """What the supervised processes print."""
         return self.path / "logs"
+
+    @property
+    def exports(self) -> Path:
+        """Sessions as files, to be taken home."""
+        return self.path / "exports"
 
     @property
     def run(self) -> Path:
@@ -92,6 +97,7 @@ class Settings:
     robot: str = "turtle"
     mode: Mode = "emulated"
     link: LinkConfig = field(default_factory=LinkConfig)
+    sessions: SessionsConfig = field(default_factory=SessionsConfig)
     host: str = "127.0.0.1"
     port: int = 8000
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
@@ -121,6 +127,7 @@ def read_settings(
         robot=loaded.robot.name,
         mode=loaded.robot.mode,
         link=loaded.link,
+        sessions=loaded.sessions,
         host=chosen_host,
         port=chosen_port,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),

@@ -6,6 +6,10 @@ export type Part = Schemas['PartHealth'];
 export type LinkFrame = Schemas['LinkFrame'];
 export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
+export type SessionDetail = Schemas['SessionDetail'];
+export type SessionChanges = Partial<Pick<Session, 'name' | 'note' | 'tags' | 'kept'>>;
+export type Mark = Schemas['Mark'];
+export type Storage = Schemas['Storage'];
 export type CommTestDocument = Schemas['TestDocument'];
 export type CommTestCheck = Schemas['Check'];
 export type CommTestPlace = Schemas['Start']['place'];
@@ -22,7 +26,7 @@ export type ComparisonLine = Schemas['Line'];
 export type Align = Schemas['Align'];
 export type TimeRange = Schemas['TimeRange'];
 export type FigureMeaning = Schemas['FigureMeaning'];
-export type FigureMark = Schemas['Mark'];
+export type FigureMark = Schemas['FigureMark'];
 export type WantedLines = Schemas['Wanted'];
 export type WantedComparison = Schemas['WantedComparison'];
 
@@ -76,7 +80,20 @@ export const api = {
   vision: (wanted: Schemas['Vision']) => command('PUT', '/robot/vision', wanted),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
-  sessions: () => request<Session[]>('GET', '/sessions'),
+  sessions: (deleted = false) => request<Session[]>('GET', `/sessions?deleted=${deleted}`),
+  session: (id: Session['id']) => request<SessionDetail>('GET', `/sessions/${id}`),
+  changeSession: (id: Session['id'], said: SessionChanges) => request<Session>('PATCH', `/sessions/${id}`, said),
+  deleteSession: (id: Session['id']) => request<Session>('DELETE', `/sessions/${id}`),
+  restoreSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/restore`),
+  purgeSession: (id: Session['id']) => command('POST', `/sessions/${id}/purge`),
+  /** `time` in s since the session's start; null marks this very moment of one that records */
+  addMark: (id: Session['id'], time: number | null, text: string) =>
+    request<Mark>('POST', `/sessions/${id}/markers`, { time, text }),
+  changeMark: (id: Session['id'], mark: Mark['id'], said: Partial<Pick<Mark, 'time' | 'text'>>) =>
+    request<Mark>('PATCH', `/sessions/${id}/markers/${mark}`, said),
+  removeMark: (id: Session['id'], mark: Mark['id']) => command('DELETE', `/sessions/${id}/markers/${mark}`),
+  thumbnail: (id: Session['id'], time: number) => `/api/sessions/${id}/thumbnail?time=${time}`,
+  storage: () => request<Storage>('GET', '/storage'),
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),
   signals: (id: Session['id']) => request<Signal[]>('GET', `/sessions/${id}/signals`),

@@ -3,6 +3,7 @@
 import logging
 import threading
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 
 import cv2
@@ -13,7 +14,7 @@ from robot_runtime.errors import Refused
 from robot_runtime.samples import Detection, Event, Severity
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.colours import parse_colours
+from robot_runtime.vision.colours import Picture, parse_colours
 from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pace import Pace
@@ -24,6 +25,10 @@ log = logging.getLogger(__name__)
 RETRY = 2.0
 """s between two attempts to open a camera that failed."""
 JPEG_QUALITY = 80
+THUMBNAIL_SECONDS = 2.0
+"""s between two small pictures for recordings. The runtime does not know whether anything records."""
+THUMBNAIL_WIDTH = 160
+THUMBNAIL_QUALITY = 50
 
 
 class Vision:
@@ -31,8 +36,8 @@ class Vision:
 
     Every picture gives one Detection: of the wanted colour if it is there, else of the largest patch of
     another colour, else of none. Only while `picture_wanted` says that somebody watches is the picture itself
-    handed on, with its time (s), as a JPEG file. All callbacks run on the node's thread. Raises ConfigError
-    where the configuration's colours cannot be used.
+    handed on, with its time (s), as a JPEG file; a small one is every `THUMBNAIL_SECONDS`. All callbacks run
+    on the node's thread. Raises ConfigError where the configuration's colours cannot be used.
     """
 
     def __init__(
@@ -44,6 +49,7 @@ class Vision:
         picture_wanted: Callable[[], bool],
         tell: Callable[[Event], None],
         open_camera: Callable[[], Camera] | None = None,
+        on_thumbnail: Callable[[float, bytes], None] | None = None,
     ) -> None:
         self.colours = parse_colours(config.colours)
         if config.colour not in self.colours:
@@ -58,6 +64,8 @@ class Vision:
         self._clock = clock
         self._on_detection = on_detection
         self._on_picture = on_picture
+        self._on_thumbnail = on_thumbnail
+        self._thumbnail_due = -inf
         self._picture_wanted = picture_wanted
         self._tell = tell
         self._open_camera = open_camera or self._configured_camera
@@ -167,6 +175,9 @@ class Vision:
         if self._picture_wanted():
             _, jpeg = cv2.imencode(".jpg", frame.picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
             self._on_picture(frame.taken, jpeg.tobytes())
+        if self._on_thumbnail is not None and frame.taken >= self._thumbnail_due:
+            self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
+            self._on_thumbnail(frame.taken, _shrink(frame.picture))
 
     def _fail(self, text: str) -> None:
         self._drop_camera()
@@ -193,3 +204,11 @@ class Vision:
         if config.camera == "file":
             return FileCamera(Path(config.file), config.width, config.height, self._clock)
         return CardCamera(config.width, config.height, self._clock, self.colours, lambda: self.card)
+
+
+def _shrink(picture: Picture) -> bytes:
+    height, width = picture.shape[:2]
+    size = (THUMBNAIL_WIDTH, max(1, round(height * THUMBNAIL_WIDTH / width)))
+    small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    _, jpeg = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, THUMBNAIL_QUALITY])
+    return jpeg.tobytes()

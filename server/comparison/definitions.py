@@ -18,7 +18,7 @@ class FigureMeaning(BaseModel):
     meaning: str = Field(description="a sentence for who asks")
 
 
-class Mark(BaseModel):
+class FigureMark(BaseModel):
     """Where a figure is to be seen in the chart of the depth: s since the session's start, and m."""
 
     start: float
@@ -32,7 +32,7 @@ class Figure(BaseModel):
 
     value: float | None
     words: str = Field(default="", description="why there is no value, or what else is to be known")
-    mark: Mark | None = None
+    mark: FigureMark | None = None
 
 
 def _less(name: str, title: str, unit: str, decimals: int, meaning: str) -> FigureMeaning:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from server.comparison.definitions import FIGURES, Figure, Mark
+from server.comparison.definitions import FIGURES, Figure, FigureMark
 from server.comparison.history import read_gaps, set_point_steps
 from server.comparison.limit_cycle import LimitCycle, find_limit_cycle
 from server.comparison.moments import History, Span
@@ -97,7 +97,7 @@ def _depth_figures(
         errors = _held(set_point, part.times) - part.values
         mean = float(errors.mean())
         level = float(part.values.mean())
-        mark = Mark(
+        mark = FigureMark(
             start=steady.start, end=steady.end, low=min(level, level + mean), high=max(level, level + mean)
         )
         found["steady_error"] = Figure(value=mean, mark=mark)
@@ -106,7 +106,9 @@ def _depth_figures(
     if inside.any():
         errors = _held(set_point, depth.times[inside]) - depth.values[inside]
         rms = float(np.sqrt(np.mean(errors**2)))
-        found["rmse"] = Figure(value=rms, mark=Mark(start=wanted.spans[0].start, end=wanted.spans[-1].end))
+        found["rmse"] = Figure(
+            value=rms, mark=FigureMark(start=wanted.spans[0].start, end=wanted.spans[-1].end)
+        )
     return found
 
 
@@ -155,19 +157,21 @@ def _step_figures(response: StepResponse | None) -> dict[str, Figure]:
     rise = Figure(value=None, words=f"{words} The depth never came to 90 % of it.")
     if response.rise_start is not None and response.rise_end is not None:
         levels = sorted(response.start_value + share * height for share in (0.1, 0.9))
-        mark = Mark(start=response.rise_start, end=response.rise_end, low=levels[0], high=levels[1])
+        mark = FigureMark(start=response.rise_start, end=response.rise_end, low=levels[0], high=levels[1])
         rise = Figure(value=response.rise_time, words=words, mark=mark)
     settling = Figure(
         value=response.settling_time,
         words=f"{words} Band: {band * 100:.1f} cm either way."
         if response.settled is not None
         else f"{words} The depth did not stay within {band * 100:.1f} cm until the next step.",
-        mark=Mark(start=begin, end=response.settled or response.end, low=final - band, high=final + band),
+        mark=FigureMark(
+            start=begin, end=response.settled or response.end, low=final - band, high=final + band
+        ),
     )
     over = Figure(value=100 * response.overshoot, words=words)
     if response.peak is not None and response.peak_time is not None:
         low, high = sorted((final, response.peak))
-        over.mark = Mark(start=begin, end=response.peak_time, low=low, high=high)
+        over.mark = FigureMark(start=begin, end=response.peak_time, low=low, high=high)
     return {"rise_time": rise, "settling_time": settling, "overshoot": over}
 
 
@@ -177,8 +181,8 @@ def _cycle_figures(cycle: LimitCycle | None, steady: Span, part: Series) -> dict
         return {"cycle_amplitude": none, "cycle_period": none}
     middle = float(np.median([part.values.min(), part.values.max()]))
     low, high = middle - cycle.amplitude / 2, middle + cycle.amplitude / 2
-    height = Mark(start=steady.start, end=steady.end, low=low, high=high)
-    period = Mark(start=steady.start, end=steady.start + cycle.period, low=low, high=high)
+    height = FigureMark(start=steady.start, end=steady.end, low=low, high=high)
+    period = FigureMark(start=steady.start, end=steady.start + cycle.period, low=low, high=high)
     return {
         "cycle_amplitude": Figure(value=cycle.amplitude, mark=height),
         "cycle_period": Figure(value=cycle.period, mark=period),

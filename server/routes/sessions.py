@@ -1,19 +1,19 @@
-"""Sessions: start, stop, list, download."""
+"""Sessions: start, stop, find, describe, delete, download."""
 
 import json
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi import APIRouter, HTTPException, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from pydantic import BaseModel, ConfigDict, Field
-from starlette.responses import StreamingResponse
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from starlette.responses import Response, StreamingResponse
 
 from server.assembly import Assembly
 from server.export import Export
-from server.models import SessionRow
 from server.recorder import RecordingRefused
+from server.recording import Recording
 from server.routes.problems import answers
-from server.sessions import IDENTIFIER_MAX, Session, find_row, from_row, list_sessions, new_row
+from server.sessions import IDENTIFIER_MAX, Origin, Session, SessionDetail, new_row
 
 UNKNOWN = answers(_404="There is no such session")
 STORING = answers(_409="Refused now", _503="The database does not work")
@@ -21,20 +21,43 @@ STORING = answers(_409="Refused now", _503="The database does not work")
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
+Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
+Tag = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
+]
 
 
 class NewSession(BaseModel):
     """A session that is to begin; without a name it is called after its moment."""
 
     model_config = ConfigDict(extra="forbid")
-    name: Annotated[str, Field(max_length=100)] = ""
-    note: Annotated[str, Field(max_length=10_000)] = ""
+    name: Name = ""
+    note: Note = ""
 
 
-@router.get("", summary="All sessions, newest first", operation_id="listSessions")
-def get_sessions(request: Request) -> list[Session]:
-    """All sessions."""
-    return list_sessions(Assembly.of(request).store)
+class SessionChanges(BaseModel):
+    """What people say about a session; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Annotated[Name, Field(min_length=1)] | None = None
+    note: Note | None = None
+    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
+    kept: bool | None = None
+
+
+@router.get("", summary="Sessions, newest first", operation_id="listSessions")
+def get_sessions(
+    request: Request,
+    search: Annotated[
+        str, Query(max_length=200, description="words that name, note, tags or scenario have")
+    ] = "",
+    tag: Annotated[list[str] | None, Query(description="tags that they have, all of them")] = None,
+    origin: Origin | None = None,
+    deleted: Annotated[bool, Query(description="those in the bin instead")] = False,
+) -> list[Session]:
+    """Sessions that are to be found by all that is asked."""
+    return Assembly.of(request).catalogue.list(search, tag or (), origin, deleted=deleted)
 
 
 @router.post("", status_code=201, summary="Start recording", operation_id="startSession", responses=STORING)
@@ -45,7 +68,9 @@ async def start_session(request: Request, wanted: NewSession) -> Session:
         raise RecordingRefused(assembly.bridge.lent)
     state = json.dumps(assembly.watch.state())
     try:
-        row = new_row(assembly.settings, assembly.clock, wanted.name.strip(), wanted.note.strip(), state)
+        row = await run_in_threadpool(
+            new_row, assembly.settings, assembly.clock, wanted.name, wanted.note, state
+        )
     except OSError as problem:
         raise RecordingRefused(
             f"The configuration {assembly.settings.config} cannot be read: {problem}"
@@ -54,9 +79,20 @@ async def start_session(request: Request, wanted: NewSession) -> Session:
 
 
 @router.get("/{session}", summary="One session", operation_id="getSession", responses=UNKNOWN)
-def get_session(request: Request, session: Identifier) -> Session:
-    """One session."""
-    return from_row(_find(request, session))
+def get_session(request: Request, session: Identifier) -> SessionDetail:
+    """One session with everything that is known of it, but its samples; also from the bin."""
+    return Assembly.of(request).catalogue.detail(session)
+
+
+@router.patch(
+    "/{session}",
+    summary="Name, note, tag or keep a session",
+    operation_id="changeSession",
+    responses={**UNKNOWN, **STORING},
+)
+async def change_session(request: Request, session: Identifier, wanted: SessionChanges) -> Session:
+    """Change what people say about it; tags are replaced as a whole."""
+    return await Assembly.of(request).catalogue.change(session, **wanted.model_dump())
 
 
 @router.post(
@@ -64,8 +100,64 @@ def get_session(request: Request, session: Identifier) -> Session:
 )
 async def stop_session(request: Request, session: Identifier) -> Session:
     """Stop recording; everything that arrived before is stored when this answers."""
-    await run_in_threadpool(_find, request, session)
-    return await Assembly.of(request).recorder.stop(session)
+    assembly = Assembly.of(request)
+    await run_in_threadpool(assembly.catalogue.find, session)
+    return await assembly.recorder.stop(session)
+
+
+@router.delete(
+    "/{session}",
+    summary="Put a session into the bin",
+    operation_id="deleteSession",
+    responses={**UNKNOWN, **STORING},
+)
+async def delete_session(request: Request, session: Identifier) -> Session:
+    """It can be restored until it is purged, or until `sessions.undo_days` have passed."""
+    return await Assembly.of(request).catalogue.delete(session)
+
+
+@router.post(
+    "/{session}/restore",
+    summary="Take a session out of the bin",
+    operation_id="restoreSession",
+    responses={**UNKNOWN, **STORING},
+)
+async def restore_session(request: Request, session: Identifier) -> Session:
+    """Undo its deletion."""
+    return await Assembly.of(request).catalogue.restore(session)
+
+
+@router.post(
+    "/{session}/purge",
+    status_code=204,
+    summary="Remove a session that is in the bin for good",
+    operation_id="purgeSession",
+    responses={**UNKNOWN, **STORING},
+)
+async def purge_session(request: Request, session: Identifier) -> None:
+    """It is gone at once; the room that it took comes back little by little."""
+    assembly = Assembly.of(request)
+    await assembly.catalogue.purge(session)
+    assembly.tidying.wake()
+
+
+@router.get(
+    "/{session}/thumbnail",
+    summary="A small picture of what the camera saw",
+    operation_id="getThumbnail",
+    response_class=Response,
+    responses={200: {"content": {"image/jpeg": {}}, "description": "The picture"}, **UNKNOWN},
+)
+def get_thumbnail(
+    request: Request, session: Identifier, time: Annotated[float, Query(description="s since the start")]
+) -> Response:
+    """The first from this time on."""
+    assembly = Assembly.of(request)
+    row = assembly.catalogue.row(session)
+    recording = Recording(assembly.store, row)
+    for _, jpeg in recording.pictures("thumbnail", row.started_steady + time):
+        return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
+    raise HTTPException(404, f"Session {session} has no picture from {time:g} s on.")
 
 
 @router.get(
@@ -77,13 +169,7 @@ async def stop_session(request: Request, session: Identifier) -> Session:
 )
 def get_csv(request: Request, session: Identifier) -> StreamingResponse:
     """One CSV file for each topic, with units in its header, and `session.json` with everything else."""
-    export = Export(Assembly.of(request).store, _find(request, session))
+    assembly = Assembly.of(request)
+    export = Export(assembly.store, assembly.catalogue.row(session))
     headers = {"content-disposition": f'attachment; filename="{export.file_name}"'}
     return StreamingResponse(export.stream(), media_type="application/zip", headers=headers)
-
-
-def _find(request: Request, session: int) -> SessionRow:
-    row = find_row(Assembly.of(request).store, session)
-    if row is None:
-        raise HTTPException(404, f"There is no session {session}; GET /api/sessions lists those there are.")
-    return row

@@ -90,6 +90,7 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     recording.click()
     page.get_by_role("button", name="Stop recording").click()
     page.get_by_role("link", name="Sessions").click()
+    page.get_by_role("link", name="figure 14", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Export figure 14 as CSV").click()
     path = tmp_path / "session.zip"

@@ -32,6 +32,10 @@ def picture_block(number: int, size: int = 20) -> Block:
     return Block.of(BY_NAME["picture"], 1, number, row(100.0, bytes([number % 256]) * size))
 
 
+def thumbnail_block(number: int, time: float, jpeg: bytes) -> Block:
+    return Block.of(BY_NAME["thumbnail"], 1, number, row(time, jpeg))
+
+
 def link_block(first: int, bytes_received: int) -> Block:
     values: dict[str, Any] = dict.fromkeys(LinkStatistics.wires, 0) | {"bytes_received": bytes_received}
     return Block.of(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))

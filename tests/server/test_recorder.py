@@ -14,11 +14,12 @@ from sqlmodel import col, select
 import server.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.topics import BY_NAME, Block
+from server.catalogue import Catalogue
 from server.chunks import decode_rows
 from server.models import Chunk, Gap
 from server.notices import Notices
 from server.recorder import NUMBERS, Recorder, RecordingRefused
-from server.sessions import find_row, list_sessions, new_row
+from server.sessions import find_row, new_row
 from server.settings import Settings
 from server.store import Store, StoreError
 from tests.server.blocks import debug_block, depth_block, picture_block
@@ -205,7 +206,7 @@ def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
         deck.recorder.add(debug_block(0, "a", "b"))
         deck.clock.forward(2.5)
         await deck.recorder.flush()
-        (shown,) = list_sessions(deck.store)
+        (shown,) = Catalogue(deck.store).list()
         assert (shown.samples, shown.duration, shown.state, shown.ended) == (7, 2.5, "recording", None)
         assert shown.bytes == sum(len(chunk.data) for chunk in deck.chunks() + deck.chunks("debug"))
         assert shown == deck.recorder.session
@@ -213,7 +214,7 @@ def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
         done = await deck.recorder.stop(session)
         assert (done.state, done.duration) == ("complete", 3.5)
         assert done.ended is not None
-        assert done == list_sessions(deck.store)[0]
+        assert done == Catalogue(deck.store).list()[0]
         row = find_row(deck.store, session)
         assert row is not None
         assert row.configuration == deck.settings.config.read_text()
@@ -372,12 +373,12 @@ def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) 
         await deck.recorder.flush()
         after = Deck(deck.store, deck.settings)
         await after.recorder.recover()
-        (session,) = list_sessions(deck.store)
+        (session,) = Catalogue(deck.store).list()
         assert (session.state, session.samples, session.duration) == ("interrupted", 5, 4)
         assert session.ended is not None
         assert (session.ended - session.started).total_seconds() == pytest.approx(4, abs=1e-5)
         assert after.numbers() == list(range(5))
         await after.start("next")
-        assert [one.state for one in list_sessions(deck.store)] == ["recording", "interrupted"]
+        assert [one.state for one in Catalogue(deck.store).list()] == ["recording", "interrupted"]
 
     play(scenario)

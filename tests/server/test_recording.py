@@ -3,11 +3,12 @@ import asyncio
 import pytest
 from sqlalchemy import text
 
+from server.chunks import decode_pictures, encode_pictures
 from server.recording import CHUNKS_AT_ONCE, Recording, RecordingError
 from server.sessions import find_row
 from server.settings import Settings
 from server.store import Store
-from tests.server.blocks import debug_block, depth_block, state_block
+from tests.server.blocks import debug_block, depth_block, picture_block, state_block, thumbnail_block
 from tests.server.test_export import record
 
 
@@ -66,3 +67,23 @@ def test_what_cannot_be_read_is_told(store: Store, settings: Settings, change: s
         recording.columns("depth", ["depth"])
     with pytest.raises(RecordingError, match=f"chunk 0 of state {words}"):
         list(recording.changes("state"))
+
+
+def test_thumbnails_are_kept_and_other_pictures_are_not(store: Store, settings: Settings) -> None:
+    small = [thumbnail_block(n, 100.0 + 2 * n, bytes([n]) * (n + 1)) for n in range(3)]
+    recording = read(store, record(store, settings, [small[0], small[1], picture_block(0)], [small[2]]))
+    assert recording.counts() == {"thumbnail": 3}
+    assert list(recording.pictures("thumbnail")) == [
+        (100.0, b"\0"),
+        (102.0, b"\1\1"),
+        (104.0, b"\2\2\2"),
+    ]
+    assert [time for time, _ in recording.pictures("thumbnail", 101.0, 103.0)] == [102.0]
+
+
+def test_a_chunk_of_pictures_that_is_cut_off_is_damaged() -> None:
+    data, _, _ = encode_pictures([thumbnail_block(0, 1.0, b"jpeg").payload])
+    assert list(decode_pictures(data)) == [(1.0, b"jpeg")]
+    for end in range(1, len(data)):
+        with pytest.raises(ValueError, match="cut off"):
+            list(decode_pictures(data[:end]))

@@ -416,8 +416,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All sessions, newest first
-         * @description All sessions.
+         * Sessions, newest first
+         * @description Sessions that are to be found by all that is asked.
          */
         get: operations["listSessions"];
         put?: never;
@@ -441,15 +441,23 @@ export interface paths {
         };
         /**
          * One session
-         * @description One session.
+         * @description One session with everything that is known of it, but its samples; also from the bin.
          */
         get: operations["getSession"];
         put?: never;
         post?: never;
-        delete?: never;
+        /**
+         * Put a session into the bin
+         * @description It can be restored until it is purged, or until `sessions.undo_days` have passed.
+         */
+        delete: operations["deleteSession"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Name, note, tag or keep a session
+         * @description Change what people say about it; tags are replaced as a whole.
+         */
+        patch: operations["changeSession"];
         trace?: never;
     };
     "/api/sessions/{session}/csv": {
@@ -466,6 +474,90 @@ export interface paths {
         get: operations["downloadSession"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/markers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Mark a moment
+         * @description Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended.
+         */
+        post: operations["addMark"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/markers/{mark}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Take a mark away
+         * @description Take it away for good.
+         */
+        delete: operations["removeMark"];
+        options?: never;
+        head?: never;
+        /**
+         * Change a mark
+         * @description Move it, or say something else of it.
+         */
+        patch: operations["changeMark"];
+        trace?: never;
+    };
+    "/api/sessions/{session}/purge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Remove a session that is in the bin for good
+         * @description It is gone at once; the room that it took comes back little by little.
+         */
+        post: operations["purgeSession"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take a session out of the bin
+         * @description Undo its deletion.
+         */
+        post: operations["restoreSession"];
         delete?: never;
         options?: never;
         head?: never;
@@ -506,6 +598,46 @@ export interface paths {
          * @description Stop recording; everything that arrived before is stored when this answers.
          */
         post: operations["stopSession"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}/thumbnail": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A small picture of what the camera saw
+         * @description The first from this time on.
+         */
+        get: operations["getThumbnail"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/storage": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Storage used and free
+         * @description The disk that holds the data folder, and the rules by which sessions go.
+         */
+        get: operations["getStorage"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -810,7 +942,7 @@ export interface components {
          * @description A figure's value, or why there is none.
          */
         Figure: {
-            mark?: components["schemas"]["Mark"] | null;
+            mark?: components["schemas"]["FigureMark"] | null;
             /** Value */
             value: number | null;
             /**
@@ -819,6 +951,23 @@ export interface components {
              * @default
              */
             words: string;
+        };
+        /**
+         * FigureMark
+         * @description Where a figure is to be seen in the chart of the depth: s since the session's start, and m.
+         */
+        FigureMark: {
+            /** End */
+            end: number;
+            /** High */
+            high?: number | null;
+            /**
+             * Low
+             * @description null: as high as the chart
+             */
+            low?: number | null;
+            /** Start */
+            start: number;
         };
         /**
          * FigureMeaning
@@ -994,20 +1143,47 @@ export interface components {
         };
         /**
          * Mark
-         * @description Where a figure is to be seen in the chart of the depth: s since the session's start, and m.
+         * @description A moment that somebody pointed out.
          */
         Mark: {
-            /** End */
-            end: number;
-            /** High */
-            high?: number | null;
+            /** Id */
+            id: number;
             /**
-             * Low
-             * @description null: as high as the chart
+             * Made
+             * Format: date-time
+             * @description UTC
              */
-            low?: number | null;
-            /** Start */
-            start: number;
+            made: string;
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+        };
+        /**
+         * MarkChanges
+         * @description What is to be different; what is left out stays as it is.
+         */
+        MarkChanges: {
+            /** Text */
+            text?: string | null;
+            /** Time */
+            time?: number | null;
+        };
+        /**
+         * NewMark
+         * @description A moment to be marked: s since the session's start, or null for now.
+         */
+        NewMark: {
+            /**
+             * Text
+             * @default
+             */
+            text: string;
+            /** Time */
+            time?: number | null;
         };
         /**
          * NewSession
@@ -1060,6 +1236,41 @@ export interface components {
         Problem: {
             /** Detail */
             detail: string;
+        };
+        /**
+         * RecordedColumn
+         * @description One column of a topic, as it is exported.
+         */
+        RecordedColumn: {
+            /** Meaning */
+            meaning: string;
+            /** Name */
+            name: string;
+            /** Unit */
+            unit: string;
+        };
+        /**
+         * RecordedTopic
+         * @description What a session holds of one topic; times are of the first and the last sample, s since its start.
+         */
+        RecordedTopic: {
+            /** Columns */
+            columns: components["schemas"]["RecordedColumn"][];
+            /** Count */
+            count: number;
+            /** First */
+            first: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "rows" | "documents" | "picture";
+            /** Last */
+            last: number;
+            /** Meaning */
+            meaning: string;
+            /** Name */
+            name: string;
         };
         /**
          * Run
@@ -1206,6 +1417,11 @@ export interface components {
              */
             definitions: string;
             /**
+             * Deleted
+             * @description UTC; since when it has been in the bin
+             */
+            deleted: string | null;
+            /**
              * Duration
              * @description s, up to the last samples that are stored
              */
@@ -1215,12 +1431,33 @@ export interface components {
              * @description UTC; null while it records
              */
             ended: string | null;
+            /**
+             * Firmware
+             * @description hash of the firmware, 16 hexadecimal digits; empty where unknown
+             */
+            firmware: string;
             /** Id */
             id: number;
+            /**
+             * Kept
+             * @description the retention rule leaves it alone
+             */
+            kept: boolean;
+            /**
+             * Markers
+             * @description how many moments are marked
+             */
+            markers: number;
             /** Name */
             name: string;
             /** Note */
             note: string;
+            /**
+             * Origin
+             * @description who began it: an operator, arming, a scenario in real time, one in simulated time; or it was imported
+             * @enum {string}
+             */
+            origin: "operator" | "arming" | "scenario" | "simulated" | "import";
             /** Robot */
             robot: string;
             /**
@@ -1228,6 +1465,18 @@ export interface components {
              * @description samples stored, all topics together
              */
             samples: number;
+            /**
+             * Scenario Name
+             * @description empty without a scenario
+             */
+            scenario_name: string;
+            /** Seed */
+            seed: number | null;
+            /**
+             * Software
+             * @description hash of the runtime's sources, 16 hexadecimal digits, or empty
+             */
+            software: string;
             /**
              * Started
              * Format: date-time
@@ -1239,6 +1488,179 @@ export interface components {
              * @enum {string}
              */
             state: "recording" | "complete" | "interrupted";
+            /**
+             * Tags
+             * @description in alphabetical order
+             */
+            tags: string[];
+            /**
+             * Version
+             * @description of the server that recorded it
+             */
+            version: string;
+        };
+        /**
+         * SessionChanges
+         * @description What people say about a session; what is left out stays as it is.
+         */
+        SessionChanges: {
+            /** Kept */
+            kept?: boolean | null;
+            /** Name */
+            name?: string | null;
+            /** Note */
+            note?: string | null;
+            /** Tags */
+            tags?: string[] | null;
+        };
+        /**
+         * SessionDetail
+         * @description A session with everything that is known of it but the samples.
+         */
+        SessionDetail: {
+            /**
+             * Bytes
+             * @description bytes stored, compressed
+             */
+            bytes: number;
+            /**
+             * Configuration
+             * @description robot.toml as it was at the start
+             */
+            configuration: string;
+            /**
+             * Definitions
+             * @description hash of the packet definitions, 8 hexadecimal digits
+             */
+            definitions: string;
+            /**
+             * Deleted
+             * @description UTC; since when it has been in the bin
+             */
+            deleted: string | null;
+            /**
+             * Duration
+             * @description s, up to the last samples that are stored
+             */
+            duration: number;
+            /**
+             * Ended
+             * @description UTC; null while it records
+             */
+            ended: string | null;
+            /**
+             * Firmware
+             * @description hash of the firmware, 16 hexadecimal digits; empty where unknown
+             */
+            firmware: string;
+            /** Gaps */
+            gaps: components["schemas"]["SessionGap"][];
+            /** Id */
+            id: number;
+            /**
+             * Identifier
+             * @description the same wherever it is imported, 32 hexadecimal digits
+             */
+            identifier: string;
+            /**
+             * Kept
+             * @description the retention rule leaves it alone
+             */
+            kept: boolean;
+            /**
+             * Markers
+             * @description how many moments are marked
+             */
+            markers: number;
+            /**
+             * Marks
+             * @description in the order of their times
+             */
+            marks: components["schemas"]["Mark"][];
+            /** Name */
+            name: string;
+            /** Note */
+            note: string;
+            /**
+             * Origin
+             * @description who began it: an operator, arming, a scenario in real time, one in simulated time; or it was imported
+             * @enum {string}
+             */
+            origin: "operator" | "arming" | "scenario" | "simulated" | "import";
+            /** Robot */
+            robot: string;
+            /**
+             * Robot State
+             * @description the `state` document at the start
+             */
+            robot_state: {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Samples
+             * @description samples stored, all topics together
+             */
+            samples: number;
+            /**
+             * Scenario
+             * @description TOML; empty without one
+             */
+            scenario: string;
+            /**
+             * Scenario Name
+             * @description empty without a scenario
+             */
+            scenario_name: string;
+            /** Seed */
+            seed: number | null;
+            /**
+             * Software
+             * @description hash of the runtime's sources, 16 hexadecimal digits, or empty
+             */
+            software: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "recording" | "complete" | "interrupted";
+            /**
+             * Tags
+             * @description in alphabetical order
+             */
+            tags: string[];
+            /** Topics */
+            topics: components["schemas"]["RecordedTopic"][];
+            /**
+             * Version
+             * @description of the server that recorded it
+             */
+            version: string;
+        };
+        /**
+         * SessionGap
+         * @description Samples that are not in the session: `missed` of them, noticed at `time`.
+         */
+        SessionGap: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "missed" | "restarted" | "not stored" | "damaged";
+            /** Missed */
+            missed: number;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+            /** Topic */
+            topic: string;
         };
         /**
          * SetPoints
@@ -1342,6 +1764,66 @@ export interface components {
             vision_colour: string;
             /** Vision Rate */
             vision_rate: number;
+        };
+        /**
+         * Storage
+         * @description Bytes of the disk that holds the data folder, and the rules by which sessions go by themselves.
+         */
+        Storage: {
+            /**
+             * Bin
+             * @description how many are in the bin
+             */
+            bin: number;
+            /** Bin Bytes */
+            bin_bytes: number;
+            /**
+             * Database
+             * @description bytes of the database's files
+             */
+            database: number;
+            /**
+             * Exports
+             * @description bytes of the files that were exported
+             */
+            exports: number;
+            /**
+             * Free
+             * @description bytes that may still be written on this disk
+             */
+            free: number;
+            /**
+             * Keep Days
+             * @description days after which a session goes into the bin by itself; 0: never
+             */
+            keep_days: number;
+            /**
+             * Keep Free
+             * @description GB that are kept free by removing the oldest sessions; 0: no such rule
+             */
+            keep_free: number;
+            /**
+             * Reusable
+             * @description of these, bytes that nothing is in any more
+             */
+            reusable: number;
+            /**
+             * Sessions
+             * @description how many are kept, without the bin
+             */
+            sessions: number;
+            /** Sessions Bytes */
+            sessions_bytes: number;
+            /**
+             * Total
+             * @description bytes of this disk
+             */
+            total: number;
+            /**
+             * Undo Days
+             * @description days in the bin before a session is removed
+             */
+            undo_days: number;
         };
         /**
          * TableCell
@@ -2358,7 +2840,15 @@ export interface operations {
     };
     listSessions: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description words that name, note, tags or scenario have */
+                search?: string;
+                /** @description tags that they have, all of them */
+                tag?: string[] | null;
+                origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
+                /** @description those in the bin instead */
+                deleted?: boolean;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -2372,6 +2862,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Session"][];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };
@@ -2444,7 +2943,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Session"];
+                    "application/json": components["schemas"]["SessionDetail"];
                 };
             };
             /** @description There is no such session */
@@ -2463,6 +2962,126 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    deleteSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    changeSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SessionChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2503,6 +3122,302 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    addMark: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewMark"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mark"];
+                };
+            };
+            /** @description There is no such session, or it has no such mark */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    removeMark: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+                mark: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such session, or it has no such mark */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    changeMark: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+                mark: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MarkChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mark"];
+                };
+            };
+            /** @description There is no such session, or it has no such mark */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    purgeSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restoreSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2610,6 +3525,69 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getThumbnail: {
+        parameters: {
+            query: {
+                /** @description s since the start */
+                time: number;
+            };
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The picture */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": unknown;
+                };
+            };
+            /** @description There is no such session */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    getStorage: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Storage"];
                 };
             };
         };

@@ -30,6 +30,7 @@ class Listener:
     watching: bool = False
     detections: list[Detection] = field(default_factory=list)
     pictures: list[tuple[float, bytes]] = field(default_factory=list)
+    thumbnails: list[tuple[float, bytes]] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
 
     def node(
@@ -43,6 +44,7 @@ class Listener:
             lambda: self.watching,
             self.events.append,
             camera,
+            lambda time, jpeg: self.thumbnails.append((time, jpeg)),
         )
 
 
@@ -254,3 +256,17 @@ class TestThread:
     def test_close_before_start(self, listener: Listener, clock: SimulatedClock) -> None:
         listener.node(clock).close()
         assert listener.detections == []
+
+
+def test_a_small_picture_comes_every_two_seconds_whoever_watches(
+    listener: Listener, clock: SimulatedClock
+) -> None:
+    node = listener.node(clock)
+    for _ in range(20):
+        node.look()
+        clock.forward(0.25)
+    assert [time for time, _ in listener.thumbnails] == [20.0, 22.0, 24.0]
+    picture = cv2.imdecode(np.frombuffer(listener.thumbnails[0][1], np.uint8), cv2.IMREAD_COLOR)
+    assert picture is not None
+    assert picture.shape == (120, 160, 3)
+    assert listener.pictures == []

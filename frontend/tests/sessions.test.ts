@@ -1,0 +1,72 @@
+import { describe, expect, it } from 'vitest';
+import type { Session, SessionDetail } from '../src/api';
+import { asked, frames } from '../src/pages/sessions/film';
+import { find, tagsOf, toggle, withTags } from '../src/pages/sessions/find';
+import { compareLink, replayLink } from '../src/pages/sessions/links';
+import { gapWords } from '../src/pages/sessions/words';
+
+const session = (name: string, more: Partial<Session> = {}) =>
+  ({ name, note: '', scenario_name: '', tags: [], ...more }) as unknown as Session;
+const names = (sessions: readonly Session[]) => sessions.map(({ name }) => name);
+
+describe('find', () => {
+  const all = [
+    session('Hover', { note: 'im KÄLTEN Becken', tags: ['pool', 'thesis'] }),
+    session('Dive', { scenario_name: 'figure_14', tags: ['pool'] }),
+    session('Sea'),
+  ];
+
+  it('wants every word, wherever it stands', () => {
+    expect(names(find(all, '  kälten HOVER ', []))).toEqual(['Hover']);
+    expect(names(find(all, 'figure', []))).toEqual(['Dive']);
+    expect(names(find(all, 'pool', []))).toEqual(['Hover', 'Dive']);
+    expect(names(find(all, 'hover dive', []))).toEqual([]);
+    expect(names(find(all, '', []))).toEqual(['Hover', 'Dive', 'Sea']);
+  });
+
+  it('wants every tag', () => {
+    expect(names(find(all, '', ['pool']))).toEqual(['Hover', 'Dive']);
+    expect(names(find(all, '', ['pool', 'thesis']))).toEqual(['Hover']);
+    expect(tagsOf(all)).toEqual(['pool', 'thesis']);
+  });
+});
+
+describe('tags', () => {
+  it('are added once, whatever their letters', () => {
+    expect(withTags(['pool'], ' Pool, sea ,, sea')).toEqual(['pool', 'sea']);
+  });
+
+  it('are toggled', () => {
+    expect(toggle([1, 2], 2)).toEqual([1]);
+    expect(toggle([1], 2)).toEqual([1, 2]);
+  });
+});
+
+describe('film', () => {
+  const topics = (count: number, first: number, last: number) =>
+    [{ name: 'thumbnail', count, first, last }] as SessionDetail['topics'];
+
+  it('spreads over the session, and never asks beyond its end', () => {
+    expect(frames([])).toEqual([]);
+    expect(frames(topics(1, 3, 3))).toEqual([3]);
+    expect(frames(topics(3, 1, 5))).toEqual([1, 3, 5]);
+    const long = frames(topics(1800, 1.23456, 3600.98765));
+    expect(long).toHaveLength(24);
+    expect(asked(long.at(-1) ?? Infinity)).toBeLessThanOrEqual(3600.98765);
+  });
+});
+
+describe('words and addresses', () => {
+  it('says what is missing', () => {
+    const gap = { topic: 'imu', kind: 'missed', time: 1, missed: 1 } as const;
+    expect(gapWords(gap)).toBe('1 sample of imu never arrived');
+    expect(gapWords({ ...gap, kind: 'not stored', missed: 2 })).toContain('2 samples of imu could not be stored');
+  });
+
+  it('links to a moment', () => {
+    expect(replayLink(7)).toBe('#/replay/7');
+    expect(replayLink(7, 12.34)).toBe('#/replay/7/12.3');
+    expect(replayLink(7, -0.2)).toBe('#/replay/7/0.0');
+    expect(compareLink([7, 9])).toBe('#/sessions/compare/7,9');
+  });
+});

@@ -1,0 +1,30 @@
+"""What ran, as hashes, so that a recording can say later which program and which firmware it is of."""
+
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+HASH_CHARACTERS = 16
+
+
+@cache
+def hash_software() -> str:
+    """The first 16 hexadecimal digits of the SHA-256 of the runtime's Python sources, names included.
+
+    What the robot does follows from these alone, wherever they are installed. Raises OSError.
+    """
+    root = Path(__file__).parent
+    made = sha256()
+    for path in sorted(root.rglob("*.py")):
+        content = path.read_bytes()
+        made.update(f"{path.relative_to(root).as_posix()} {len(content)}\n".encode())
+        made.update(content)
+    return made.hexdigest()[:HASH_CHARACTERS]
+
+
+def hash_firmware(program: Path) -> str:
+    """The first 16 hexadecimal digits of the SHA-256 of a firmware file; empty where there is none."""
+    try:
+        return sha256(program.read_bytes()).hexdigest()[:HASH_CHARACTERS]
+    except OSError:
+        return ""

@@ -1,0 +1,58 @@
+"""What people do with sessions: record, mark, rename, tag, search, delete, and take back."""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from tests.stack import Stack
+
+
+def test_a_session_is_kept_and_found_again(page: Page, stack: Stack) -> None:
+    stack.api.post("/sessions", json={"name": "another"}).raise_for_status()
+    stack.api.post(f"/sessions/{newest(stack)}/stop").raise_for_status()
+
+    page.get_by_role("link", name="Sessions").click()
+    page.get_by_label("Name", exact=True).first.fill("hover")
+    page.get_by_role("button", name="Start recording").click()
+    expect(page.get_by_role("region", name="Recording now")).to_be_visible()
+
+    page.get_by_role("link", name="Operate").click()
+    page.keyboard.press("m")
+    page.get_by_label(re.compile("^Marked at")).fill("bubbles")
+    page.get_by_role("button", name="Save").click()
+    page.get_by_role("button", name="Stop recording").click()
+
+    page.get_by_role("link", name="Sessions").click()
+    page.get_by_role("link", name="hover", exact=True).click()
+    expect(page.get_by_role("region", name="Marks")).to_contain_text("bubbles")
+    page.get_by_role("button", name="Edit", exact=True).click()
+    page.get_by_label("Name", exact=True).last.fill("hover in a current")
+    page.get_by_label("Note", exact=True).last.fill("0.1 m/s from the north")
+    page.get_by_role("button", name="Save").click()
+    expect(page.get_by_role("heading", name="hover in a current")).to_be_visible()
+    page.get_by_label("New tag").fill("pool")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("list", name="Tags")).to_contain_text("pool")
+
+    page.get_by_role("link", name="All sessions").click()
+    found = page.get_by_role("region", name="Recorded").get_by_role("row")
+    page.get_by_label("Search sessions").fill("north hover")
+    expect(found).to_have_count(2)
+    expect(found.nth(1)).to_contain_text("hover in a current")
+    page.get_by_label("Search sessions").fill("nothing is like this")
+    expect(page.get_by_text("No session is like that")).to_be_visible()
+    page.get_by_role("button", name=re.compile("^Show all")).click()
+    page.get_by_role("button", name="pool", exact=True).click()
+    expect(found).to_have_count(2)
+
+    page.get_by_role("button", name="Delete hover in a current").click()
+    expect(page.get_by_text("“hover in a current” is in the bin.")).to_be_visible()
+    expect(page.get_by_role("region", name="Bin")).to_contain_text("hover in a current")
+    expect(page.get_by_role("link", name="hover in a current", exact=True)).to_be_hidden()
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("link", name="hover in a current", exact=True)).to_be_visible()
+    expect(page.get_by_role("region", name="Bin")).to_be_hidden()
+
+
+def newest(stack: Stack) -> int:
+    return int(stack.api.get("/sessions").json()[0]["id"])
