@@ -26,8 +26,8 @@ log = logging.getLogger(__name__)
 
 PERIOD = 60.0
 """s between two looks."""
-CHUNKS_AT_ONCE = 64
-PAGES_AT_ONCE = 256
+CHUNKS_AT_ONCE = 32
+PAGES_AT_ONCE = 64
 PAUSE = 0.02
 """s between two such steps, in which the disk belongs to the recorder."""
 BIN_SECONDS = 3600.0
