@@ -8,7 +8,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench fuzz soak samples kills generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench figures fuzz soak samples kills generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -36,6 +36,11 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 
 bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
+
+figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/, from a run of its scenario
+	@rm -rf build/figures
+	.venv/bin/mucat scenario run figure_14 --data build/figures
+	$(PYTHON) -m bench.figures 1 --data build/figures
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
 	$(PYTHON) -m server.comm_tests.samples

@@ -215,7 +215,7 @@ def read_value(hint: Any, value: Any, where: str) -> Any:
         number = read_value(inner, value, where)
         if number is not None and not limits.minimum <= number <= limits.maximum:
             raise ConfigError(
-                f"{where} is {value}; it must lie between {limits.minimum:g} and {limits.maximum:g}"
+                f"{where} is {value}; it must lie between {limits.minimum:.10g} and {limits.maximum:.10g}"
             )
         return number
     if is_dataclass(hint) and isinstance(hint, type):

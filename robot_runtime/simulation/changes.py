@@ -59,7 +59,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
             "current": _given(current),
             "waves": _given(waves),
             "trim": _given(trim),
-            "beacons": {"positions": positions},
+            "beacons": {"positions": [list(one) for one in positions]},
             "faults": [{"sensor": sensor, **_given(fault)} for sensor, fault in faults.items()],
         }
 

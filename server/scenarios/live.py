@@ -8,7 +8,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario
-from robot_runtime.scenario.events import Event
+from robot_runtime.scenario.events import Event, Line
 from robot_runtime.simulation.parameters import Parameters
 from server.bridge import Bridge, RuntimeSilent
 from server.health import Watch
@@ -48,7 +48,9 @@ class Live:
         self._parts = parts
         self._clock = clock
         self._tell = tell
-        self._surroundings = Surroundings(bridge, settings.data.board_socket)
+        self._surroundings = Surroundings(
+            bridge, settings.data.board_socket if settings.emulated_board else None
+        )
 
     def check(self, scenario: Scenario) -> None:
         """Raises Refused with all reasons why it cannot be performed now."""
@@ -134,8 +136,10 @@ class Live:
 
     def _occupied(self) -> list[str]:
         recording = self._recorder.session
-        if self._settings.mode != "emulated":
-            return ["Scenarios change the water: they run live on an emulated robot alone, in robot.mode."]
+        if self._settings.mode == "robot":
+            return [
+                "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
+            ]
         if self._bridge.lent is not None:
             return [self._bridge.lent]
         state = self._watch.state()
@@ -154,6 +158,8 @@ class Live:
     def _unlike(self, scenario: Scenario) -> list[str]:
         """Why the running robot is not the scenario's."""
         reasons = []
+        if not self._settings.emulated_board and any(isinstance(one, Line) for one in scenario.events):
+            reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
         if scenario.robot != Parameters():
             reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")
         state = self._watch.state() or {}
@@ -172,7 +178,9 @@ class Live:
         return state
 
     def _processes(self) -> dict[str, int | None]:
-        parts = {name: self._parts.get(name) for name in NEEDED}
+        # In the loop the simulator may be on another computer; where it is lost, the robot disarms.
+        needed = [name for name in NEEDED if not (self._settings.in_the_loop and name == "simulator")]
+        parts = {name: self._parts.get(name) for name in needed}
         return {name: part.pid for name, part in parts.items() if part is not None}
 
 

@@ -28,12 +28,12 @@ class Before:
 
 
 class Surroundings:
-    """The runtime, the simulator and the emulated board, as a scenario speaks to them.
+    """The runtime, the simulator and the board, as a scenario speaks to them.
 
-    Everything may raise Refused or RuntimeSilent.
+    `board_socket` is None where the board is a real one. Everything may raise Refused or RuntimeSilent.
     """
 
-    def __init__(self, bridge: Bridge, board_socket: Path) -> None:
+    def __init__(self, bridge: Bridge, board_socket: Path | None) -> None:
         self._bridge = bridge
         self._board_socket = board_socket
 
@@ -124,12 +124,15 @@ class Surroundings:
         await ask("reset", {})
 
     async def _clean_line(self, seed: int) -> None:
+        if self._board_socket is None:
+            return
         for direction in DIRECTIONS:
             await self._order(f"line {direction} clean")
             await self._order(f"line {direction} stall 0")
         await self._order(f"seed {seed}")
 
     async def _order(self, command: str) -> None:
+        assert self._board_socket is not None
         try:
             await asyncio.to_thread(_order, self._board_socket, command)
         except BoardError as problem:

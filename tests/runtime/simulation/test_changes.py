@@ -240,3 +240,48 @@ def test_what_cannot_be_is_refused_in_words_and_changes_nothing(
     with pytest.raises((Refused, ValueError), match=words):
         changes(simulator)[name](question)
     assert rest(simulator, 1) == rest(Simulator(QUIET, seed=1), 1)
+
+
+def test_a_reset_elsewhere(simulator: Simulator, ask: Ask) -> None:
+    ask("reset", north=1, east=-2, down=0.7, heading=pi / 2)
+    truth = simulator.truth()
+    assert truth.position == pytest.approx((1, -2, 0.7))
+    assert truth.attitude == pytest.approx((0.5**0.5, 0, 0, 0.5**0.5))
+
+
+@pytest.mark.parametrize(
+    ("start", "words"), [({"down": 2.98}, "in the floor"), ({"north": 1.9}, "1.9 m north is in a wall")]
+)
+def test_a_reset_into_floor_or_wall_is_refused(ask: Ask, start: dict[str, float], words: str) -> None:
+    ask("world", depth=3, length=4, width=4)
+    with pytest.raises(ValueError, match=words):
+        ask("reset", **start)
+
+
+def test_a_reset_may_choose_the_noise(ask: Ask) -> None:
+    noisy = Simulator(Parameters(), seed=1)
+    first = rest(noisy, 1)
+    changes(noisy)["reset"]({"seed": 2})
+    assert rest(noisy, 1) != first
+    changes(noisy)["reset"]({"seed": 1})
+    assert rest(noisy, 1) == first
+    with pytest.raises(Refused, match=r"seed must be a whole number, not 1\.5"):
+        ask("reset", seed=1.5)
+
+
+def test_the_surroundings_are_told_as_the_questions_that_make_them(simulator: Simulator) -> None:
+    known = changes(simulator)
+    wanted: dict[str, Question] = {
+        **SET,
+        "world": {"depth": 2.0, "length": 5.0, "width": 4.0},
+        "trim": {"buoyancy": 1.01, "forward": 0.0, "right": 0.001, "above": 0.02},
+        "beacons": {"positions": [[1.0, 2.0, 0.5]]},
+    }
+    for name, question in wanted.items():
+        known[name](question)
+    fault = {"sensor": "battery", "kind": "drift", "speed": 0.1}
+    known["fault"](fault)
+    told = known["surroundings"]({}) or {}
+    assert {name: told[name] for name in wanted} == wanted
+    assert fault in told["faults"]
+    assert len(told["faults"]) == len(SENSORS)

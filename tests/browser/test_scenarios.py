@@ -1,0 +1,89 @@
+"""A scenario from the page: written, checked, run live, watched, and found as a session."""
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.stack import Stack
+
+STEP_MS = 20_000
+TEXT = """
+name = "from_the_page"
+title = "From the page"
+duration = 3
+[scene]
+kind = "natural"
+depth = 3.0
+[[events]]
+at = 0.2
+do = "arm"
+[[events]]
+at = 2
+do = "card"
+colour = "yellow"
+"""
+
+
+def open_scenarios(page: Page) -> None:
+    page.get_by_role("link", name="Scenarios", exact=True).click()
+    expect(page.get_by_role("button", name="Run it")).to_be_enabled(timeout=STEP_MS)
+
+
+@pytest.fixture
+def robot_at_rest(stack: Stack) -> None:
+    stack.api.post("/scenarios/cancel").raise_for_status()
+
+
+@pytest.mark.usefixtures("robot_at_rest")
+def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
+    open_scenarios(any_page)
+    expect(any_page.get_by_role("radio")).to_have_count(7)
+    expect(any_page.get_by_role("radio", name=re.compile("Figure 14"))).to_be_checked()
+    happens = any_page.get_by_role("list", name="What happens").get_by_role("listitem")
+    expect(happens).to_have_count(5)
+    any_page.get_by_role("radio", name=re.compile("The link is lost")).check()
+    expect(happens).to_have_count(11)
+    expect(happens.nth(5)).to_contain_text("Line to the board cut")
+    width = any_page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    assert width == 0
+
+
+@pytest.mark.usefixtures("robot_at_rest")
+def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> None:
+    open_scenarios(page)
+    page.get_by_role("button", name="Edit").click()
+    text = page.get_by_role("textbox", name="The scenario as TOML")
+    text.fill(TEXT.replace("depth = 3.0", "deep = 3.0"))
+    expect(page.get_by_text("scene: depth is missing")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_role("button", name="Run it")).to_be_disabled()
+    text.fill(TEXT)
+    expect(page.get_by_text("Nothing is wrong with it.")).to_be_visible(timeout=STEP_MS)
+    page.get_by_role("button", name="Run it").click()
+
+    running = page.get_by_role("region", name="Running now")
+    expect(running.get_by_role("heading", name="From the page")).to_be_visible(timeout=STEP_MS)
+    expect(running.get_by_role("progressbar")).to_have_attribute("aria-valuemax", "3")
+    expect(running.get_by_text("Yellow card")).to_be_visible(timeout=STEP_MS)
+    ended = page.get_by_role("region", name="Ended last")
+    expect(ended.get_by_text("complete", exact=True)).to_be_visible(timeout=STEP_MS)
+    session = stack.api.get("/sessions").json()[0]
+    assert session["name"] == "From the page"
+    expect(ended.get_by_role("link", name="Its session")).to_have_attribute(
+        "href", f"#/sessions/{session['id']}"
+    )
+
+
+@pytest.mark.usefixtures("robot_at_rest")
+def test_stop_on_the_page_ends_it(page: Page) -> None:
+    open_scenarios(page)
+    page.get_by_role("button", name="Edit").click()
+    text = page.get_by_role("textbox", name="The scenario as TOML")
+    text.fill(TEXT.replace("duration = 3", "duration = 300"))
+    expect(page.get_by_text("Nothing is wrong with it.")).to_be_visible(timeout=STEP_MS)
+    page.get_by_role("button", name="Run it").click()
+    expect(page.get_by_text("ARMED")).to_be_visible(timeout=STEP_MS)
+    page.keyboard.press("Escape")
+    ended = page.get_by_role("region", name="Ended last")
+    expect(ended.get_by_text("Somebody pressed STOP.")).to_be_visible(timeout=STEP_MS)
+    expect(ended.get_by_text("cancelled", exact=True)).to_be_visible()

@@ -1,0 +1,219 @@
+"""Scenarios on the whole stack: a short one live, what ends it, what refuses it, what it leaves behind."""
+
+import sqlite3
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.stack import Stack
+
+SECONDS = 30.0
+SHORT = """
+name = "short"
+title = "A short one"
+duration = 3
+seed = 7
+[scene]
+kind = "pool"
+depth = 2.0
+length = 4.0
+width = 3.0
+beacons = [[1.0, 0.0, 0.5]]
+[water.current]
+north = 0.1
+[control]
+controller = "pid"
+set_point = 0.3
+gains.pid.kp = 4.0
+[vision]
+rate = 10
+[[events]]
+at = 0.2
+do = "arm"
+[[events]]
+at = 1.5
+do = "card"
+colour = "yellow"
+[[events]]
+at = 1.6
+do = "fault"
+sensor = "beacon_left"
+kind = "stuck"
+[[events]]
+at = 1.7
+do = "line"
+direction = "from_board"
+kind = "bit_errors"
+rate = 1e-5
+[[events]]
+at = 2
+do = "marker"
+text = "Nearly done"
+"""
+LONG = SHORT.replace("duration = 3", "duration = 600")
+
+
+@pytest.fixture(scope="module")
+def stack() -> Iterator[Stack]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        yield stack
+
+
+def wait(condition: Callable[[], object], what: str) -> None:
+    end = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.05)
+
+
+def state(stack: Stack) -> dict[str, Any]:
+    found: dict[str, Any] = stack.api.get("/scenarios/state").json()
+    return found
+
+
+def robot(stack: Stack) -> dict[str, Any]:
+    found: dict[str, Any] = stack.api.get("/robot").json()
+    return found
+
+
+def start(stack: Stack, text: str) -> None:
+    answer = stack.api.post("/scenarios/runs", json={"text": text, "place": "live"})
+    assert answer.status_code == 201, answer.text
+
+
+def refusal(stack: Stack, text: str) -> str:
+    answer = stack.api.post("/scenarios/runs", json={"text": text, "place": "live"})
+    assert answer.status_code == 409, answer.text
+    detail: str = answer.json()["detail"]
+    return detail
+
+
+def ended(stack: Stack) -> dict[str, Any]:
+    wait(lambda: state(stack)["active"] is None, "the end of the scenario")
+    last: dict[str, Any] = state(stack)["last"]
+    return last
+
+
+def begin_long(stack: Stack) -> None:
+    start(stack, LONG)
+    wait(lambda: robot(stack)["armed"], "the scenario to arm the robot")
+
+
+def settings_of(stack: Stack) -> dict[str, Any]:
+    """What a scenario may change of the robot."""
+    names = ["controller", "controllers", "set_point_default", "set_point_detected", "vision_rate"]
+    found = robot(stack)
+    return {name: found[name] for name in [*names, "vision_colour", "card", "armed"]}
+
+
+def query(stack: Stack, question: str) -> list[Any]:
+    with sqlite3.connect(stack.data / "mucat.db") as database:
+        return database.execute(question).fetchall()
+
+
+def test_the_shipped_ones_are_there_and_sound(stack: Stack) -> None:
+    found = stack.api.get("/scenarios").json()
+    assert found[0]["name"] == "figure_14"
+    assert len(found) == 5
+    for one in found:
+        checked = stack.api.post("/scenarios/check", json={"text": one["text"]}).json()
+        assert checked == {"problems": [], "summary": one["summary"]}
+
+
+def test_what_is_wrong_is_told(stack: Stack) -> None:
+    wrong = SHORT.replace("[scene]", "[sea]").replace("duration = 3", "duration = -3")
+    problems = stack.api.post("/scenarios/check", json={"text": wrong}).json()["problems"]
+    assert {one.split(" ")[0] for one in problems} == {"duration", "'sea'", "scene"}
+    answer = stack.api.post("/scenarios/runs", json={"text": wrong, "place": "live"})
+    assert (answer.status_code, answer.json()["detail"]) == (422, "\n".join(problems))
+    assert state(stack)["active"] is None
+
+
+def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) -> None:
+    stack.api.put("/robot/controller", json={"name": "pid", "gains": {"kp": 7}}).raise_for_status()
+    stack.api.put("/robot/set-points", json={"default": 0.9, "detected": 1.1}).raise_for_status()
+    wait(lambda: robot(stack)["set_point_default"] == 0.9, "the set points")
+    before = settings_of(stack)
+    start(stack, SHORT)
+    assert refusal(stack, SHORT).startswith("“A short one” is being run.")
+    wait(lambda: robot(stack)["armed"], "the scenario to arm the robot")
+    during = settings_of(stack)
+    assert (during["set_point_default"], during["vision_rate"]) == (0.3, 10)
+    last = ended(stack)
+    assert (last["state"], last["problem"], last["name"]) == ("complete", "", "short")
+    wait(lambda: settings_of(stack) == before, "everything to be as before")
+
+    columns = "id, state, origin, scenario_name, seed, scenario, started_steady, samples"
+    (session,) = query(stack, f"SELECT {columns} FROM session")
+    assert session[:6] == (last["session"], "complete", "scenario", "short", 7, SHORT)
+    assert session[7] > 500
+    marks = query(stack, f"SELECT time, text FROM marker WHERE session_id = {session[0]} ORDER BY time")
+    words = ["Arm", "Yellow card", "Beacon left: stuck", "Line from the board: bit errors", "Nearly done"]
+    assert [text for _, text in marks] == words
+    assert all(0 <= moment - session[6] <= 3.5 for moment, _ in marks)
+
+
+def test_stop_ends_it(stack: Stack) -> None:
+    begin_long(stack)
+    stack.api.post("/robot/stop").raise_for_status()
+    last = ended(stack)
+    assert (last["state"], last["problem"]) == ("cancelled", "Somebody pressed STOP.")
+    assert not robot(stack)["armed"]
+    session = last["session"]
+    marks = query(stack, f"SELECT text FROM marker WHERE session_id = {session} ORDER BY id")
+    assert marks[-1] == ("Somebody pressed STOP.",)
+    assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
+
+
+def test_the_end_of_its_recording_ends_it_and_cancelling_does(stack: Stack) -> None:
+    begin_long(stack)
+    session = state(stack)["active"]["session"]
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    assert ended(stack)["problem"] == "Somebody stopped the recording."
+    begin_long(stack)
+    stack.api.post("/scenarios/cancel").raise_for_status()
+    assert (ended(stack)["state"], ended(stack)["problem"]) == ("cancelled", "It was cancelled.")
+
+
+def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
+    begin_long(stack)
+    stack.child("robot_runtime.simulation").kill()
+    last = ended(stack)
+    assert (last["state"], last["problem"]) == (
+        "failed",
+        "The simulator ended in the middle of it, and with it what was set.",
+    )
+    stack.wait_ready()
+
+
+def test_what_is_refused_says_why(stack: Stack) -> None:
+    hull = SHORT + "[robot]\nmass = 3.1\n"
+    assert (
+        refusal(stack, hull) == "It changes the hull's parameters, which can be done in simulated time alone."
+    )
+    fast = SHORT.replace("[control]", "[control]\nrate = 20")
+    assert refusal(stack, fast).startswith("It wants control at 20 Hz; this robot's runs at 10 Hz")
+    session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]
+    stack.api.post("/robot/arm").raise_for_status()
+    wait(lambda: robot(stack)["armed"], "the robot to be armed")
+    words = refusal(stack, SHORT)
+    assert "“mine” is being recorded." in words
+    assert "The robot is armed." in words
+    stack.api.post("/robot/stop").raise_for_status()
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+
+
+def test_ones_own_are_kept(stack: Stack) -> None:
+    answer = stack.api.post("/scenarios", json={"text": SHORT})
+    assert answer.status_code == 201
+    found = stack.api.get("/scenarios").json()
+    assert [(one["name"], one["shipped"]) for one in found][-1] == ("short", False)
+    taken = stack.api.post("/scenarios", json={"text": SHORT.replace('"short"', '"lost_link"')})
+    assert taken.status_code == 409
+    (stack.data / "scenarios" / "broken.toml").write_text("name = [")
+    found = {one["name"]: one["summary"] for one in stack.api.get("/scenarios").json()}
+    assert found["broken"] is None
