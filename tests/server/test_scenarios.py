@@ -181,7 +181,7 @@ def test_the_end_of_its_recording_ends_it_and_cancelling_does(stack: Stack) -> N
 
 def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
     begin_long(stack)
-    stack.child("robot_runtime.simulation").kill()
+    stack.child("robot_runtime.simulation --board").kill()
     last = ended(stack)
     assert (last["state"], last["problem"]) == (
         "failed",
