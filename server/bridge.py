@@ -151,10 +151,10 @@ class Bridge:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
         return await self._ask(f"query/{name}", {}, stop=False)
 
-    async def scene(self, name: str, payload: Mapping[str, Any]) -> None:
-        """Change the simulated scene. Raises Refused with its reason, or RuntimeSilent."""
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the simulated scene answers. Raises Refused with its reason, or RuntimeSilent."""
         try:
-            await self._ask(f"scene/{name}", payload, stop=False)
+            return await self._ask(f"scene/{name}", payload, stop=False)
         except RuntimeSilent as problem:
             raise RuntimeSilent(
                 "The simulated scene does not answer. The System page tells whether it runs.", problem.waited

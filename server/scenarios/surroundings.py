@@ -21,10 +21,14 @@ DIRECTIONS = ("to_board", "from_board")
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """How everything was: the runtime's `state` document and the simulator's `surroundings`."""
+    """How everything was: the runtime's `state`, the simulator's `surroundings`, the scene's `contents`.
+
+    `sight` is None where no scene is rendered.
+    """
 
     robot: Question
     water: Question
+    sight: Question | None
 
 
 class Surroundings:
@@ -39,13 +43,19 @@ class Surroundings:
 
     async def read(self, robot: Question) -> Before:
         """How everything is now; `robot` is the newest `state`."""
-        return Before(robot, await self._bridge.ask_simulator("surroundings", {}))
+        water = await self._bridge.ask_simulator("surroundings", {})
+        try:
+            return Before(robot, water, await self._bridge.scene("contents", {}))
+        except RuntimeSilent:
+            return Before(robot, water, None)
 
     async def prepare(self, scenario: Scenario, before: Before) -> None:
         """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
         await self._set_water(_water_of(scenario), before.water)
         start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
         await self._bridge.ask_simulator("reset", {**start, "seed": scenario.seed})
+        if before.sight is not None:
+            await self._set_sight(_sight_of(scenario))
         await self._clean_line(scenario.seed)
         for name, gains in _gains_of(scenario).items():
             await self._bridge.command("controller", {"name": name, "gains": gains})
@@ -79,6 +89,7 @@ class Surroundings:
         steps: list[Callable[[], Awaitable[None]]] = [
             lambda: self._clean_line(0),
             lambda: self._set_water(before.water, None),
+            lambda: self._set_sight(before.sight),
             *(
                 lambda one=one: self._bridge.command(
                     "controller",
@@ -123,6 +134,11 @@ class Surroundings:
             await ask(name, wanted[name])
         await ask("reset", {})
 
+    async def _set_sight(self, wanted: Question | None) -> None:
+        if wanted is not None:
+            for name in ("world", "targets"):
+                await self._bridge.scene(name, wanted[name])
+
     async def _clean_line(self, seed: int) -> None:
         if self._board_socket is None:
             return
@@ -155,6 +171,15 @@ def _water_of(scenario: Scenario) -> Question:
         "trim": asdict(trim),
         "beacons": {"positions": [list(one) for one in scenario.scene.beacons]},
         "faults": [],
+    }
+
+
+def _sight_of(scenario: Scenario) -> Question:
+    """The scenario's scene as the questions that make it."""
+    scene = scenario.scene
+    return {
+        "world": {"kind": scene.kind, "turbidity": scene.turbidity},
+        "targets": {"targets": [asdict(one) | {"position": list(one.position)} for one in scene.targets]},
     }
 
 

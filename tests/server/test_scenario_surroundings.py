@@ -40,6 +40,7 @@ depth = 2
 length = 4
 width = 3
 beacons = [[1, 0, 0.5]]
+targets = [{ colour = "green", position = [2, 0, 1] }]
 [start]
 north = 1
 down = 0.7
@@ -76,10 +77,17 @@ class DirectBridge:
 
     def __init__(self, simulator: Simulator) -> None:
         self.commands: list[tuple[str, Mapping[str, Any]]] = []
+        self.sight: dict[str, Any] = {"world": {"turbidity": 0.2}, "targets": {"targets": []}}
         self._changes = changes(simulator)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
         self.commands.append((name, payload))
+
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        if name == "contents":
+            return dict(self.sight)
+        self.sight[name] = payload
+        return {}
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         return self._changes[name](payload) or {}
@@ -129,6 +137,9 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
     gains = [question["gains"] for name, question in bridge.commands if question.get("name") == "pid"]
     assert gains == [{"kp": 4.0, "ki": 0.4, "kd": 2.0}]
     assert bridge.commands[-1] == ("card", {"colour": None})
+    assert bridge.sight["world"] == {"kind": "pool", "turbidity": 0.1}
+    target = {"colour": "green", "position": [2.0, 0.0, 1.0], "size": 0.2}
+    assert bridge.sight["targets"] == {"targets": [target]}
 
 
 def test_everything_is_put_back(
@@ -143,8 +154,9 @@ def test_everything_is_put_back(
         return await surroundings.put_back(before)
 
     simulator.set_fault("battery", Fault(kind="drift", speed=0.1))
-    was = simulator.surroundings()
+    was, seen = simulator.surroundings(), dict(bridge.sight)
     assert asyncio.run(work()) == []
+    assert bridge.sight == seen
     assert simulator.surroundings() == was
     assert bridge.commands == [
         ("controller", {"name": "pid", "gains": {"kp": 7.0}}),

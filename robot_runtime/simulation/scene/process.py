@@ -9,7 +9,7 @@ import queue
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import cv2
@@ -76,6 +76,7 @@ class Process:
             "world": self._set_place,
             "targets": self._set_targets,
             "view": self._set_view,
+            "contents": self._tell_contents,
         }
         for name, handler in handlers.items():
             messages.answer(f"scene/{name}", handler)
@@ -119,6 +120,13 @@ class Process:
         targets = parse(Targets, question).targets
         with self._lock:
             self._contents = replace(self._contents, targets=targets)
+
+    def _tell_contents(self, _: Question) -> Question:
+        """The questions that would make place and targets as they are."""
+        with self._lock:
+            contents = self._contents
+        place = {name: value for name, value in asdict(contents.place).items() if value is not None}
+        return {"world": place, "targets": {"targets": [asdict(one) for one in contents.targets]}}
 
     def _set_view(self, question: Question) -> None:
         self._view = parse(View, question)

@@ -127,6 +127,19 @@ def test_targets_and_water_change_what_is_seen() -> None:
         assert ends.picture().pixels[60, 80].tolist() != pytest.approx([35, 30, 215], abs=60)
 
 
+def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
+    with conversation() as ends:
+        target = {"colour": "red", "position": [0.8, 0.0, 1.0], "size": 0.2, "shape": "box"}
+        wanted: dict[str, dict[str, Any]] = {
+            "world": {"kind": "pool", "turbidity": 0.5},
+            "targets": {"targets": [target]},
+        }
+        for name, question in wanted.items():
+            ends.ask(name, question)
+        told = ends.ask("contents", {})
+        assert {name: told[name] for name in wanted} == wanted
+
+
 @pytest.mark.parametrize(
     ("name", "question", "words"),
     [
