@@ -41,6 +41,7 @@ if [ "${1:-run}" = test ]; then
     need g++ g++
     need chromium chromium
     need clang-format clang-format
+    need iproute2 ip
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"
 fi
