@@ -9,7 +9,7 @@ from migrations import HEAD
 from server.comparison.alignment import Align
 from server.comparison.comparing import Comparer
 from server.comparison.report import write_report
-from server.comparison.shapes import SESSIONS_MAX, NoSessionError, WantedComparison
+from server.comparison.shapes import DEFAULT_SIGNALS, SESSIONS_MAX, NoSessionError, WantedComparison
 from server.recording import RecordingError
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
@@ -17,7 +17,6 @@ from server.store import Store, StoreError
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
-SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
 POINTS = 2000
 
 
@@ -30,7 +29,7 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
     try:
         wanted = WantedComparison(
             sessions=options.sessions,
-            signals=list(options.signals or SIGNALS),
+            signals=list(options.signals or DEFAULT_SIGNALS),
             align=Align.model_validate(align),
             points=POINTS,
         )

@@ -47,7 +47,7 @@ from server.comparison.signals import Signal, list_signals
 from server.models import SessionRow
 from server.recording import Recording
 from server.sessions import find_row
-from server.store import Store
+from server.store import Reader
 
 THREADS = 2
 """Decompression and SQLite let others run, Python itself does not: more are of no use."""
@@ -75,7 +75,7 @@ class Comparer:
     Methods raise NoSessionError, StoreError and RecordingError.
     """
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Reader) -> None:
         self._store = store
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")

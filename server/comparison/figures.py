@@ -13,7 +13,7 @@ from server.comparison.samples import Samples, Series, read_topic
 from server.comparison.step_response import StepResponse, measure_step
 from server.comparison.strokes import count_strokes
 from server.recording import Recording
-from server.store import Store
+from server.store import Reader
 
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"
 HEIGHT_LEAST = 0.05
@@ -67,7 +67,7 @@ def measure(
     return found
 
 
-def count(store: Store, recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
+def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
     """Those of FIGURES that are counted: strokes, losses, gaps; over the whole session without `spans`.
 
     Raises StoreError, RecordingError.
@@ -229,7 +229,7 @@ def _link(recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
     return found
 
 
-def _gaps(store: Store, recording: Recording, spans: Sequence[Span]) -> Figure:
+def _gaps(store: Reader, recording: Recording, spans: Sequence[Span]) -> Figure:
     origin = recording.row.started_steady
     gaps = [
         gap

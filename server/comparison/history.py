@@ -10,7 +10,7 @@ from server.comparison.moments import Control, History, Moment, Span
 from server.comparison.samples import Samples, Series
 from server.models import Gap, Marker
 from server.recording import Recording
-from server.store import Store
+from server.store import Reader
 
 ARMED_FLAG = 1
 """In status.flags, see robot_runtime.packets.StatusFlag."""
@@ -51,7 +51,7 @@ def set_point_steps(set_point: Series, armed: tuple[Span, ...]) -> list[tuple[fl
     ]
 
 
-def read_markers(store: Store, recording: Recording) -> list[Moment]:
+def read_markers(store: Reader, recording: Recording) -> list[Moment]:
     """The session's markers in the order of time. Raises StoreError."""
     row = recording.row
     query = select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time))
@@ -76,7 +76,7 @@ def read_events(recording: Recording) -> list[Moment]:
     return sorted(found, key=lambda one: one.time)[:EVENTS_MAX]
 
 
-def read_gaps(store: Store, recording: Recording) -> list[Gap]:
+def read_gaps(store: Reader, recording: Recording) -> list[Gap]:
     """The gaps that the recorder noted. Raises StoreError."""
     query = select(Gap).where(Gap.session_id == recording.row.id).order_by(col(Gap.time))
     with store.read() as database:

@@ -113,7 +113,11 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
     )
     return str(
         to_html(
-            figure, include_plotlyjs=True, full_html=False, config={"displaylogo": False, "responsive": True}
+            figure,
+            include_plotlyjs=True,
+            full_html=False,
+            div_id="charts",
+            config={"displaylogo": False, "responsive": True},
         )
     )
 

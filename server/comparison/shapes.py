@@ -12,6 +12,8 @@ from server.sessions import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
 SIGNALS_MAX = 24
+DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
+"""What the thesis's Figures 14 to 16 show."""
 
 Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]

@@ -8,6 +8,7 @@ from server.exports.grid import write_grid
 from server.exports.lines import write_lines
 from server.exports.mcap_file import check_mcap, write_mcap
 from server.exports.parquet import check_parquet, write_parquet
+from server.exports.report import write_session_report
 from server.exports.shapes import Format, Wanted
 from server.exports.source import ExportRefused, Source
 from server.exports.tables import write_tables
@@ -34,6 +35,7 @@ KINDS: dict[Format, Kind] = {
     "parquet": Kind(write_parquet, ".parquet.zip", ZIP, check_parquet),
     "mcap": Kind(write_mcap, ".mcap", "application/octet-stream", check_mcap),
     "archive": Kind(write_archive, ".mucat.zip", ZIP),
+    "report": Kind(write_session_report, ".html", "text/html"),
 }
 
 WHOLE_ONLY = ("archive", "report")
@@ -41,8 +43,6 @@ WHOLE_ONLY = ("archive", "report")
 
 def check(wanted: Wanted) -> Kind:
     """The format of what is wanted. Raises ExportRefused where choices do not go together."""
-    if wanted.format not in KINDS:
-        raise ExportRefused(f"The format {wanted.format} cannot be made here; there are {', '.join(KINDS)}.")
     if wanted.columns is not None and wanted.format != "csv-grid":
         raise ExportRefused("Columns are chosen for csv-grid alone; the other formats take topics.")
     if wanted.topics is not None and wanted.format in ("csv-grid", *WHOLE_ONLY):

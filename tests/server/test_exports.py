@@ -288,7 +288,8 @@ def test_what_cannot_be_made_is_told(store: Store, session: int, wanted: dict[st
         write(store, session, **wanted)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "parquet"])
+# Parquet's writer and the report say when they wrote.
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("parquet", "report")])
 def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind: str) -> None:
     assert write(store, session, format=kind).getvalue() == write(store, session, format=kind).getvalue()
 
@@ -301,6 +302,13 @@ def test_an_empty_session_gives_a_file(store: Store, settings: Settings, kind: s
             write(store, number, format=kind)
     else:
         write(store, number, format=kind)
+
+
+def test_the_report_needs_no_network_and_names_its_figures(store: Store, session: int) -> None:
+    text = write(store, session, format="report").getvalue().decode()
+    assert "Plotly.newPlot" in text
+    assert "RMSE" in text
+    assert re.search(r"<(script|link)[^>]+(src|href)=", text) is None
 
 
 def test_pictures_go_along(store: Store, settings: Settings, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ export const CHOICES: readonly Choice[] = [
   { format: 'mcap', title: 'MCAP', text: 'For Foxglove and Lichtblick: depth, attitude, camera and log at a glance.', parts: 'topics' },
   { format: 'parquet', title: 'Parquet', text: 'For pandas and other tools that take large tables: small files, exact numbers.', parts: 'topics' },
   { format: 'jsonl', title: 'JSON Lines', text: 'For programs: one object a sample, in the order of time.', parts: 'topics' },
+  { format: 'report', title: 'Report', text: 'For reading and printing: charts and figures in one HTML file that needs no network.', parts: 'whole' },
   { format: 'archive', title: 'Archive', text: 'For µ-CAT on another computer, which imports it whole: replay and comparison go on there.', parts: 'whole' },
 ];
 
