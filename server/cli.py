@@ -96,7 +96,6 @@ def _add_scenario(actions: "Actions", kept: argparse.ArgumentParser) -> None:
         default="host",
         help="in simulated time: the firmware built for this computer (default), or on the emulated board",
     )
-    run.add_argument("--port", type=int, help="of the server that runs; default 8000, or as in robot.toml")
 
 
 def _add_commtest(actions: "Actions", kept: argparse.ArgumentParser) -> None:
@@ -196,6 +195,7 @@ def _run(settings: Settings) -> int:
     from robot_runtime.firmware import BuildError, build_firmware
     from server.app import create_app
     from server.parts import plan
+    from server.running import announce
     from server.schema import prepare
     from server.web import make_server, open_socket
 
@@ -206,7 +206,7 @@ def _run(settings: Settings) -> int:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         prepare(settings.data)
-        settings.data.port.write_text(f"{settings.port}\n", encoding="ascii")
+        announce(settings.data, settings.host, settings.port)
         server = make_server(create_app(settings, plan(settings)))
         # The server ends in order at these, and then sends them to itself once more; once is enough.
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -6,9 +6,6 @@ database; where none runs, it is done here.
 
 import argparse
 import asyncio
-import json
-import urllib.error
-import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager
 from typing import Any
@@ -18,14 +15,13 @@ from pydantic import ValidationError
 from migrations import HEAD
 from server.catalogue import Catalogue
 from server.presence import NotNow, UnknownSession
+from server.running import ask
 from server.schema import prepare, read_revision
 from server.sessions import Session, SessionChanges, SessionDetail
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
-TIMEOUT = 10.0
-"""s for the running server to answer."""
 
 
 def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
@@ -65,12 +61,14 @@ def _act(options: argparse.Namespace, settings: Settings, claim: Claim) -> str:
 def _change(
     folder: DataFolder, claim: Claim, session: int, action: str, said: dict[str, Any]
 ) -> dict[str, Any]:
-    port = _running(folder, claim)
-    if port is not None:
+    if _server_runs(folder, claim):
         path = f"/sessions/{session}"
-        if said:
-            return _ask(port, "PATCH", path, said)
-        return _ask(port, "DELETE", path) if action == "delete" else _ask(port, "POST", f"{path}/restore")
+        method, path = {
+            "delete": ("DELETE", path),
+            "restore": ("POST", f"{path}/restore"),
+        }.get(action, ("PATCH", path))
+        changed: dict[str, Any] = ask(folder, method, path, said or None)
+        return changed
     with claim(folder):
         prepare(folder)
         with closing(Store(folder.database)) as store:
@@ -90,7 +88,7 @@ def _check(**said: Any) -> dict[str, Any]:
 
 
 def _start(options: argparse.Namespace, folder: DataFolder) -> str:
-    session = _ask(_port(folder), "POST", "/sessions", {"name": options.name, "note": options.note})
+    session = ask(folder, "POST", "/sessions", {"name": options.name, "note": options.note})
     return f"Recording of “{session['name']}” has begun; it is session {session['id']}."
 
 
@@ -99,7 +97,7 @@ def _stop(folder: DataFolder, claim: Claim) -> str:
         recording = [one.id for one in catalogue.list() if one.state == "recording"]
     if not recording:
         raise SetupError("Nothing is being recorded.")
-    session = _ask(_port(folder), "POST", f"/sessions/{recording[0]}/stop")
+    session = ask(folder, "POST", f"/sessions/{recording[0]}/stop")
     return f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s."
 
 
@@ -113,39 +111,12 @@ def _reading(folder: DataFolder, claim: Claim) -> Iterator[Catalogue]:
         yield Catalogue(store)
 
 
-def _running(folder: DataFolder, claim: Claim) -> int | None:
-    """The port of the server that works on this folder; None where none does."""
+def _server_runs(folder: DataFolder, claim: Claim) -> bool:
     try:
         with claim(folder):
-            return None
+            return False
     except SetupError:
-        return _port(folder)
-
-
-def _port(folder: DataFolder) -> int:
-    try:
-        return int(folder.port.read_text(encoding="ascii"))
-    except (OSError, ValueError) as problem:
-        raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
-
-
-def _ask(port: int, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
-    data = None if body is None else json.dumps(body).encode()
-    request = urllib.request.Request(
-        f"http://127.0.0.1:{port}/api{path}",
-        data=data if data is not None or method != "POST" else b"",
-        headers={"content-type": "application/json"},
-        method=method,
-    )
-    try:
-        with urllib.request.urlopen(request, timeout=TIMEOUT) as answer:
-            found = json.load(answer)
-    except urllib.error.HTTPError as problem:
-        raise SetupError(str(json.load(problem).get("detail", problem))) from problem
-    except OSError as problem:
-        raise SetupError(f"The server does not answer at port {port}: {problem}.") from problem
-    assert isinstance(found, dict)
-    return found
+        return True
 
 
 def _tabulate(sessions: list[Session]) -> str:

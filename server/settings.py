@@ -64,9 +64,9 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
-    def port(self) -> Path:
-        """The TCP port at which the server that works on this folder, or did last, is to be asked."""
-        return self.path / "server.port"
+    def address(self) -> Path:
+        """Where the server that works on this folder, or did last, is to be asked: host and port."""
+        return self.path / "server.address"
 
     @property
     def runtime_socket(self) -> Path:

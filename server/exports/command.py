@@ -2,11 +2,8 @@
 
 import argparse
 import asyncio
-import json
 import sqlite3
 import sys
-import urllib.error
-import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
@@ -25,6 +22,7 @@ from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
 from server.models import SessionRow
 from server.recording import RecordingError
+from server.running import send_file
 from server.schema import prepare, read_revision
 from server.sessions import find_row
 from server.settings import DataFolder, Settings, SetupError
@@ -71,7 +69,8 @@ def import_session(options: argparse.Namespace, settings: Settings, claim: Claim
     if not options.file.is_file():
         raise SetupError(f"There is no file {options.file}.")
     if _server_runs(settings.data, claim):
-        number, name = _ask_server(options.file, settings)
+        session = send_file(settings.data, "/imports", options.file, IMPORT_SECONDS)
+        number, name = session["id"], session["name"]
     else:
         with claim(settings.data):
             number, name = _take(options.file, settings.data)
@@ -121,33 +120,6 @@ async def _import(store: Store, folder: DataFolder, file: Path) -> int:
     imports = Imports(folder, store)
     await imports.recover()
     return await imports.take(file)
-
-
-def _ask_server(file: Path, settings: Settings) -> tuple[int, str]:
-    host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
-    url = f"http://{f'[{host}]' if ':' in host else host}:{settings.port}/api/imports"
-    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-    try:
-        with file.open("rb") as body:
-            headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
-            request = urllib.request.Request(url, body, headers, method="POST")
-            with opener.open(request, timeout=IMPORT_SECONDS) as answer:
-                session = json.load(answer)
-    except urllib.error.HTTPError as problem:
-        raise SetupError(_detail(problem)) from problem
-    except (urllib.error.URLError, OSError, ValueError) as problem:
-        raise SetupError(
-            f"A server works on {settings.data.path}, but none answers at port {settings.port} of {host} "
-            f"({problem}). Give its --port."
-        ) from problem
-    return session["id"], session["name"]
-
-
-def _detail(problem: urllib.error.HTTPError) -> str:
-    try:
-        return str(json.load(problem)["detail"])
-    except (ValueError, KeyError, TypeError):
-        return f"The server refused with status {problem.code}."
 
 
 def _words(error: Any) -> str:

@@ -27,4 +27,3 @@ def add_import(commands: "Actions", kept: argparse.ArgumentParser) -> None:
     """`mucat import`."""
     taken = commands.add_parser("import", parents=[kept], help="bring in an archive of a session")
     taken.add_argument("file", type=Path, help="what --format archive wrote")
-    taken.add_argument("--port", type=int, help="of the server that runs; default 8000, or as in robot.toml")

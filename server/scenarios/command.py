@@ -6,21 +6,18 @@ are those that run live.
 
 import argparse
 import asyncio
-import json
 import signal
 import sys
-import urllib.error
-import urllib.request
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack, closing
 from pathlib import Path
 from time import sleep
-from typing import Any
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario, ScenarioError, read_scenario
 from server.notices import Notices
+from server.running import ask
 from server.scenarios.library import list_scenarios
 from server.scenarios.runs import Runs
 from server.scenarios.shapes import EndedRun, ScenarioStart, ScenarioState, summarize
@@ -30,7 +27,6 @@ from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
-ASK_SECONDS = 5.0
 LOOK_SECONDS = 0.25
 
 
@@ -51,7 +47,7 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
     with ExitStack() as claimed:
         if options.place == "simulated" and _enter(claimed, claim(settings.data)):
             return _conclude(_run_here(wanted, settings))
-    return _conclude(_run_there(wanted, f"http://{settings.host}:{settings.port}/api/scenarios"))
+    return _conclude(_run_there(wanted, settings.data))
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
@@ -106,42 +102,20 @@ async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> 
     return last
 
 
-def _run_there(wanted: ScenarioStart, address: str) -> EndedRun:
+def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
     """Ask the server that runs; Ctrl-C cancels the run there."""
     told = _Progress()
-    number = _ask(f"{address}/runs", wanted.model_dump())["run"]
+    number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
     try:
         while True:
-            state = ScenarioState.model_validate(_ask(f"{address}/state"))
+            state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
             told.tell(state)
             if state.last is not None and state.last.run >= number:
                 return state.last
             sleep(LOOK_SECONDS)
     except KeyboardInterrupt:
-        _ask(f"{address}/cancel", {})
+        ask(folder, "POST", "/scenarios/cancel")
         raise SetupError("The run was cancelled; what was recorded is kept.") from None
-
-
-def _ask(address: str, body: dict[str, Any] | None = None) -> Any:
-    data = None if body is None else json.dumps(body).encode()
-    request = urllib.request.Request(address, data, {"content-type": "application/json"})
-    try:
-        with urllib.request.urlopen(request, timeout=ASK_SECONDS) as answer:
-            text = answer.read()
-    except urllib.error.HTTPError as problem:
-        raise SetupError(_detail(problem.read())) from problem
-    except OSError as problem:
-        raise SetupError(
-            f"No server answers at {address}: {problem}. Start it with `mucat run`, or name its --port."
-        ) from problem
-    return json.loads(text) if text else None
-
-
-def _detail(body: bytes) -> str:
-    try:
-        return str(json.loads(body)["detail"])
-    except (ValueError, KeyError, TypeError):
-        return "The server refused, and gave no reason."
 
 
 def _conclude(last: EndedRun) -> int:

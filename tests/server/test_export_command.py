@@ -8,6 +8,7 @@ import pytest
 from server.cli import main
 from server.exports.options import FORMATS
 from server.exports.shapes import Format
+from server.running import announce
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import depth_block
@@ -54,12 +55,12 @@ def test_beside_a_running_server_the_server_imports(
             import fcntl
 
             fcntl.flock(lock, fcntl.LOCK_EX)
-            port = str(served.settings.port)
-            status = await asyncio.to_thread(run, settings, "import", str(path), "--port", port)
-            assert status == 1
+            announce(settings.data, "127.0.0.1", served.settings.port)
+            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
             assert "is here already, as number 1" in capsys.readouterr().err
-            assert await asyncio.to_thread(run, settings, "import", str(path), "--port", "1") == 1
-            assert "Give its --port" in capsys.readouterr().err
+            announce(settings.data, "127.0.0.1", 1)
+            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
+            assert "does not answer at 127.0.0.1:1" in capsys.readouterr().err
             lock.close()
 
     asyncio.run(scenario())

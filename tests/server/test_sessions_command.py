@@ -9,6 +9,7 @@ from server import cli
 from server.cli import main
 from server.notices import Notices
 from server.recorder import Recorder
+from server.running import announce
 from server.schema import prepare
 from server.sessions import new_row
 from server.settings import Settings, SetupError
@@ -63,7 +64,7 @@ def test_what_a_running_server_is_asked(
 
     async def scenario() -> None:
         async with serve(settings) as served:
-            settings.data.port.write_text(str(served.settings.port))
+            announce(settings.data, "127.0.0.1", served.settings.port)
             for arguments in (
                 ("record", "start", "from the shell"),
                 ("sessions", "tag", "1", "pool"),

@@ -1,0 +1,76 @@
+"""The server that works on a data folder, asked from a shell: nothing else may write its database."""
+
+import json
+import urllib.error
+import urllib.request
+from collections.abc import Mapping
+from pathlib import Path
+from typing import IO, Any
+
+from server.settings import DataFolder, SetupError
+
+ASK_SECONDS = 10.0
+
+
+def announce(folder: DataFolder, host: str, port: int) -> None:
+    """Write down where the server of this folder is to be asked."""
+    host = "127.0.0.1" if host in ("0.0.0.0", "::") else host
+    folder.address.write_text(f"{f'[{host}]' if ':' in host else host}:{port}\n", encoding="ascii")
+
+
+def ask(
+    folder: DataFolder,
+    method: str,
+    path: str,
+    body: Mapping[str, Any] | None = None,
+    seconds: float = ASK_SECONDS,
+) -> Any:
+    """What the server answers to a request below /api; None where it has nothing to say.
+
+    Raises SetupError where none runs, or it refuses, in its words.
+    """
+    data = b"" if body is None and method == "POST" else None
+    if body is not None:
+        data = json.dumps(body).encode()
+    return _send(folder, method, path, data, {"content-type": "application/json"}, seconds)
+
+
+def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
+    """What it answers to a file that is posted to it. Raises SetupError as `ask`, OSError."""
+    with file.open("rb") as body:
+        headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
+        return _send(folder, "POST", path, body, headers, seconds)
+
+
+def _send(
+    folder: DataFolder,
+    method: str,
+    path: str,
+    body: bytes | IO[bytes] | None,
+    headers: dict[str, str],
+    seconds: float,
+) -> Any:
+    try:
+        address = folder.address.read_text(encoding="ascii").strip()
+    except OSError as problem:
+        raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
+    request = urllib.request.Request(f"http://{address}/api{path}", body, headers, method=method)
+    # What is on this computer is not to be asked through a proxy.
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    try:
+        with opener.open(request, timeout=seconds) as answer:
+            text = answer.read()
+    except urllib.error.HTTPError as problem:
+        raise SetupError(_detail(problem)) from problem
+    except OSError as problem:
+        raise SetupError(
+            f"The server of {folder.path} does not answer at {address}: {problem}. Start it with `mucat run`."
+        ) from problem
+    return json.loads(text) if text else None
+
+
+def _detail(problem: urllib.error.HTTPError) -> str:
+    try:
+        return str(json.load(problem)["detail"])
+    except (ValueError, KeyError, TypeError):
+        return f"The server refused with status {problem.code}, and gave no reason."
