@@ -58,13 +58,13 @@ def test_the_thesis_example(page: Page, tmp_path: Path) -> None:
     expect(done.first).to_be_visible(timeout=SWEEP_MS)
     page.reload()
     expect(done.first).to_be_visible(timeout=STEP_MS)
-    assert not any("plotly" in url for url in fetched)
+    assert not any("plotly-basic" in url for url in fetched)
 
     figure = page.get_by_role("img", name=re.compile("^Rates of all cells"))
     expect(figure).to_be_visible(timeout=SWEEP_MS)
     expect(page.get_by_text("complete", exact=True)).to_be_visible()
     expect(figure.locator(".point")).to_have_count(75, timeout=STEP_MS)
-    assert any("plotly" in url for url in fetched)
+    assert any("plotly-basic" in url for url in fetched)
     shown = {place_of(row): (row[3], row[4]) for row in rows_of(page, "Every cell")}
     assert set(shown) == set(product(BAUDS, ARDUINO_DELAYS, PI_DELAYS))
 

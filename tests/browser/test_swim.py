@@ -91,8 +91,9 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     page.get_by_role("button", name="Stop recording").click()
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="figure 14", exact=True).click()
+    page.get_by_role("button", name="Make the file").click()
     with page.expect_download() as download:
-        page.get_by_role("link", name="Export figure 14 as CSV").click()
+        page.get_by_role("link", name="Download").click()
     path = tmp_path / "session.zip"
     download.value.save_as(path)
     check_export(path, shown)
@@ -185,8 +186,10 @@ def test_a_reload_keeps_what_happened(page: Page) -> None:
     hold_to_arm(page)
     page.keyboard.press("Escape")
     events = page.get_by_role("region", name="Events").get_by_role("listitem")
-    expect(events.nth(0)).to_contain_text("Stopped by the operator.")
-    expect(events.nth(1)).to_contain_text("Armed.")
+    expect(events.filter(has_text="Stopped by the operator.").first).to_be_visible()
+    expect(events.filter(has_text="Armed.").first).to_be_visible()
+    # What was recorded at arming ends 5 s after it, and that is told as well.
+    expect(events.nth(0)).to_contain_text("has ended.", timeout=10_000)
     told = events.count()
     page.reload()
     expect(events).to_have_count(told)
