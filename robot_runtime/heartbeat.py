@@ -20,7 +20,8 @@ class Heartbeat:
         self._supervisor = supervisor
         self._clock = clock
         self._seconds = seconds
-        self._heard = clock.now()
+        self.heard = clock.now()
+        """s; when the server was last heard."""
         messages.subscribe(HEARTBEAT, self._hear)
 
     def start(self) -> None:
@@ -29,7 +30,7 @@ class Heartbeat:
 
     def look(self) -> None:
         """Stop the robot where it is armed and the server has been silent for too long."""
-        if self._supervisor.armed and self._clock.now() - self._heard > self._seconds:
+        if self._supervisor.armed and self._clock.now() - self.heard > self._seconds:
             self._supervisor.stop(f"The server has been silent for {self._seconds:g} s.", "caution")
 
     def _watch(self) -> None:
@@ -38,4 +39,4 @@ class Heartbeat:
             self.look()
 
     def _hear(self, _name: str, _payload: bytes) -> None:
-        self._heard = self._clock.now()
+        self.heard = self._clock.now()

@@ -7,6 +7,7 @@ for. Callbacks run in Zenoh's own threads.
 import json
 import logging
 import secrets
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
@@ -19,6 +20,7 @@ log = logging.getLogger(__name__)
 
 Answer = dict[str, Any]
 _CLIENT_TIMEOUT_MS = 1000
+_JOIN_RETRY = 1.0
 
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
@@ -146,6 +148,19 @@ class Messages:
         if publisher is None:
             publisher = self._publishers[name] = self._session.declare_publisher(self._prefix + name)
         return publisher
+
+
+def join(robot: str, endpoints: Sequence[str]) -> Messages:
+    """Join the conversation of a robot elsewhere, as a client; wait until it is there."""
+    told = False
+    while True:
+        try:
+            return Messages(robot, connect=endpoints, client=True)
+        except OSError as problem:
+            if not told:
+                log.warning("%s; trying again until the robot answers", problem)
+            told = True
+            time.sleep(_JOIN_RETRY)
 
 
 def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh.Query) -> Answer:

@@ -26,7 +26,7 @@ from server.markers import Markers
 from server.models import SessionRow
 from server.notices import Notices
 from server.page import Page
-from server.parts import SIMULATOR_ELSEWHERE, Command, Parts
+from server.parts import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
 from server.pidfile import running_parts
 from server.recorder import Recorder, RecordingRefused
 from server.resume import Left, find_missing
@@ -112,7 +112,8 @@ class Assembly:
             await self._catch_up(left)
             self._tell_session()
             if self.settings.hil.simulator == "elsewhere":
-                await self.parts.pause("simulator", SIMULATOR_ELSEWHERE)
+                for name in SIMULATION:
+                    await self.parts.pause(name, SIMULATION_ELSEWHERE)
             self.scenarios.announce()
             tasks += [
                 asyncio.create_task(work)

@@ -170,7 +170,7 @@ class Watch:
         if self._unrenderable is not None:
             return PartHealth(name="scene", state="absent", text=f"Not rendered: {self._unrenderable}.")
         part = self._parts.get("scene")
-        if part is None:
+        if part is None or part.state == "paused":
             return PartHealth(name="scene", state="absent", text="It does not run on this computer.")
         if part.state == "failed":
             return PartHealth(name="scene", state="failed", text=_say_failed(part))

@@ -40,7 +40,9 @@ TRIM_SECONDS = 1.0
 HEARTBEAT_SECONDS = 4.0
 """After which, and half a second, the runtime stops a robot whose server is silent: 5 s are allowed."""
 
-SIMULATOR_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
+SIMULATION = ("simulator", "scene")
+"""Parts that may be left to another computer."""
+SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]

@@ -1,5 +1,6 @@
 """Whether a session that a killed server has left recording can go on, and from where."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -8,10 +9,11 @@ from sqlmodel import col, func, select
 from robot_runtime.cache import Kept
 from robot_runtime.clock import boot
 from robot_runtime.packets.layout import LayoutError
-from robot_runtime.topics import NUMBERS, Block, Topic
+from robot_runtime.topics import BY_NAME, NUMBERS, Block, Topic
 from server.models import Chunk, SessionRow
 from server.store import Store
 
+_STATE = BY_NAME["state"]
 RESUMED_ORIGINS = ("operator", "arming")
 """A scenario is over where nobody goes on with its events, whatever is recorded."""
 
@@ -37,8 +39,8 @@ class Left:
 class Missing:
     """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
 
-    `same_run`: the sender is the one that was recorded, as a stored sample shows that it still has. `whole`:
-    it has kept all that is missing.
+    `same_run`: the sender is the one that was recorded, as a stored sample shows that it still has, or its
+    name where none is stored yet. `whole`: it has kept all that is missing.
     """
 
     first: Mapping[int, int]
@@ -88,7 +90,19 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
         ahead = (following - last.following) % NUMBERS
         proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
         whole = whole and (ahead == 0 or _holds(there, last.following))
-    return Missing(first, proofs == {True}, whole)
+    return Missing(first, proofs == {True} or _new(left, topics, kept), whole)
+
+
+def _new(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
+    """Whether nothing of this sender is stored yet, and it is the one that the session began with.
+
+    That is known of the runtime, whose `state` is written down at the start; whichever simulator there is may
+    begin a session.
+    """
+    if any(topic.name in left.last for topic in topics):
+        return False
+    state = json.loads(left.row.robot_state)
+    return _STATE not in topics or (isinstance(state, dict) and state.get("run") == kept.run)
 
 
 def _prove(last: Last, blocks: Sequence[Block]) -> set[bool]:

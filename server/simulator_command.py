@@ -1,7 +1,11 @@
-"""`mucat simulator`: the water, on a computer of its own, for a robot with its hardware in the loop."""
+"""`mucat simulator`: the water, and what there is to see in it, on a computer of their own.
+
+For a robot with its hardware in the loop.
+"""
 
 import argparse
 import os
+import subprocess
 import sys
 from typing import TYPE_CHECKING
 
@@ -23,7 +27,9 @@ def add_arguments(commands: "Actions") -> None:
 
 
 def perform(options: argparse.Namespace) -> None:
-    """Become the simulator's process."""
-    command = [sys.executable, "-m", "robot_runtime.simulation", "--in-the-loop"]
-    command += ["--connect", options.connect, "--robot", options.robot, "--seed", str(options.seed)]
-    os.execv(sys.executable, command)
+    """Become the simulator's process; the scene's ends with it."""
+    there = ["--connect", options.connect, "--robot", options.robot]
+    scene = [sys.executable, "-m", "robot_runtime.simulation.scene", "--client", "--with-parent", *there]
+    subprocess.Popen(scene)
+    simulator = [sys.executable, "-m", "robot_runtime.simulation", "--in-the-loop", *there]
+    os.execv(sys.executable, [*simulator, "--seed", str(options.seed)])

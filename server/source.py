@@ -27,6 +27,7 @@ class Source:
         self._run = ""
         self._over: set[str] = set()
         self._expected: dict[int, int] = {}
+        self._asked: dict[str, int] = {}
         self._waiting: list[tuple[str, list[Block]]] = []
         self._waits = True
         self._asking: asyncio.Task[None] | None = None
@@ -52,7 +53,12 @@ class Source:
             self._pass_on(blocks)
         else:
             numbers = {topic.name: self._expected.get(topic.id, 0) for topic in self.topics}
-            self._catch_up(run, blocks, numbers)
+            if numbers == self._asked:
+                # It was asked for these already, and has not got them: they stay missing.
+                self._pass_on(blocks)
+            else:
+                self._asked = numbers
+                self._catch_up(run, blocks, numbers)
 
     async def close(self) -> None:
         """Ask no more."""
@@ -95,10 +101,15 @@ class Source:
     def _begin(self, run: str) -> None:
         if run != self._run:
             self._over.add(self._run)
-        self._run, self._expected = run, {}
+        self._run, self._expected, self._asked = run, {}, {}
 
     def _follow(self, blocks: list[Block]) -> bool:
-        return all(self._expected.get(block.topic.id, block.first) == block.first for block in blocks)
+        expected = dict(self._expected)
+        for block in blocks:
+            if expected.get(block.topic.id, block.first) != block.first:
+                return False
+            expected[block.topic.id] = block.following
+        return True
 
     def _fresh(self, blocks: list[Block]) -> list[Block]:
         return [block for block in blocks if block.after(self._expected.get(block.topic.id, block.first))]

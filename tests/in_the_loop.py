@@ -50,6 +50,7 @@ def main() -> None:
             stack.api.post("/robot/arm").raise_for_status()
             time.sleep(12)
             told["armed"] = state(stack)["armed"]
+            told["camera"] = state(stack)["camera"]
             hosts.loss = 1.0
             wait(lambda: not state(stack)["armed"], "the stop after the cut", stack)
             told["cut"] = refusals(stack)

@@ -15,6 +15,7 @@ PLAIN = (
     "printf",
     "id",
     "dirname",
+    "ls",
     "node",
     "npm",
     "python3",

@@ -8,21 +8,17 @@ import argparse
 import logging
 import signal
 import sys
-import time
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.messages import Messages
+from robot_runtime.messages import Messages, join
 from robot_runtime.simulation.loop import Loop
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.process import Process
 from robot_runtime.simulation.simulator import Simulator
 
 log = logging.getLogger(__name__)
-
-RETRY = 1.0
-"""s between two attempts to reach a robot elsewhere."""
 
 
 def main() -> None:
@@ -33,7 +29,12 @@ def main() -> None:
         end_with_parent()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit())
-    with _join(arguments.robot, arguments.connect, client=arguments.in_the_loop) as messages:
+    joined = (
+        join(arguments.robot, arguments.connect)
+        if arguments.in_the_loop
+        else Messages(arguments.robot, connect=arguments.connect)
+    )
+    with joined as messages:
         simulator = Simulator(Parameters(), arguments.seed)
         process: Process | Loop
         if arguments.in_the_loop:
@@ -45,21 +46,6 @@ def main() -> None:
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: process.end())
         process.run()
-
-
-def _join(robot: str, endpoints: list[str], *, client: bool) -> Messages:
-    """Join the conversation; a client waits until somebody is there."""
-    told = False
-    while True:
-        try:
-            return Messages(robot, connect=endpoints, client=client)
-        except OSError as problem:
-            if not client:
-                raise
-            if not told:
-                log.warning("%s; trying again until the robot answers", problem)
-            told = True
-            time.sleep(RETRY)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -5,7 +5,7 @@ from pydantic import BaseModel, ConfigDict
 
 from robot_runtime.errors import Refused
 from server.assembly import Assembly
-from server.parts import SIMULATOR_ELSEWHERE
+from server.parts import SIMULATION, SIMULATION_ELSEWHERE
 from server.routes.problems import answers
 
 router = APIRouter(prefix="/api/simulator", tags=["robot"])
@@ -33,7 +33,8 @@ async def put_simulator(request: Request, wanted: Place) -> None:
             "Only a robot with its hardware in the loop can do with or without this computer's simulator; "
             f"robot.mode is {assembly.settings.mode}."
         )
-    if wanted.here:
-        assembly.parts.resume("simulator")
-    else:
-        await assembly.parts.pause("simulator", SIMULATOR_ELSEWHERE)
+    for name in SIMULATION:
+        if wanted.here:
+            assembly.parts.resume(name)
+        else:
+            await assembly.parts.pause(name, SIMULATION_ELSEWHERE)

@@ -6,6 +6,7 @@ are those that run live.
 
 import argparse
 import asyncio
+import math
 import signal
 import sys
 from collections.abc import Callable
@@ -20,7 +21,7 @@ from server.notices import Notices
 from server.running import ask
 from server.scenarios.library import list_scenarios
 from server.scenarios.runs import Runs
-from server.scenarios.shapes import EndedRun, ScenarioStart, ScenarioState, summarize
+from server.scenarios.shapes import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState, summarize
 from server.scenarios.simulated import Simulated
 from server.schema import prepare
 from server.settings import DataFolder, Settings, SetupError
@@ -129,20 +130,27 @@ class _Progress:
 
     def __init__(self) -> None:
         self._run: int | None = None
+        self._events: list[ScenarioEvent] = []
         self._told = 0
 
     def tell(self, state: ScenarioState) -> None:
         """What is new in it."""
-        active = state.active
+        active, last = state.active, state.last
+        if last is not None and last.run == self._run and last.state == "complete":
+            # A fast run may be over before its last events were told.
+            self._tell_until(math.inf)
         if active is None or active.phase not in ("running", "ending"):
             return
         if active.run != self._run:
-            self._run, self._told = active.run, 0
+            self._run, self._events, self._told = active.run, active.events, 0
             _say(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
-        past = [event for event in active.events if event.at <= active.elapsed]
+        self._tell_until(active.elapsed)
+
+    def _tell_until(self, time: float) -> None:
+        past = [event for event in self._events if event.at <= time]
         for event in past[self._told :]:
             _say(f"{event.at:8.1f} s  {event.words}")
-        self._told = len(past)
+        self._told = max(self._told, len(past))
 
 
 def _say(words: str) -> None:

@@ -29,6 +29,7 @@ from server.settings import Settings
 from server.store import Store
 from tests.board.rig import ROOT, build
 from tests.runtime.comm_test.conftest import make_test
+from tests.server.older import upgrade_to
 
 ENTRY: dict[str, Any] = {
     "id": 1,
@@ -219,15 +220,11 @@ def test_what_is_no_cell_is_not_stored(store: Store) -> None:
 
 
 def test_runs_of_the_version_before_are_kept(settings: Settings) -> None:
-    prepare(settings.data)
+    upgrade_to(settings, "0002")
     with closing(sqlite3.connect(settings.data.database)) as database:
-        # As version 0002 left them.
-        for table, column in (("run", "place"), ("run", "sample"), ("cell", "repeated")):
-            database.execute(f"ALTER TABLE comm_test_{table} DROP COLUMN {column}")
         columns = "name, document, framing, direction, cells, firmware, tools, host, started, state, problem"
         values = "'old', '{}', 'thesis', 'to_board', 1, 'f', '{}', 'h', 1.0, 'complete', ''"
         database.execute(f"INSERT INTO comm_test_run ({columns}) VALUES ({values})")
-        database.execute("UPDATE alembic_version SET version_num = '0002'")
         database.commit()
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:

@@ -1,6 +1,7 @@
 """A session that a killed server has left: the first recorder is forgotten, the second follows it."""
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable
 
 import pytest
@@ -118,6 +119,25 @@ def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wrec
         assert wreck.after.gaps() == []
         assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
         assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” goes on")
+
+    play(scenario)
+
+
+def test_a_session_of_which_nothing_is_stored_yet_goes_on_with_its_runtime_alone(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5), truth_block(0, 3))
+        left = await wreck.after.recorder.recover()
+        assert left is not None
+        answers = wreck.answers()
+        for state, same in (
+            ({"run": answers["runtime"].run}, True),
+            ({"run": "another"}, False),
+            (None, False),
+        ):
+            left.row.robot_state = json.dumps(state)
+            assert find_missing(left, SENT_BY["runtime"], answers["runtime"]).same_run is same
+        assert find_missing(left, SENT_BY["simulator"], answers["simulator"]).same_run
 
     play(scenario)
 

@@ -3,9 +3,7 @@ import sqlite3
 from contextlib import closing
 
 import pytest
-from alembic import command
 from alembic.autogenerate import compare_metadata
-from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import create_engine, pool
@@ -21,6 +19,7 @@ from server.recording import Recording
 from server.settings import Settings, SetupError
 from server.store import Store
 from tests.server.blocks import depth_block
+from tests.server.older import upgrade_to
 
 
 def test_the_newest_revision_is_the_one_the_server_wants() -> None:
@@ -86,14 +85,7 @@ def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
 
 
 def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings) -> None:
-    engine = create_engine(f"sqlite:///{settings.data.database}", poolclass=pool.NullPool)
-    config = Config()
-    config.set_main_option("script_location", str(schema._scripts()))
-    config.set_main_option("path_separator", "os")
-    with engine.connect() as connection:
-        config.attributes["connection"] = connection
-        command.upgrade(config, "0003")
-        connection.commit()
+    upgrade_to(settings, "0003")
     rows = [depth_block(0, 10).payload]
     data, first, last = encode_rows(rows, BY_NAME["depth"].row_bytes)
     topics = {name: one for name, one in describe_topics().items() if name != "thumbnail"}

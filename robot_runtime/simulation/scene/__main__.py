@@ -3,10 +3,11 @@
 import argparse
 import logging
 import signal
+import sys
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.messages import Messages
+from robot_runtime.messages import Messages, join
 from robot_runtime.simulation.scene.process import Process
 
 
@@ -18,7 +19,14 @@ def main() -> None:
     logging.getLogger("OpenGL").setLevel(logging.WARNING)
     if arguments.with_parent:
         end_with_parent()
-    with Messages(arguments.robot, arguments.listen, arguments.connect) as messages:
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: sys.exit())
+    joined = (
+        join(arguments.robot, arguments.connect)
+        if arguments.client
+        else Messages(arguments.robot, arguments.listen, arguments.connect)
+    )
+    with joined as messages:
         process = Process(messages, SteadyClock())
         if arguments.server_lock is not None:
             watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
@@ -44,6 +52,7 @@ def _parser() -> argparse.ArgumentParser:
         help="Zenoh endpoint where the simulator finds the scene; may repeat",
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
+    parser.add_argument("--client", action="store_true", help="the robot is on another computer")
     parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     add_server_options(parser)
     return parser

@@ -38,7 +38,7 @@ class Told:
         for block in read_blocks(data):
             if block.topic.kind is Kind.ROWS:
                 self.rows.setdefault(block.topic.name, []).extend(read_rows(block))
-            else:
+            elif block.topic.kind is Kind.DOCUMENTS:
                 self.documents.setdefault(block.topic.name, []).extend(json.loads(block.payload))
 
     def event(self, event: str, **more: Any) -> None:
