@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.simulation.scene.availability import missing
 from tests.stack import ROOT
 from tests.two_hosts import available
 
@@ -25,9 +26,9 @@ def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
 @pytest.fixture(scope="module")
 def swum(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], zipfile.ZipFile]:
     """What the robot told of a dive in the loop, through a poor network that was cut for a while."""
-    missing = available()
-    if missing:
-        pytest.skip(f"no two hosts on this computer: {missing}")
+    obstacle = available()
+    if obstacle:
+        pytest.skip(f"no two hosts on this computer: {obstacle}")
     folder = tmp_path_factory.mktemp("loop") / "robot"
     command = ["unshare", "--user", "--map-root-user", "--net", sys.executable, "-m", "tests.in_the_loop"]
     ended = subprocess.run([*command, str(folder)], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -50,6 +51,7 @@ def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
 ) -> None:
     told, archive = swum
     assert told["armed"]
+    assert missing() is not None or told["camera"] == "rendered scene"
     carried, lost = told["packets"]
     assert carried > 500
     assert lost > 5
