@@ -1,13 +1,20 @@
 """The server that works on a data folder, asked from a shell: nothing else may write its database."""
 
 import json
+import sqlite3
 import urllib.error
 import urllib.request
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+from migrations import HEAD
+from server.schema import prepare, read_revision
 from server.settings import DataFolder, SetupError
+from server.store import Reader
+
+Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
 ASK_SECONDS = 10.0
 
@@ -40,6 +47,23 @@ def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
     with file.open("rb") as body:
         headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
         return _send(folder, "POST", path, body, headers, seconds)
+
+
+@contextmanager
+def open_reader(folder: DataFolder, claim: Claim) -> Iterator[Reader]:
+    """The database, for reading alone: that may be done beside a running server.
+
+    Making or upgrading it may not, and claims the folder. Raises SetupError where that is not to be had.
+    """
+    try:
+        current = read_revision(folder.database) == HEAD
+    except sqlite3.DatabaseError:
+        current = False  # `prepare` says what is the matter
+    if not current:
+        with claim(folder):
+            prepare(folder)
+    with closing(Reader(folder.database)) as store:
+        yield store
 
 
 def _send(

@@ -1,19 +1,17 @@
 """`mucat report`: a comparison as an HTML file, from a shell."""
 
 import argparse
-import sqlite3
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, closing, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 
-from migrations import HEAD
 from server.comparison.alignment import Align
 from server.comparison.comparing import Comparer
 from server.comparison.report import write_report
 from server.comparison.shapes import DEFAULT_SIGNALS, SESSIONS_MAX, NoSessionError, WantedComparison
 from server.recording import RecordingError
-from server.schema import prepare, read_revision
+from server.running import open_reader
 from server.settings import DataFolder, Settings, SetupError
-from server.store import Store, StoreError
+from server.store import StoreError
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
@@ -33,7 +31,7 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
             align=Align.model_validate(align),
             points=POINTS,
         )
-        with _open(settings.data, claim) as store:
+        with open_reader(settings.data, claim) as store:
             text = write_report(Comparer(store).compare(wanted))
         options.out.write_text(text, encoding="utf-8")
     except ValueError as problem:
@@ -46,17 +44,3 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
         raise SetupError(f"{options.out} cannot be written: {problem.strerror}.") from problem
     print(f"{options.out}")  # noqa: T201 - a command line speaks
     return 0
-
-
-@contextmanager
-def _open(folder: DataFolder, claim: Claim) -> Iterator[Store]:
-    # Only reads, so it may be done beside a running server; making or upgrading a database may not.
-    try:
-        current = read_revision(folder.database) == HEAD
-    except sqlite3.DatabaseError:
-        current = False  # `prepare` says what is the matter
-    if not current:
-        with claim(folder):
-            prepare(folder)
-    with closing(Store(folder.database)) as store:
-        yield store

@@ -2,16 +2,14 @@
 
 import argparse
 import asyncio
-import sqlite3
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, closing, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from migrations import HEAD
 from robot_runtime.errors import Refused
 from server.exports.describe import file_name
 from server.exports.files import PART, FileFailed, put_in_place, write_part
@@ -22,11 +20,11 @@ from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
 from server.models import SessionRow
 from server.recording import RecordingError
-from server.running import send_file
-from server.schema import prepare, read_revision
+from server.running import open_reader, send_file
+from server.schema import prepare
 from server.sessions import find_row
 from server.settings import DataFolder, Settings, SetupError
-from server.store import Reader, Store, StoreError
+from server.store import Store, StoreError
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
@@ -45,7 +43,7 @@ def export_session(options: argparse.Namespace, settings: Settings, claim: Claim
             **({} if options.period is None else {"period": options.period}),
         )
         kind = check(wanted)
-        with _open(settings.data, claim) as store:
+        with open_reader(settings.data, claim) as store:
             row = find_row(store, options.session)
             if row is None:
                 raise SetupError(f"There is no session {options.session} in {settings.data.path}.")
@@ -76,20 +74,6 @@ def import_session(options: argparse.Namespace, settings: Settings, claim: Claim
             number, name = _take(options.file, settings.data)
     _say(f"session {number}: {name}")
     return 0
-
-
-@contextmanager
-def _open(folder: DataFolder, claim: Claim) -> Iterator[Reader]:
-    # Only reads, so it may be done beside a running server; making or upgrading a database may not.
-    try:
-        current = read_revision(folder.database) == HEAD
-    except sqlite3.DatabaseError:
-        current = False  # `prepare` says what is the matter
-    if not current:
-        with claim(folder):
-            prepare(folder)
-    with closing(Reader(folder.database)) as store:
-        yield store
 
 
 def _server_runs(folder: DataFolder, claim: Claim) -> bool:
