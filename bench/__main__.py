@@ -29,6 +29,7 @@ PARTS = (
     "latency",
     "compare",
     "replay",
+    "jitter",
 )
 RESULT = Path("build/bench.json")
 
