@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from robot_runtime.messages import Messages
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE
 from tests.stack import Stack
 
 DESKTOP = {"width": 1440, "height": 900}
 PHONE = {"width": 390, "height": 844}
+RESET_SECONDS = 10.0
 
 
 @pytest.fixture(scope="package")
@@ -49,6 +51,10 @@ def _open(browser: Browser, stack: Stack, size: dict[str, int]) -> Iterator[Page
     context = browser.new_context(viewport={"width": size["width"], "height": size["height"]})
     page = context.new_page()
     complaints: list[str] = []
+    # Every test finds the robot at the surface, wherever the one before has left it.
+    runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
+    with Messages("turtle", connect=[runtime], client=True) as messages:
+        messages.ask("simulator/reset", {}, RESET_SECONDS)
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(stack.url)
     yield page

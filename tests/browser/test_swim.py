@@ -81,7 +81,7 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     expect(page.get_by_text("set point 0.50 m", exact=True)).to_be_visible()
     wait_for_depth(page, 0.49, 0.51)
 
-    expect(page.get_by_role("log").get_by_text("armed", exact=True)).to_be_visible()
+    expect(page.get_by_role("log").get_by_text("armed", exact=True).last).to_be_visible()
 
     page.get_by_role("button", name="STOP").click()
     expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
