@@ -26,18 +26,17 @@ from server.sessions import (
     find_row,
     from_row,
 )
-from server.store import Store
+from server.store import Reader, Store
 
 
-class Catalogue:
-    """Every session of a database. What is changed of the one that records, `recorder` is told.
+class Listing:
+    """Every session of a database, to be looked at.
 
     Every method raises StoreError, and UnknownSession where a session or a marker is not there.
     """
 
-    def __init__(self, store: Store, recorder: Recorder | None = None) -> None:
-        self._store = store
-        self._recorder = recorder
+    def __init__(self, store: Reader) -> None:
+        self._reader = store
 
     def list(
         self,
@@ -60,7 +59,7 @@ class Catalogue:
         )
         if origin is not None:
             query = query.where(SessionRow.origin == origin)
-        with self._store.read() as database:
+        with self._reader.read() as database:
             tagged: defaultdict[int, list[str]] = defaultdict(list)
             for tag in database.exec(select(SessionTag)):
                 tagged[tag.session_id].append(tag.tag)
@@ -75,7 +74,7 @@ class Catalogue:
 
     def find(self, session: int) -> Session:
         """One session, also from the bin."""
-        with self._store.read() as database:
+        with self._reader.read() as database:
             row = database.get(SessionRow, session)
             if row is None or row.state in HIDDEN:
                 raise UnknownSession(session)
@@ -85,7 +84,7 @@ class Catalogue:
 
     def row(self, session: int) -> SessionRow:
         """The row of a session, for whoever reads its samples."""
-        row = find_row(self._store, session)
+        row = find_row(self._reader, session)
         if row is None:
             raise UnknownSession(session)
         return row
@@ -93,7 +92,7 @@ class Catalogue:
     def detail(self, session: int) -> SessionDetail:
         """One session with all that is known of it."""
         found = self.find(session)
-        with self._store.read() as database:
+        with self._reader.read() as database:
             row = database.get_one(SessionRow, session)
             gaps = database.exec(select(Gap).where(Gap.session_id == session).order_by(col(Gap.time))).all()
             spans = database.exec(
@@ -119,6 +118,15 @@ class Catalogue:
                 ],
                 topics=_topics(json.loads(row.topics), {name: rest for name, *rest in spans}, start),
             )
+
+
+class Catalogue(Listing):
+    """The same, to be changed. What is changed of the one that records, `recorder` is told."""
+
+    def __init__(self, store: Store, recorder: Recorder | None = None) -> None:
+        super().__init__(store)
+        self._store = store
+        self._recorder = recorder
 
     async def change(
         self,

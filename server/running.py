@@ -15,6 +15,7 @@ from server.settings import DataFolder, SetupError
 from server.store import Reader
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
+"""Holds a data folder alone while entered; raises SetupError where a server works on it."""
 
 ASK_SECONDS = 10.0
 
@@ -23,6 +24,17 @@ def announce(folder: DataFolder, host: str, port: int) -> None:
     """Write down where the server of this folder is to be asked."""
     host = "127.0.0.1" if host in ("0.0.0.0", "::") else host
     folder.address.write_text(f"{f'[{host}]' if ':' in host else host}:{port}\n", encoding="ascii")
+
+
+def server_runs(folder: DataFolder, claim: Claim) -> bool:
+    """Whether a server works on this folder now."""
+    if not folder.path.is_dir():
+        return False
+    try:
+        with claim(folder):
+            return False
+    except SetupError:
+        return True
 
 
 def ask(

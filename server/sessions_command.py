@@ -6,22 +6,18 @@ database; where none runs, it is done here.
 
 import argparse
 import asyncio
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import closing
 from typing import Any
 
 from pydantic import ValidationError
 
-from migrations import HEAD
-from server.catalogue import Catalogue
+from server.catalogue import Catalogue, Listing
 from server.presence import NotNow, UnknownSession
-from server.running import ask
-from server.schema import prepare, read_revision
+from server.running import Claim, ask, open_reader, server_runs
+from server.schema import prepare
 from server.sessions import Session, SessionChanges, SessionDetail
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
-
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
 
 def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
@@ -40,14 +36,14 @@ def _act(options: argparse.Namespace, settings: Settings, claim: Claim) -> str:
     if options.command == "record":
         return _start(options, folder) if action == "start" else _stop(folder, claim)
     if action in ("list", "show"):
-        with _reading(folder, claim) as catalogue:
+        with open_reader(folder, claim) as store:
             if action == "show":
-                return _describe(catalogue.detail(options.session))
-            found = catalogue.list(" ".join(options.words), options.tag, deleted=options.deleted)
+                return _describe(Listing(store).detail(options.session))
+            found = Listing(store).list(" ".join(options.words), options.tag, deleted=options.deleted)
             return _tabulate(found)
     if action == "tag":
-        with _reading(folder, claim) as catalogue:
-            tags = [*catalogue.find(options.session).tags, *options.tags]
+        with open_reader(folder, claim) as store:
+            tags = [*Listing(store).find(options.session).tags, *options.tags]
         said = _check(tags=[tag for tag in dict.fromkeys(tags) if tag not in options.remove])
     elif action == "note":
         said = _check(note=options.text)
@@ -61,7 +57,7 @@ def _act(options: argparse.Namespace, settings: Settings, claim: Claim) -> str:
 def _change(
     folder: DataFolder, claim: Claim, session: int, action: str, said: dict[str, Any]
 ) -> dict[str, Any]:
-    if _server_runs(folder, claim):
+    if server_runs(folder, claim):
         path = f"/sessions/{session}"
         method, path = {
             "delete": ("DELETE", path),
@@ -93,30 +89,12 @@ def _start(options: argparse.Namespace, folder: DataFolder) -> str:
 
 
 def _stop(folder: DataFolder, claim: Claim) -> str:
-    with _reading(folder, claim) as catalogue:
-        recording = [one.id for one in catalogue.list() if one.state == "recording"]
+    with open_reader(folder, claim) as store:
+        recording = [one.id for one in Listing(store).list() if one.state == "recording"]
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(folder, "POST", f"/sessions/{recording[0]}/stop")
     return f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s."
-
-
-@contextmanager
-def _reading(folder: DataFolder, claim: Claim) -> Iterator[Catalogue]:
-    # Reading may be done beside a running server; making or upgrading a database may not.
-    if read_revision(folder.database) != HEAD:
-        with claim(folder):
-            prepare(folder)
-    with closing(Store(folder.database)) as store:
-        yield Catalogue(store)
-
-
-def _server_runs(folder: DataFolder, claim: Claim) -> bool:
-    try:
-        with claim(folder):
-            return False
-    except SetupError:
-        return True
 
 
 def _tabulate(sessions: list[Session]) -> str:

@@ -5,8 +5,8 @@ import asyncio
 import signal
 import sqlite3
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +23,10 @@ from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import Place
 from server.models import CommTestRun
 from server.pidfile import end_parts
+from server.running import Claim
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
-
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
 
 def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:

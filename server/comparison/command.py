@@ -1,19 +1,15 @@
 """`mucat report`: a comparison as an HTML file, from a shell."""
 
 import argparse
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 
 from server.comparison.alignment import Align
 from server.comparison.comparing import Comparer
 from server.comparison.report import write_report
 from server.comparison.shapes import DEFAULT_SIGNALS, SESSIONS_MAX, NoSessionError, WantedComparison
 from server.recording import RecordingError
-from server.running import open_reader
-from server.settings import DataFolder, Settings, SetupError
+from server.running import Claim, open_reader
+from server.settings import Settings, SetupError
 from server.store import StoreError
-
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
 POINTS = 2000
 

@@ -3,8 +3,7 @@
 import argparse
 import asyncio
 import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager, closing
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +19,11 @@ from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
 from server.models import SessionRow
 from server.recording import RecordingError
-from server.running import open_reader, send_file
+from server.running import Claim, open_reader, send_file, server_runs
 from server.schema import prepare
 from server.sessions import find_row
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
-
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
 
 IMPORT_SECONDS = 3600.0
 
@@ -66,7 +63,7 @@ def import_session(options: argparse.Namespace, settings: Settings, claim: Claim
     """Bring an archive in: through the server that runs, or without one by itself. Raises SetupError."""
     if not options.file.is_file():
         raise SetupError(f"There is no file {options.file}.")
-    if _server_runs(settings.data, claim):
+    if server_runs(settings.data, claim):
         session = send_file(settings.data, "/imports", options.file, IMPORT_SECONDS)
         number, name = session["id"], session["name"]
     else:
@@ -74,16 +71,6 @@ def import_session(options: argparse.Namespace, settings: Settings, claim: Claim
             number, name = _take(options.file, settings.data)
     _say(f"session {number}: {name}")
     return 0
-
-
-def _server_runs(folder: DataFolder, claim: Claim) -> bool:
-    if not folder.path.is_dir():
-        return False
-    try:
-        with claim(folder):
-            return False
-    except SetupError:
-        return True
 
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:

@@ -9,7 +9,6 @@ import asyncio
 import math
 import signal
 import sys
-from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack, closing
 from pathlib import Path
 from time import sleep
@@ -18,7 +17,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario, ScenarioError, read_scenario
 from server.notices import Notices
-from server.running import ask
+from server.running import Claim, ask
 from server.scenarios.library import list_scenarios
 from server.scenarios.runs import Runs
 from server.scenarios.shapes import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState, summarize
@@ -27,7 +26,6 @@ from server.schema import prepare
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
 
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
 LOOK_SECONDS = 0.25
 
 
