@@ -17,13 +17,13 @@ import pandas as pd
 from mcap.writer import CompressionType, Writer
 
 from bench.hour import record_hour
-from server.chunks import row_layout
 from server.exports.files import write_part
 from server.exports.formats import check
 from server.exports.packing import LEVEL
 from server.exports.shapes import Wanted
 from server.exports.source import Source
-from server.sessions import find_row
+from server.sessions.chunks import row_layout
+from server.sessions.session import find_row
 from server.store import Reader
 
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.svg import Axis, Line, Panel, draw
-from server.recording import Recording
-from server.sessions import find_row
+from server.sessions.recording import Recording
+from server.sessions.session import find_row
 from server.store import Store
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from statistics import quantiles
 from playwright.sync_api import sync_playwright
 
 from bench.hour import record_hour
-from server.recording import Recording
-from server.sessions import find_row
+from server.sessions.recording import Recording
+from server.sessions.session import find_row
 from server.settings import DataFolder
 from server.store import Reader
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE

@@ -9,10 +9,10 @@ from bench.dive import Dive
 from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.topics import Block
-from server.notices import Notices
-from server.recorder import PERIOD, Recorder
+from server.live.notices import Notices
 from server.schema import prepare
-from server.sessions import new_row
+from server.sessions.recorder import PERIOD, Recorder
+from server.sessions.session import new_row
 from server.settings import DataFolder, Settings, make_folders
 from server.store import Store
 

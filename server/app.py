@@ -10,14 +10,10 @@ from fastapi.responses import JSONResponse
 from robot_runtime.errors import Refused
 from server import VERSION
 from server.assembly import Assembly
-from server.bridge import RuntimeSilent
 from server.comparison.shapes import NoSessionError
-from server.markers import UnknownMark
+from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
-from server.parts import Command
-from server.presence import NotNow, UnknownSession
-from server.recorder import RecordingRefused
-from server.recording import RecordingError
+from server.processes.parts import Command
 from server.routes import (
     comm_tests,
     compare,
@@ -35,6 +31,10 @@ from server.routes import (
     storage,
 )
 from server.security import Guard
+from server.sessions.markers import UnknownMark
+from server.sessions.presence import NotNow, UnknownSession
+from server.sessions.recorder import RecordingRefused
+from server.sessions.recording import RecordingError
 from server.settings import Settings
 from server.store import StoreError
 

@@ -11,32 +11,32 @@ from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
-from server.arming import ArmingRecording
-from server.bridge import SENT_BY, Bridge
-from server.catalogue import Catalogue
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
-from server.health import Watch
-from server.hub import Hub
-from server.markers import Markers
+from server.live.bridge import SENT_BY, Bridge
+from server.live.health import Watch
+from server.live.hub import Hub
+from server.live.notices import Notices
 from server.models import SessionRow
-from server.notices import Notices
 from server.page import Page
-from server.parts import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
-from server.pidfile import running_parts
-from server.recorder import Recorder, RecordingRefused
-from server.resume import Left, find_missing
+from server.processes.parts import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
+from server.processes.pidfile import running_parts
 from server.scenarios.live import Live
 from server.scenarios.runs import Runs as ScenarioRuns
 from server.scenarios.simulated import Simulated
-from server.sessions import new_row
+from server.sessions.arming import ArmingRecording
+from server.sessions.catalogue import Catalogue
+from server.sessions.markers import Markers
+from server.sessions.recorder import Recorder, RecordingRefused
+from server.sessions.resume import Left, find_missing
+from server.sessions.session import new_row
+from server.sessions.tidying import Tidying
 from server.settings import Settings
 from server.store import Store, StoreError
-from server.tidying import Tidying
 
 if TYPE_CHECKING:
     from server.comparison.comparing import Comparer

@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
 from server.exports.options import add_export, add_import
-from server.sessions_options import add_record, add_sessions
+from server.sessions.options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def _scenario(options: argparse.Namespace, settings: Settings) -> int:
 
 
 def _sessions(options: argparse.Namespace, settings: Settings) -> int:
-    from server.sessions_command import perform
+    from server.sessions.command import perform
 
     return perform(options, settings, _claim)
 
@@ -194,7 +194,7 @@ def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
     from robot_runtime.firmware import BuildError, build_firmware
     from server.app import create_app
-    from server.parts import plan
+    from server.processes.parts import plan
     from server.running import announce
     from server.schema import prepare
     from server.web import make_server, open_socket

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
-from server.pidfile import running_parts
+from server.processes.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""

@@ -22,7 +22,7 @@ from server.comm_tests.reference import Place as Cell
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import Place
 from server.models import CommTestRun
-from server.pidfile import end_parts
+from server.processes.pidfile import end_parts
 from server.running import Claim
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError

@@ -15,11 +15,11 @@ from pathlib import Path
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from robot_runtime.firmware import firmware_path
-from server.bridge import Bridge, RuntimeSilent
-from server.health import Watch
-from server.logs import PartLog
-from server.parts import Parts, Tell
-from server.process import Process
+from server.live.bridge import Bridge, RuntimeSilent
+from server.live.health import Watch
+from server.processes.logs import PartLog
+from server.processes.parts import Parts, Tell
+from server.processes.process import Process
 from server.settings import Settings
 
 DISARM_SECONDS = 3.0

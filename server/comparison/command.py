@@ -6,8 +6,8 @@ from server.comparison.alignment import Align
 from server.comparison.comparing import Comparer
 from server.comparison.report import write_report
 from server.comparison.shapes import DEFAULT_SIGNALS, SESSIONS_MAX, NoSessionError, WantedComparison
-from server.recording import RecordingError
 from server.running import Claim, open_reader
+from server.sessions.recording import RecordingError
 from server.settings import Settings, SetupError
 from server.store import StoreError
 

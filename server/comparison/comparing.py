@@ -45,8 +45,8 @@ from server.comparison.shapes import (
 )
 from server.comparison.signals import Signal, list_signals
 from server.models import SessionRow
-from server.recording import Recording
-from server.sessions import find_row
+from server.sessions.recording import Recording
+from server.sessions.session import find_row
 from server.store import Reader
 
 THREADS = 2

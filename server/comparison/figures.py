@@ -12,7 +12,7 @@ from server.comparison.moments import History, Span
 from server.comparison.samples import Samples, Series, read_topic
 from server.comparison.step_response import StepResponse, measure_step
 from server.comparison.strokes import count_strokes
-from server.recording import Recording
+from server.sessions.recording import Recording
 from server.store import Reader
 
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"

@@ -9,7 +9,7 @@ from sqlmodel import col, select
 from server.comparison.moments import Control, History, Moment, Span
 from server.comparison.samples import Samples, Series
 from server.models import Gap, Marker
-from server.recording import Recording
+from server.sessions.recording import Recording
 from server.store import Reader
 
 ARMED_FLAG = 1

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from server.comparison.signals import DOCUMENT_COLUMNS, split
-from server.recording import Recording
+from server.sessions.recording import Recording
 
 Floats = NDArray[np.float64]
 

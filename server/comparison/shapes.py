@@ -8,7 +8,7 @@ from server.comparison.alignment import Align
 from server.comparison.definitions import Figure, FigureMeaning
 from server.comparison.differences import Difference
 from server.comparison.signals import Signal
-from server.sessions import IDENTIFIER_MAX
+from server.sessions.session import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
 SIGNALS_MAX = 24

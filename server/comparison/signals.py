@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from server.chunks import row_layout
-from server.recording import Recording
+from server.sessions.chunks import row_layout
+from server.sessions.recording import Recording
 
 
 class Signal(BaseModel):

@@ -18,8 +18,8 @@ from server.exports.formats import check
 from server.exports.reading import ArchiveRefused, examine
 from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
-from server.recording import RecordingError
-from server.sessions import find_row
+from server.sessions.recording import RecordingError
+from server.sessions.session import find_row
 from server.store import Reader, StoreError
 
 NICENESS = 15

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from signal import SIGTERM
 from typing import Any
 
-from server.parts import describe_status
-from server.process import PipedProcess
+from server.processes.parts import describe_status
+from server.processes.process import PipedProcess
 
 WORDS_BYTES = 2_000
 """Of what is no JSON the end is kept: the last words of a process that fails."""

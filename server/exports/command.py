@@ -18,10 +18,10 @@ from server.exports.reading import ArchiveRefused
 from server.exports.shapes import Wanted
 from server.exports.source import ExportRefused, Source
 from server.models import SessionRow
-from server.recording import RecordingError
 from server.running import Claim, open_reader, send_file, server_runs
 from server.schema import prepare
-from server.sessions import find_row
+from server.sessions.recording import RecordingError
+from server.sessions.session import find_row
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Store, StoreError
 

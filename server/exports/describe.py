@@ -8,7 +8,7 @@ from typing import Any
 from sqlmodel import col, select
 
 from server.models import Gap, Marker, SessionTag
-from server.recording import Recording
+from server.sessions.recording import Recording
 from server.store import Reader
 
 

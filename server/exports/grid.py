@@ -5,11 +5,11 @@ from itertools import pairwise
 from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from server.chunks import row_layout
 from server.exports.describe import as_text, describe_session
 from server.exports.packing import Packing
 from server.exports.source import ExportRefused, Source
 from server.exports.tables import csv_text
+from server.sessions.chunks import row_layout
 from server.store import Reader
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from server.exports.child import Child, ChildFailed
 from server.exports.files import PART, FileFailed, explain
 from server.exports.reading import Archive, ArchiveRefused, open_archive
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
-from server.sessions import IMPORTING, REMOVING
+from server.sessions.session import IMPORTING, REMOVING
 from server.settings import DataFolder
 from server.store import Store
 

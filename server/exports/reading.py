@@ -20,8 +20,8 @@ from typing import IO, Annotated, Any, Literal, NamedTuple
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from robot_runtime.topics import TIME
-from server.chunks import DOCUMENTS_ENCODING, PICTURES_ENCODING, ROWS_ENCODING, decode_pictures
 from server.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
+from server.sessions.chunks import DOCUMENTS_ENCODING, PICTURES_ENCODING, ROWS_ENCODING, decode_pictures
 
 SESSION_BYTES_MAX = 32_000_000
 CHUNK_BYTES_MAX = 16_000_000

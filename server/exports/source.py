@@ -7,7 +7,7 @@ from math import inf
 from robot_runtime.topics import TIME
 from server.exports.shapes import Wanted
 from server.models import Chunk, SessionRow
-from server.recording import Recording
+from server.sessions.recording import Recording
 from server.store import Reader
 
 BATCH_BYTES = 64_000

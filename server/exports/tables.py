@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 from typing import Any, BinaryIO, cast
 
-from server.chunks import row_layout
 from server.exports.describe import as_text, describe_session
 from server.exports.packing import Packing
 from server.exports.source import Source
+from server.sessions.chunks import row_layout
 from server.store import Reader
 
 

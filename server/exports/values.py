@@ -10,8 +10,8 @@ from itertools import chain
 from math import isfinite
 from typing import Any
 
-from server.chunks import DIGITS, SCALED_DIGITS, row_layout
 from server.exports.source import Source
+from server.sessions.chunks import DIGITS, SCALED_DIGITS, row_layout
 
 MICRO = 1e-6
 NOT_FINITE = re.compile(r"(?<=[:,\[])-?(?:nan|inf)(?=[,\]}])")

@@ -26,7 +26,7 @@ from server.comm_tests.shapes import (
 from server.comm_tests.shipped import shipped_documents
 from server.models import CommTestRun
 from server.routes.problems import answers
-from server.sessions import IDENTIFIER_MAX
+from server.sessions.session import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such run")
 

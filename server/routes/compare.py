@@ -11,7 +11,7 @@ from server.assembly import Assembly
 from server.comparison.shapes import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.comparison.signals import Signal
 from server.routes.problems import answers
-from server.sessions import IDENTIFIER_MAX
+from server.sessions.session import IDENTIFIER_MAX
 
 REPORT_POINTS = 2000
 UNKNOWN = answers(_404="There is no such session", _503="The database does not work")

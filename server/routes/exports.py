@@ -15,7 +15,7 @@ from server.exports.reading import ArchiveRefused
 from server.exports.shapes import Job, NewExport
 from server.exports.source import ExportRefused
 from server.routes.problems import answers
-from server.sessions import Session, find_row, from_row
+from server.sessions.session import Session, find_row, from_row
 
 UNKNOWN = answers(_404="There is no such export")
 

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 
 from server.assembly import Assembly
-from server.health import Health
+from server.live.health import Health
 
 router = APIRouter(prefix="/api", tags=["health"])
 

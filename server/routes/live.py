@@ -10,8 +10,8 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from robot_runtime.messages import Refused
 from robot_runtime.packets import DEFINITIONS_HASH
 from server.assembly import Assembly
-from server.bridge import RuntimeSilent
-from server.hub import Client, Evicted
+from server.live.bridge import RuntimeSilent
+from server.live.hub import Client, Evicted
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""

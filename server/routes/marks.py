@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from server.assembly import Assembly
 from server.routes.problems import answers
 from server.routes.sessions import STORING, Identifier
-from server.sessions import IDENTIFIER_MAX, Mark
+from server.sessions.session import IDENTIFIER_MAX, Mark
 
 UNKNOWN = answers(_404="There is no such session, or it has no such mark")
 

@@ -6,10 +6,10 @@ from fastapi import APIRouter, HTTPException, Query, Request
 from fastapi.responses import Response
 
 from server.assembly import Assembly
-from server.recording import Recording
-from server.replay import HISTORY_MAX, TooMuch, read_stretch
 from server.routes.sessions import UNKNOWN, Identifier
-from server.timeline import Timeline, read_timeline
+from server.sessions.recording import Recording
+from server.sessions.replay import HISTORY_MAX, TooMuch, read_stretch
+from server.sessions.timeline import Timeline, read_timeline
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"

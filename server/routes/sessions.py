@@ -13,10 +13,10 @@ from server.exports.describe import file_name
 from server.exports.shapes import Wanted
 from server.exports.source import Source
 from server.exports.tables import stream_tables
-from server.recorder import RecordingRefused
-from server.recording import Recording
 from server.routes.problems import answers
-from server.sessions import (
+from server.sessions.recorder import RecordingRefused
+from server.sessions.recording import Recording
+from server.sessions.session import (
     IDENTIFIER_MAX,
     Name,
     Note,

@@ -5,7 +5,7 @@ from pydantic import BaseModel, ConfigDict
 
 from robot_runtime.errors import Refused
 from server.assembly import Assembly
-from server.parts import SIMULATION, SIMULATION_ELSEWHERE
+from server.processes.parts import SIMULATION, SIMULATION_ELSEWHERE
 from server.routes.problems import answers
 
 router = APIRouter(prefix="/api/simulator", tags=["robot"])

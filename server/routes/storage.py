@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 
 from server.assembly import Assembly
-from server.storage import Storage, measure
+from server.sessions.storage import Storage, measure
 
 router = APIRouter(prefix="/api/storage", tags=["sessions"])
 

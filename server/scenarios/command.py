@@ -16,7 +16,7 @@ from time import sleep
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario, ScenarioError, read_scenario
-from server.notices import Notices
+from server.live.notices import Notices
 from server.running import Claim, ask
 from server.scenarios.library import list_scenarios
 from server.scenarios.runs import Runs

@@ -10,13 +10,13 @@ from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario
 from robot_runtime.scenario.events import Event, Line
 from robot_runtime.simulation.parameters import Parameters
-from server.bridge import Bridge, RuntimeSilent
-from server.health import Watch
-from server.parts import Parts, Tell
-from server.recorder import Recorder
+from server.live.bridge import Bridge, RuntimeSilent
+from server.live.health import Watch
+from server.processes.parts import Parts, Tell
 from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunCancelled, RunFailed
 from server.scenarios.surroundings import Before, Surroundings
+from server.sessions.recorder import Recorder
 from server.settings import Settings
 from server.store import Store
 

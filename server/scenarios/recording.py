@@ -9,9 +9,9 @@ from sqlmodel import col, desc, select
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from server.models import Marker, SessionRow
-from server.recorder import Recorder
 from server.scenarios.run import Run
-from server.sessions import new_row
+from server.sessions.recorder import Recorder
+from server.sessions.session import new_row
 from server.settings import Settings
 from server.store import Store
 

@@ -9,10 +9,10 @@ from typing import Any, Protocol
 
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario, read_scenario
-from server.bridge import RuntimeSilent
-from server.recorder import RecordingRefused
+from server.live.bridge import RuntimeSilent
 from server.scenarios.run import Run, RunCancelled, RunFailed
 from server.scenarios.shapes import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
+from server.sessions.recorder import RecordingRefused
 from server.store import StoreError
 
 log = logging.getLogger(__name__)

@@ -20,11 +20,11 @@ from typing import Any
 from robot_runtime.packets.layout import LayoutError
 from robot_runtime.scenario.document import Scenario
 from robot_runtime.topics import Block, read_blocks
-from server.notices import Notices
-from server.parts import describe_status
-from server.recorder import Recorder
+from server.live.notices import Notices
+from server.processes.parts import describe_status
 from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunFailed
+from server.sessions.recorder import Recorder
 from server.settings import Settings
 from server.store import Store
 

@@ -12,7 +12,7 @@ from robot_runtime.scenario.document import Scenario
 from robot_runtime.scenario.events import Event, Line
 from robot_runtime.simulation.board import Board, BoardError
 from robot_runtime.simulation.surroundings import Trim
-from server.bridge import Bridge, RuntimeSilent
+from server.live.bridge import Bridge, RuntimeSilent
 
 Question = Mapping[str, Any]
 STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import httpx
 
 from robot_runtime.topics import BY_NAME, TIME, Kind
-from server.chunks import decode_documents, decode_rows
+from server.sessions.chunks import decode_documents, decode_rows
 from tests.stack import Stack
 
 RECORDED_MAX = 2.0

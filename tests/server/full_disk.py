@@ -15,10 +15,10 @@ from typing import Any
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.topics import BY_NAME, Block, row
-from server.notices import Notices
-from server.recorder import Recorder
+from server.live.notices import Notices
 from server.schema import prepare
-from server.sessions import new_row
+from server.sessions.recorder import Recorder
+from server.sessions.session import new_row
 from server.settings import DataFolder, Settings, make_folders
 from server.store import Store, StoreError
 from tests.server.blocks import depth_record

@@ -13,8 +13,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from robot_runtime.errors import Refused
 from server.app import create_app
 from server.assembly import Assembly
-from server.bridge import RuntimeSilent
-from server.parts import Command
+from server.live.bridge import RuntimeSilent
+from server.processes.parts import Command
 from server.schema import prepare
 from server.settings import Settings
 from server.web import make_server, open_socket

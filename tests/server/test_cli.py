@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 from server import VERSION
-from server.pidfile import pid_file, running_parts
+from server.processes.pidfile import pid_file, running_parts
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from tests.server.waiting import alive
 

@@ -8,9 +8,9 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-import server.bridge as bridge_module
+import server.live.bridge as bridge_module
 from server.openapi import main as print_openapi
-from server.parts import Command
+from server.processes.parts import Command
 from server.settings import Settings
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, serve

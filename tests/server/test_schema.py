@@ -13,9 +13,9 @@ import server.models  # noqa: F401 - declares the tables
 from migrations import HEAD
 from robot_runtime.topics import BY_NAME
 from server import schema
-from server.catalogue import Catalogue
-from server.chunks import describe_topics, encode_rows
-from server.recording import Recording
+from server.sessions.catalogue import Catalogue
+from server.sessions.chunks import describe_topics, encode_rows
+from server.sessions.recording import Recording
 from server.settings import Settings, SetupError
 from server.store import Store
 from tests.server.blocks import depth_block

@@ -11,9 +11,9 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.link.statistics import LinkStatistics
 from robot_runtime.packets.layout import Record
 from robot_runtime.topics import BY_NAME, Block, documents, row
-from server.notices import Notices
-from server.recorder import Recorder
-from server.sessions import new_row
+from server.live.notices import Notices
+from server.sessions.recorder import Recorder
+from server.sessions.session import new_row
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import state_block

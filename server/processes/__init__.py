@@ -1,0 +1,1 @@
+"""The other processes: started, watched, adopted and ended."""

@@ -1,0 +1,82 @@
+"""Files that tell the next server which parts of a killed one still run."""
+
+import json
+import os
+import signal
+import time
+from collections.abc import Collection
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from server.processes.process import started_at
+
+TERM_SECONDS = 3.0
+LOOK_SECONDS = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A part that runs: its process, when that was started (`started_at`), and of what it was made."""
+
+    pid: int
+    started: int
+    made: str
+
+
+class PidFile:
+    """Says in `path` which process a part is."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def write(self, pid: int, made: str) -> None:
+        """Raises OSError where it cannot be written; the part runs all the same, and is not found again."""
+        text = json.dumps({"pid": pid, "started": started_at(pid), "made": made})
+        fresh = self._path.with_name(self._path.name + ".new")
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(self._path)
+
+    def read(self) -> Running | None:
+        """The process that was written, where that very one still runs."""
+        try:
+            found = json.loads(self._path.read_text(encoding="utf-8"))
+            running = Running(int(found["pid"]), int(found["started"]), str(found["made"]))
+        except (OSError, ValueError, LookupError, TypeError):
+            return None
+        return running if started_at(running.pid) == running.started else None
+
+    def remove(self) -> None:
+        """The part has ended."""
+        with suppress(OSError):
+            self._path.unlink(missing_ok=True)
+
+
+def pid_file(run: Path, name: str) -> PidFile:
+    """The file of the part of this name, in the folder `run`."""
+    return PidFile(run / f"{name}.pid")
+
+
+def running_parts(run: Path) -> dict[str, Running]:
+    """What still runs, by the parts' names."""
+    found = {path.stem: PidFile(path).read() for path in run.glob("*.pid")}
+    return {name: running for name, running in found.items() if running is not None}
+
+
+def end_parts(run: Path, but: Collection[str] = ()) -> None:
+    """End what a killed server has left running, and wait for it; parts of the names in `but` stay."""
+    left = {name: running for name, running in running_parts(run).items() if name not in but}
+    for running in left.values():
+        _signal(running.pid, signal.SIGTERM)
+    end = time.monotonic() + TERM_SECONDS
+    while left.keys() & running_parts(run).keys() and time.monotonic() < end:
+        time.sleep(LOOK_SECONDS)
+    for running in left.values():
+        _signal(running.pid, signal.SIGKILL)
+    for name in left:
+        pid_file(run, name).remove()
+
+
+def _signal(pid: int, number: signal.Signals) -> None:
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(pid, number)

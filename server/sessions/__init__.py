@@ -1,0 +1,1 @@
+"""Sessions: recorded, kept, found again and replayed."""

@@ -1,0 +1,363 @@
+import asyncio
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import psutil
+import pytest
+
+import server.processes.parts as parts_module
+from robot_runtime.clock import SimulatedClock, SteadyClock
+from robot_runtime.config import LinkConfig
+from server.processes.logs import PartLog
+from server.processes.parts import Command, Part, Parts, plan
+from server.processes.pidfile import end_parts, pid_file, running_parts
+from server.settings import DataFolder, Settings, make_folders
+from tests.server.waiting import alive, until
+
+
+class Crew:
+    """Parts made of small Python programs."""
+
+    def __init__(self, folder: Path, *commands: Command) -> None:
+        self.told: list[tuple[str, str]] = []
+        data = DataFolder(folder)
+        make_folders(data)
+        self.parts = Parts(
+            commands, data, SteadyClock(), lambda kind, _, text: self.told.append((kind, text))
+        )
+
+    def part(self, name: str) -> Part:
+        part = self.parts.get(name)
+        assert part is not None
+        return part
+
+    def process(self, name: str) -> psutil.Process:
+        pid = self.part(name).pid
+        assert pid is not None
+        return psutil.Process(pid)
+
+
+def program(name: str, code: str, *needs: Path) -> Command:
+    return Command(name, f"part {name}", (sys.executable, "-c", code), needs)
+
+
+def run(crew: Crew, scenario: Callable[[], Awaitable[None]]) -> None:
+    async def play() -> None:
+        crew.parts.start()
+        try:
+            await scenario()
+        finally:
+            await crew.parts.stop()
+
+    asyncio.run(play())
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parts_module, "BACKOFF_FIRST", 0.01)
+    monkeypatch.setattr(parts_module, "BACKOFF_MAX", 0.04)
+
+
+def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path) -> None:
+    count = tmp_path / "count"
+    code = (
+        f"import pathlib, sys, time; p = pathlib.Path({str(count)!r})\n"
+        "n = len(p.read_text()) if p.exists() else 0; p.write_text('x' * (n + 1))\n"
+        "if n < 2: print('no oil'); sys.exit(f'broken {n}')\n"
+        "time.sleep(600)"
+    )
+    crew = Crew(tmp_path, program("engine", code))
+
+    async def scenario() -> None:
+        await until(lambda: count.exists() and count.read_text() == "xxx", "the third start")
+        await until(lambda: crew.part("engine").state == "running", "running")
+        assert [kind for kind, _ in crew.told] == ["engine", "engine"]
+        assert "The part engine has ended with exit status 1." in crew.told[0][1]
+        assert "no oil / broken 0" in crew.told[0][1]
+        assert "started again in 0.0 s" in crew.told[0][1]
+
+    run(crew, scenario)
+    assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
+
+
+def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        first = crew.process("engine")
+        first.kill()
+        await until(lambda: crew.told, "the news")
+        await until(lambda: crew.part("engine").pid not in (None, first.pid), "the next start")
+        assert "was ended by signal SIGKILL" in crew.told[0][1]
+
+    run(crew, scenario)
+
+
+def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pauses: list[float] = []
+    lives = iter([0, 1, 2, 3, 20, 0])
+    clock = SimulatedClock()
+    part = Part(Command("engine", "engine", ()), PartLog(tmp_path), tmp_path, clock, lambda *_: None)
+
+    async def live() -> str:
+        clock.forward(next(lives))
+        return "has ended"
+
+    async def pause(seconds: float) -> None:
+        pauses.append(seconds)
+        if len(pauses) == 6:
+            raise asyncio.CancelledError
+
+    monkeypatch.setattr(part, "_run_once", live)
+    monkeypatch.setattr(asyncio, "sleep", pause)
+    with suppress(asyncio.CancelledError):
+        asyncio.run(part.run())
+    assert pauses == [0.01, 0.02, 0.04, 0.04, 0.01, 0.02]
+
+
+def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
+    up = "print('up')\ntime.sleep(600)"
+    polite = f"import signal, sys, time; signal.signal(15, lambda *_: sys.exit(print('bye')))\n{up}"
+    deaf = f"import signal, time; signal.signal(15, signal.SIG_IGN)\n{up}"
+    crew = Crew(tmp_path, program("polite", polite), program("deaf", deaf))
+    processes: list[psutil.Process] = []
+
+    async def scenario() -> None:
+        for name in ("polite", "deaf"):
+            log = tmp_path / "logs" / f"{name}.log"
+            await until(lambda log=log: log.exists() and log.read_text() == "up\n", f"{name} to be up")  # type: ignore[misc]
+            processes.append(crew.process(name))
+
+    run(crew, scenario)
+    assert (tmp_path / "logs" / "polite.log").read_text() == "up\nbye\n"
+    assert not any(process.is_running() for process in processes)
+    assert crew.told == []
+
+
+def test_children_of_a_part_end_with_it(tmp_path: Path) -> None:
+    code = "import subprocess, time; print(subprocess.Popen(['sleep', '600']).pid); time.sleep(600)"
+    crew = Crew(tmp_path, program("parent", code))
+    log = tmp_path / "logs" / "parent.log"
+
+    async def scenario() -> None:
+        await until(lambda: log.exists() and log.read_text().endswith("\n"), "the child")
+        crew.process("parent").kill()
+        await until(lambda: crew.told, "the news")
+        first, *_ = map(int, log.read_text().split())
+        await until(lambda: not alive(first), "the child's end")
+        await until(lambda: len(log.read_text().split()) == 2, "the next child")
+
+    run(crew, scenario)
+    children = [int(pid) for pid in log.read_text().split()]
+    # They have been killed; the system may still be about to bury them.
+    asyncio.run(until(lambda: not any(map(alive, children)), "the last child's end"))
+
+
+def test_a_part_starts_when_what_it_needs_is_there(tmp_path: Path) -> None:
+    socket = tmp_path / "board.sock"
+    crew = Crew(tmp_path, program("water", "import time; time.sleep(600)", socket))
+
+    async def scenario() -> None:
+        await asyncio.sleep(0.2)
+        assert (crew.part("water").state, crew.part("water").pid) == ("waiting", None)
+        socket.touch()
+        await until(lambda: crew.part("water").state == "running", "the start")
+
+    run(crew, scenario)
+
+
+def test_a_missing_program_is_told_and_the_others_run(tmp_path: Path) -> None:
+    missing = Command("board", "board", (str(tmp_path / "no" / "board"),))
+    crew = Crew(tmp_path, missing, program("other", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.told and crew.part("other").state == "running", "both")
+        assert "No such file" in crew.told[0][1]
+        assert crew.part("board").state in ("failed", "waiting")
+
+    run(crew, scenario)
+
+
+def test_what_is_paused_does_not_run_until_it_is_resumed(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        before = crew.process("engine")
+        await crew.parts.pause("engine", "It is lent.")
+        await crew.parts.pause("sail", "There is none.")
+        assert not before.is_running()
+        assert (crew.part("engine").state, crew.part("engine").problem) == ("paused", "It is lent.")
+        crew.parts.start()
+        await asyncio.sleep(0)
+        assert crew.part("engine").state == "paused"
+        crew.parts.resume("engine")
+        await until(lambda: crew.part("engine").pid, "the next start")
+        assert crew.told == []
+
+    run(crew, scenario)
+
+
+class Left:
+    """A part that a killed server has left: started, and no longer anybody's in particular."""
+
+    def __init__(self, folder: Path, command: Command) -> None:
+        self.command = command
+        data = DataFolder(folder)
+        make_folders(data)
+        # Somebody else's child, as a killed server's are.
+        code = (
+            "import subprocess, sys; "
+            "print(subprocess.Popen(sys.argv[1:], start_new_session=True, stdout=2).pid)"
+        )
+        arguments = [sys.executable, "-c", code, *command.arguments]
+        done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        self.process = psutil.Process(int(done.stdout))
+        pid_file(data.run, command.name).write(self.process.pid, command.fingerprint())
+
+
+def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").state == "running", "the adoption")
+        assert crew.part("engine").pid == left.process.pid
+        (tmp_path / "never").touch()
+        left.process.kill()
+        await until(lambda: crew.told, "the news")
+        assert "has ended; how is not known, for an earlier server had started it" in crew.told[0][1]
+        await until(lambda: crew.part("engine").pid not in (None, left.process.pid), "the next")
+
+    run(crew, scenario)
+    assert not alive(left.process.pid)
+    assert not list((tmp_path / "run").iterdir())
+
+
+def test_what_was_adopted_is_ended_in_order_and_then_forced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parts_module, "TERM_SECONDS", 0.3)
+    up = tmp_path / "up"
+    code = "import pathlib, signal, time; signal.signal(15, signal.SIG_IGN)\n"
+    left = Left(tmp_path, program("deaf", code + f"pathlib.Path({str(up)!r}).touch(); time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("deaf").pid == left.process.pid, "the adoption")
+        await until(up.exists, "it to be deaf")
+
+    run(crew, scenario)
+    assert not alive(left.process.pid)
+    assert crew.told == []
+
+
+def test_another_command_or_other_files_are_started_anew(tmp_path: Path) -> None:
+    read = tmp_path / "read"
+    read.write_text("old")
+    commands = [
+        program("argument", "import time; time.sleep(600)"),
+        replace(program("file", "import time; time.sleep(600)"), made_of=(read,)),
+    ]
+    left = [Left(tmp_path, command) for command in commands]
+    read.write_text("new")
+    changed = program("argument", "import time; time.sleep(601)")
+    crew = Crew(tmp_path, changed, commands[1])
+
+    async def scenario() -> None:
+        for one in left:
+            await until(lambda one=one: not alive(one.process.pid), "the end of the old")  # type: ignore[misc]
+        await until(lambda: crew.part("argument").pid and crew.part("file").pid, "the new")
+        assert crew.told == []
+
+    run(crew, scenario)
+
+
+def test_a_number_that_was_given_again_is_not_taken_for_the_part(tmp_path: Path) -> None:
+    command = program("engine", "import time; time.sleep(600)")
+    left = Left(tmp_path, command)
+    file = tmp_path / "run" / "engine.pid"
+    found = json.loads(file.read_text())
+    file.write_text(json.dumps(found | {"started": found["started"] - 1}))
+    crew = Crew(tmp_path, command)
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        assert crew.part("engine").pid != left.process.pid
+
+    run(crew, scenario)
+    assert left.process.is_running()
+    left.process.kill()
+
+
+@pytest.mark.parametrize("text", ["", "nonsense", "[]", "{}", '{"pid": null}', '{"pid": 1, "started": 1}'])
+def test_a_damaged_note_of_a_part_is_passed_over(tmp_path: Path, text: str) -> None:
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "engine.pid").write_text(text)
+    assert running_parts(tmp_path / "run") == {}
+
+
+def test_a_part_that_is_paused_at_the_start_does_not_go_on_either(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+
+    async def scenario() -> None:
+        await crew.parts.pause("engine", "It is lent.")
+        assert not alive(left.process.pid)
+
+    asyncio.run(scenario())
+
+
+def test_who_does_not_need_what_was_left_ends_it(tmp_path: Path) -> None:
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    crew = Crew(tmp_path, left.command)
+    asyncio.run(crew.parts.end_others())
+    assert alive(left.process.pid)
+    asyncio.run(Crew(tmp_path, program("another", "")).parts.end_others())
+    assert not alive(left.process.pid)
+    left = Left(tmp_path, program("engine", "import time; time.sleep(600)"))
+    end_parts(tmp_path / "run")
+    assert not alive(left.process.pid)
+    assert running_parts(tmp_path / "run") == {}
+
+
+def test_ctrl_c_reaches_the_server_alone(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        pid = crew.part("engine").pid
+        assert pid is not None
+        assert os.getpgid(pid) == pid != os.getpgid(0)
+
+    run(crew, scenario)
+
+
+def test_a_real_robot_needs_the_runtime_alone_and_an_emulated_one_everything(settings: Settings) -> None:
+    assert [command.name for command in plan(replace(settings, mode="robot"))] == ["runtime"]
+    commands = {command.name: command for command in plan(settings)}
+    assert list(commands) == ["board", "runtime", "simulator", "scene"]
+    lock = ("--server-lock", str(settings.data.lock))
+    assert all(command.arguments[-2:] == lock for command in commands.values())
+    assert str(settings.build / "firmware/optiboot.hex") in commands["board"].arguments
+    assert commands["runtime"].needs == (settings.data.board_tty,)
+    assert str(settings.data.board_tty) in commands["runtime"].arguments
+    alone = plan(replace(settings, mode="robot"))[0].arguments
+    assert "--port" not in alone
+    assert "--server-lock" not in alone
+    assert "--heartbeat" in alone
+
+
+def test_the_board_runs_the_firmware_for_the_configured_speed(settings: Settings) -> None:
+    elf = settings.build / "firmware/9600/robot.elf"
+    assert str(elf) in plan(replace(settings, link=LinkConfig(baud=9600)))[0].arguments
