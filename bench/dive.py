@@ -277,6 +277,7 @@ def _state(start: float, since: float) -> State:
         mode="automatic" if armed else "disarmed",
         armed=armed,
         armed_since=start + ARMED_AT if armed else None,
+        alarms=[],
         refusals=[],
         connected=True,
         connection="The Arduino answers.",

@@ -139,6 +139,7 @@ class Core:
             mode=self.supervisor.mode,
             armed=self.supervisor.armed,
             armed_since=self.supervisor.armed_since,
+            alarms=[],
             refusals=self.supervisor.refusals(),
             connected=self.line.connected,
             connection=self.line.text,

@@ -112,7 +112,21 @@ class Pace:
     period: float
 
 
-Mode = Literal["disarmed", "automatic"]
+Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alarm:
+    """Something that is wrong, or was and has not been acknowledged yet."""
+
+    fault: str = field(metadata={"meaning": "one word for programs, as in docs/safety.md"})
+    severity: Severity
+    since: float = field(metadata={"meaning": "s, steady clock"})
+    active: bool = field(metadata={"meaning": "whether it is wrong still"})
+    acknowledged: bool
+    what: str
+    cause: str = field(metadata={"meaning": "the likely one"})
+    remedy: str = field(metadata={"meaning": "what to do"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +137,7 @@ class State(Document):
     mode: Mode
     armed: bool
     armed_since: float | None
+    alarms: list[Alarm]
     refusals: list[str] = field(
         metadata={"meaning": "why arming would be refused now; empty where it would not"}
     )

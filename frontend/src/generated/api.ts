@@ -961,6 +961,31 @@ export interface components {
             title: string;
         };
         /**
+         * Alarm
+         * @description Something that is wrong, or was and has not been acknowledged yet.
+         */
+        Alarm: {
+            /** Acknowledged */
+            acknowledged: boolean;
+            /** Active */
+            active: boolean;
+            /** Cause */
+            cause: string;
+            /** Fault */
+            fault: string;
+            /** Remedy */
+            remedy: string;
+            /**
+             * Severity
+             * @enum {string}
+             */
+            severity: "info" | "caution" | "alarm";
+            /** Since */
+            since: number;
+            /** What */
+            what: string;
+        };
+        /**
          * Align
          * @description The moment that becomes 0 s in every session.
          */
@@ -2341,6 +2366,8 @@ export interface components {
          * @description The robot as a whole; sent once a second and at every change.
          */
         State: {
+            /** Alarms */
+            alarms: components["schemas"]["Alarm"][];
             /** Armed */
             armed: boolean;
             /** Armed Since */
@@ -2369,7 +2396,7 @@ export interface components {
              * Mode
              * @enum {string}
              */
-            mode: "disarmed" | "automatic";
+            mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
             /** Port */

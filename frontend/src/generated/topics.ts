@@ -412,13 +412,26 @@ export interface Pace {
   period: number;
 }
 
+/** Something that is wrong, or was and has not been acknowledged yet. */
+export interface Alarm {
+  fault: string;
+  severity: 'info' | 'caution' | 'alarm';
+  since: number;
+  active: boolean;
+  acknowledged: boolean;
+  what: string;
+  cause: string;
+  remedy: string;
+}
+
 /** The robot as a whole; sent once a second and at every change. */
 export interface State {
   time: number;
   run: string;
-  mode: 'disarmed' | 'automatic';
+  mode: 'disarmed' | 'manual' | 'automatic' | 'test' | 'failsafe';
   armed: boolean;
   armed_since: number | null;
+  alarms: Alarm[];
   refusals: string[];
   connected: boolean;
   connection: string;
