@@ -6,12 +6,13 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import SET_POINT
 from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.errors import Refused
 from robot_runtime.packets import Depth, Navigation
 from robot_runtime.samples import Control, Detection, Document, Event
 
-VISION_STALE = 1.0
-"""s after which what the vision node saw no longer counts."""
+VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
+"""s after which, at a tick, what the vision node saw no longer counts."""
 
 
 class ControlNode:
@@ -60,7 +61,7 @@ class ControlNode:
         self.set_point_default, self.set_point_detected = default, detected
 
     def tick(self, armed: bool) -> None:
-        """Decide, and send the command where the robot is armed."""
+        """Decide, and send the command where the robot is armed and steers itself."""
         now = self._clock.now()
         self._choose_set_point(now)
         if self._depth is None:
@@ -71,12 +72,15 @@ class ControlNode:
         output = self.controller.step(self.set_point, depth, now - (self._ticked or now)) if armed else 0.0
         self._ticked = now if armed else None
         if armed:
-            command = Navigation(x=0.0, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=0.0)
-            self._send(command)
-            self._bus.publish_row("navigation", now, command.to_bytes())
+            self.steer(Navigation(x=0.0, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=0.0))
         error = self.set_point - depth
         tick = Control(set_point=self.set_point, depth=depth, error=error, output=output, latency=now - time)
         self._bus.publish_row("control", now, tick.to_bytes())
+
+    def steer(self, command: Navigation) -> None:
+        """Send a command to the board, and tell what it was."""
+        self._send(command)
+        self._bus.publish_row("navigation", self._clock.now(), command.to_bytes())
 
     def _choose_set_point(self, now: float) -> None:
         seen = now - self._seen <= VISION_STALE
