@@ -48,7 +48,7 @@ class Pilot:
         """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1)."""
         try:
             lease, sequence, taken, axes = _read(json.loads(payload))
-        except (ValueError, TypeError, KeyError, RecursionError):
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
             self.dropped["invalid"] += 1
             return
         now = self._clock.now()
@@ -68,7 +68,7 @@ class Pilot:
 
 
 def _read(words: Any) -> tuple[int, int, float, list[float]]:
-    """Raises ValueError, TypeError or KeyError where it is no input."""
+    """Raises ValueError, TypeError, KeyError or OverflowError where it is no input."""
     lease, sequence, taken, axes = (words[name] for name in ("lease", "sequence", "taken", "axes"))
     if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
         raise TypeError("lease and sequence are whole numbers, axes a list")

@@ -99,9 +99,10 @@ class Supervisor:
         with self._changed:
             old = self.watch.status
             self.watch.see_status(status)
-            if old is not None and old.epoch != status.epoch:
+            if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
+                # Its silence may have been noticed first; this is what it was.
                 self._fail("board_restarted")
-            elif not status.flags & StatusFlag.ARMED:
+            elif self.armed and not status.flags & StatusFlag.ARMED:
                 self._fail("board_disarmed")
             self._changed.notify_all()
 
@@ -191,7 +192,8 @@ class Supervisor:
     def fail(self, fault: str) -> None:
         """Stop for this fault, by its name, which is over at once."""
         with self._changed:
-            self._fail(fault)
+            if self.armed:
+                self._fail(fault)
 
     def end_fin_check(self) -> None:
         """Disarm after a fin check, and tell what it found."""
@@ -242,10 +244,9 @@ class Supervisor:
         self._changed.notify_all()
 
     def _fail(self, name: str) -> None:
-        """Where the robot is armed: an alarm for something that is over already, and all-stop."""
-        if self.armed:
-            self._alarms.note(name)
-            self._all_stop()
+        """An alarm for something that is over already, and all-stop."""
+        self._alarms.note(name)
+        self._all_stop()
 
     def _all_stop(self) -> None:
         if self._leave("fault", "alarm", f"All-stop: the fins rest. {_ACKNOWLEDGE}"):

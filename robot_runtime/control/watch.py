@@ -12,7 +12,6 @@ from robot_runtime.clock import Clock
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.pilot import Pilot
-from robot_runtime.control.transitions import ARMED
 from robot_runtime.link.pace import frames_airtime, stale_after
 from robot_runtime.packets import Depth, Hello, Imu, Packet, SensorFault, Status, StatusFlag
 from robot_runtime.samples import Mode
@@ -129,10 +128,10 @@ class Watch:
     def wrong(self, mode: Mode, active: Collection[str]) -> dict[str, str]:
         """The faults there are, each with what is special about it, if anything.
 
-        All are looked for while the robot is armed; else only some, and those that are `active` already.
+        All are looked for but where the robot is disarmed: then only some, and those `active` already.
         """
         found = self._conditions(mode)
-        looked_for = found if mode in ARMED else {name for name in found if BY_NAME[name].always} | {*active}
+        looked_for = {name for name in found if mode != "disarmed" or BY_NAME[name].always} | {*active}
         wrong = {name: "" for name, there in found.items() if there and name in looked_for}
         if "board_silent" in wrong and not self._line.connected:
             wrong["board_silent"] = f"({self._line.text})"

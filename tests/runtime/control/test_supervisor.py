@@ -90,11 +90,18 @@ class Rig:
 
     def feel(self, depth: float = 0.3, tilt: float = 0.0, *, frozen: bool = False) -> None:
         """Let the sensors say something, as a sound board does."""
-        watch = self.supervisor.watch
+        self.feel_depth(depth, frozen=frozen)
+        self.feel_attitude(tilt)
+
+    def feel_depth(self, depth: float = 0.3, *, frozen: bool = False) -> None:
         self._pressure += not frozen
-        watch.see_messages()
-        watch.see_depth(Depth(time=0, depth=depth, pressure=self._pressure, temperature=20.0))
-        watch.see_imu(imu(tilt))
+        self.supervisor.watch.see_messages()
+        reading = Depth(time=0, depth=depth, pressure=self._pressure, temperature=20.0)
+        self.supervisor.watch.see_depth(reading)
+
+    def feel_attitude(self, tilt: float = 0.0) -> None:
+        self.supervisor.watch.see_messages()
+        self.supervisor.watch.see_imu(imu(tilt))
 
     def ready(self) -> None:
         self.report()
