@@ -14,8 +14,8 @@ PILOT = "pilot"
 """The name under which the server sends it."""
 AGE_MAX = 0.3
 """s by which an input may be old, or ahead of this clock."""
-PATIENCE = BY_NAME["pilot_quiet"].limit - LOOK
-"""s for which, at a look, an input counts."""
+PATIENCE = BY_NAME["pilot_quiet"].limit - LOOK - 0.05
+"""s for which, at a look, an input counts: the next look, and the way to the board, are to come."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 

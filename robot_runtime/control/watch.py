@@ -69,7 +69,7 @@ class Watch:
         self._pilot = pilot
         self._loop = loop
         baud = line.baud
-        self._silent = max(_limit("board_silent"), frames_airtime(3, baud))
+        self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
         self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
         self._imu_stale = stale_after(BY_NAME["imu_stale"].limit - ARRIVAL, Imu, baud)
         self._status_stale = stale_after(_STATUS_STALE, Status, baud)

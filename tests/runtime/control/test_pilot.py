@@ -35,7 +35,7 @@ def test_the_newest_input_counts_until_it_is_old(pilot: Pilot, clock: SimulatedC
     assert pilot.command() == NEUTRAL
     pilot.take(words())
     assert (pilot.command().y, pilot.command().yaw) == (-1.0, 0.25)
-    clock.forward(0.39)
+    clock.forward(0.34)
     assert pilot.command().y == -1.0
     clock.forward(0.02)
     assert pilot.command() == NEUTRAL
