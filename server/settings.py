@@ -64,6 +64,11 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
+    def keeper(self) -> Path:
+        """Which process keeps the server of this folder running."""
+        return self.path / "server.pid"
+
+    @property
     def address(self) -> Path:
         """Where the server that works on this folder, or did last, is to be asked: host and port."""
         return self.path / "server.address"
