@@ -117,7 +117,7 @@ class Core:
             mode = self.supervisor.mode
             self.control.tick(mode == "automatic")
             if mode == "manual":
-                self.control.steer(self.supervisor.pilot.command())
+                self.control.command(self.supervisor.pilot.command())
             elif mode == "test":
                 self._check_fins()
         except Exception:
@@ -168,6 +168,7 @@ class Core:
             set_point=self.control.set_point,
             set_point_default=self.control.set_point_default,
             set_point_detected=self.control.set_point_detected,
+            steering=self.control.steering,
             control_rate=self.config.control.rate,
             vision_rate=self.vision.rate,
             vision_colour=self.control.colour,
@@ -195,6 +196,7 @@ class Core:
         for name, gains in settings.gains.items():
             self.control.choose(name, gains)
         self.control.choose(settings.controller)
+        self.control.steer(settings.steering)
         self.control.set_points(settings.set_point, settings.set_point_detected)
         self.control.colour = self.config.vision.colour
 
@@ -218,7 +220,7 @@ class Core:
         if command is None:
             self.supervisor.end_fin_check()
         else:
-            self.control.steer(command)
+            self.control.command(command)
 
     def _navigate(self, command: Navigation) -> None:
         self.line.send(command)

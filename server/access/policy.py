@@ -25,6 +25,7 @@ OPERATIONS: dict[str, Need] = {
     "acknowledgeAlarms": Need.CONTROL,
     "putController": Need.CONTROL,
     "putSetPoints": Need.CONTROL,
+    "putSteering": Need.CONTROL,
     "putCard": Need.CONTROL,
     "putVision": Need.CONTROL,
     "putSimulator": Need.CONTROL,

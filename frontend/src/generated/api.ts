@@ -516,6 +516,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/steering": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Choose a course
+         * @description Stay, or swim towards a light beacon.
+         */
+        put: operations["putSteering"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/stop": {
         parameters: {
             query?: never;
@@ -1284,6 +1304,18 @@ export interface components {
             title: string;
         };
         /**
+         * Course
+         * @description Where it swims while it holds its depth.
+         */
+        Course: {
+            /**
+             * By
+             * @description none: nowhere; beacons: to the light that its detectors see
+             * @enum {string}
+             */
+            by: "none" | "beacons";
+        };
+        /**
          * Difference
          * @description Something that is not the same in all sessions.
          */
@@ -1333,6 +1365,17 @@ export interface components {
             series: {
                 [key: string]: components["schemas"]["Line"];
             };
+        };
+        /**
+         * Driver
+         * @description Who steers: the depth controller, or the pilot by hand.
+         */
+        Driver: {
+            /**
+             * Mode
+             * @enum {string}
+             */
+            mode: "automatic" | "manual";
         };
         /**
          * EndedRun
@@ -2471,23 +2514,17 @@ export interface components {
             set_point_default: number;
             /** Set Point Detected */
             set_point_detected: number;
+            /**
+             * Steering
+             * @enum {string}
+             */
+            steering: "none" | "beacons";
             /** Time */
             time: number;
             /** Vision Colour */
             vision_colour: string;
             /** Vision Rate */
             vision_rate: number;
-        };
-        /**
-         * Steering
-         * @description Who steers: the depth controller, or the pilot by hand.
-         */
-        Steering: {
-            /**
-             * Mode
-             * @enum {string}
-             */
-            mode: "automatic" | "manual";
         };
         /**
          * Storage
@@ -3682,7 +3719,7 @@ export interface operations {
         };
         requestBody?: {
             content: {
-                "application/json": components["schemas"]["Steering"] | null;
+                "application/json": components["schemas"]["Driver"] | null;
             };
         };
         responses: {
@@ -3910,7 +3947,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Steering"];
+                "application/json": components["schemas"]["Driver"];
             };
         };
         responses: {
@@ -3969,6 +4006,64 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["SetPoints"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putSteering: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Course"];
             };
         };
         responses: {
