@@ -2502,6 +2502,8 @@ export interface components {
             mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
+            /** Pilot Dropped */
+            pilot_dropped: number;
             /** Port */
             port: string;
             /** Refusals */
