@@ -2,6 +2,7 @@ import asyncio
 import csv
 import io
 import json
+import shutil
 import sys
 import zipfile
 from collections.abc import Awaitable, Callable
@@ -179,6 +180,18 @@ def test_what_changes_who_steers_goes_to_the_runtime(
         answer = await served.api.request(method, path, json=body)
         assert answer.status_code == 204
         assert served.runtime.asked[-1] == asked
+
+    play(settings, scenario)
+
+
+def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario(served: Served) -> None:
+        usage = shutil.disk_usage(settings.data.path)
+        monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=19_999_999))
+        answer = await served.api.post("/robot/arm")
+        assert answer.status_code == 409
+        assert "The disk is full: 20 MB are free" in answer.json()["detail"]
+        assert served.runtime.asked == []
 
     play(settings, scenario)
 
