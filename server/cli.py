@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -18,6 +19,8 @@ from server.sessions.options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
+    from server.access.access import Access
+
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
 LOCK_TRIES = 20
@@ -207,15 +210,19 @@ def _run(settings: Settings) -> int:
     with open_socket(settings.host, settings.port) as listener:
         prepare(settings.data)
         announce(settings.data, settings.host, settings.port)
-        server = make_server(create_app(settings, plan(settings)))
+        server = make_server(create_app(settings, plan(settings), partial(_greet, settings)))
         # The server ends in order at these, and then sends them to itself once more; once is enough.
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: None)
-        address = f"[{settings.host}]" if ":" in settings.host else settings.host
-        told = f"µ-CAT {VERSION} ({settings.mode}): http://{address}:{settings.port}/"
-        print(f"{told} (data in {settings.data.path})", flush=True)  # noqa: T201 - a command line speaks
         server.run(sockets=[listener])
     return 0
+
+
+def _greet(settings: Settings, access: "Access") -> None:
+    from server.access.welcome import welcome
+
+    lines = welcome(settings, access, picture=sys.stdout.isatty())
+    print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 
 if __name__ == "__main__":

@@ -13,6 +13,9 @@ from typing import Any, Self
 import httpx
 import psutil
 
+from server.settings import DataFolder
+from tests.shell import ShellToken
+
 ROOT = Path(__file__).resolve().parents[1]
 READY_SECONDS = 40.0
 _STOP_SECONDS = 10.0
@@ -37,7 +40,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0)
+        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
