@@ -44,7 +44,7 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands)
+        assembly = Assembly(settings, commands, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
             yield
@@ -59,6 +59,7 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.ended = ""
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(Refused, _refused)
