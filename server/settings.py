@@ -104,6 +104,11 @@ class DataFolder:
         return self.path / "firmware-away"
 
     @property
+    def scenario_before(self) -> Path:
+        """There while a scenario runs on the robot: how everything was before."""
+        return self.path / "scenario-before.json"
+
+    @property
     def scenarios(self) -> Path:
         """One's own scenarios."""
         return self.path / "scenarios"
