@@ -61,7 +61,8 @@ class Stack:
     def process(self) -> psutil.Process:
         """The process that was started, or the one that has taken its place: the keeper of the server."""
         pid = keeper_of(DataFolder(self.data))
-        assert pid is not None
+        if pid is None:
+            raise LookupError("no keeper runs")
         return psutil.Process(pid)
 
     @property
