@@ -54,7 +54,7 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands)
+        assembly = Assembly(settings, commands, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
             if started is not None:
@@ -71,6 +71,7 @@ def create_app(
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.ended = ""
     # What is added last is asked first.
     app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
