@@ -35,6 +35,7 @@ from server.routes import (
     simulator,
     storage,
 )
+from server.routes.problems import EVERYWHERE
 from server.security import Guard
 from server.sessions.markers import UnknownMark
 from server.sessions.presence import NotNow, UnknownSession
@@ -76,6 +77,7 @@ def create_app(
     app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(400, _unreadable_body)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
@@ -89,7 +91,7 @@ def create_app(
     robots = (health, robot, simulator, scene, link, live)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
-        app.include_router(module.router, dependencies=[Depends(admit)])
+        app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app
 
@@ -100,6 +102,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
         f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
     )
     return _tell(422, f"The request is not valid. {words}")
+
+
+async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
+    return _tell(422, "The request is not valid. Its body is not JSON in UTF-8.")
 
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
