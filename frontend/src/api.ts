@@ -31,6 +31,7 @@ export type ScenarioCheck = Schemas['ScenarioCheck'];
 export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
+export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
 /** who steers an armed robot: the pilot or the controller */
 export type Steering = Extract<State['mode'], 'manual' | 'automatic'>;
@@ -98,6 +99,7 @@ export const api = {
   makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
   controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
   setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
+  steering: (by: Course) => order('PUT', '/robot/steering', { by }),
   card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
   simulator: (here: boolean) => order('PUT', '/simulator', { here }),
