@@ -50,7 +50,6 @@ def state_block(first: int, **changes: Any) -> Block:
         "armed_since": None,
         "alarms": [],
         "refusals": [],
-        "alarms": [],
         "connected": True,
         "connection": "connected",
         "port": "board.tty",
