@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
-from fastapi import FastAPI, Request
+from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 
@@ -11,12 +11,15 @@ from robot_runtime.errors import Refused
 from server import VERSION
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
+from server.control.admission import admit
+from server.control.lease import NotInControl
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.processes.parts import Command
 from server.routes import (
     comm_tests,
     compare,
+    control,
     exports,
     health,
     link,
@@ -64,16 +67,17 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(NotInControl, _not_in_control)
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live)
+    robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (*robots, *kept, comm_tests, scenarios):
-        app.include_router(module.router)
+        app.include_router(module.router, dependencies=[Depends(admit)] if module is not live else [])
     app.include_router(make_router(Page(settings.page)))
     return app
 
@@ -88,6 +92,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _not_in_control(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(423, str(problem))
 
 
 async def _absent(_: Request, problem: Exception) -> JSONResponse:

@@ -5,7 +5,7 @@ import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from starlette.requests import HTTPConnection
 
@@ -15,6 +15,8 @@ from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.control.desk import Desk
+from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
 from server.live.bridge import SENT_BY, Bridge
@@ -56,6 +58,8 @@ class Assembly:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.telling = Telling(self.bridge.tell_lease)
+        self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -123,6 +127,8 @@ class Assembly:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
+                    self.desk.run(),
+                    self.telling.run(),
                     self._tell_health(),
                 )
             ]
@@ -155,8 +161,10 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
-            if block.topic.name == "state" and self.settings.sessions.record_at_arming:
-                self.arming.see(block)
+            if block.topic.name == "state":
+                self.telling.see_run(self.bridge.run)
+                if self.settings.sessions.record_at_arming:
+                    self.arming.see(block)
 
     def _board_occupied(self) -> str | None:
         run, session = self.scenarios.active, self.recorder.session
@@ -173,6 +181,10 @@ class Assembly:
     def _tell_session(self) -> None:
         session = self.recorder.session
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _tell_control(self, message: dict[str, Any]) -> None:
+        self.telling.see_epoch(message["epoch"])
+        self.hub.tell(message)
 
     async def _tell_health(self) -> None:
         while True:

@@ -6,10 +6,14 @@ from time import time
 from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from pydantic import ValidationError
 
 from robot_runtime.messages import Refused
 from robot_runtime.packets import DEFINITIONS_HASH
 from server.assembly import Assembly
+from server.control.admission import SHELL
+from server.control.driving import Drive
+from server.control.seats import Seat
 from server.live.bridge import RuntimeSilent
 from server.live.hub import Client, Evicted
 
@@ -31,8 +35,9 @@ class Nonsense(ValueError):  # noqa: N818 - it says what happened
 class _Conversation:
     """What one page says, and what is done about it."""
 
-    def __init__(self, assembly: Assembly, socket: WebSocket) -> None:
+    def __init__(self, assembly: Assembly, socket: WebSocket, seat: Seat) -> None:
         self._assembly = assembly
+        self._seat = seat
         self._socket = socket
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
@@ -66,8 +71,12 @@ class _Conversation:
                 self._stop(client)
             case "watch":
                 self._assembly.hub.show(client, _topics(message.get("pictures")))
+            case "drive":
+                self._assembly.desk.drive(self._seat, _drive(message))
             case op:
-                raise Nonsense(f'Unknown op {json.dumps(op)[:80]}; there are "ping", "stop" and "watch".')
+                raise Nonsense(
+                    f'Unknown op {json.dumps(op)[:80]}; there are "ping", "stop", "watch" and "drive".'
+                )
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -97,7 +106,9 @@ async def live(socket: WebSocket) -> None:
         await socket.send({"type": "websocket.send", kind: data})
 
     try:
-        await assembly.hub.serve(send, _greeting(assembly), _Conversation(assembly, socket).listen)
+        with assembly.desk.page(SHELL) as seat:
+            listen = _Conversation(assembly, socket, seat).listen
+            await assembly.hub.serve(send, _greeting(assembly, seat), listen)
     except WebSocketDisconnect:
         return
     except Evicted as reason:
@@ -109,7 +120,7 @@ async def live(socket: WebSocket) -> None:
             return
 
 
-def _greeting(assembly: Assembly) -> dict[str, Any]:
+def _greeting(assembly: Assembly, seat: Seat) -> dict[str, Any]:
     return {
         "op": "hello",
         "definitions": f"{DEFINITIONS_HASH:08x}",
@@ -117,6 +128,8 @@ def _greeting(assembly: Assembly) -> dict[str, Any]:
         "steady": assembly.clock.now(),
         "utc": time(),
         "page_version": assembly.page.version,
+        "you": {"name": seat.identity.name, "role": seat.identity.role, "seat": seat.number},
+        "seat_key": seat.key,
     }
 
 
@@ -136,6 +149,15 @@ def _topics(value: object) -> frozenset[str]:
     if not isinstance(value, list) or not all(isinstance(one, str) and one in WATCHABLE for one in value):
         raise Nonsense(f"A watch needs pictures, a list of any of {', '.join(sorted(WATCHABLE))}.")
     return frozenset(value)
+
+
+def _drive(message: dict[str, Any]) -> Drive:
+    try:
+        return Drive.model_validate(message)
+    except ValidationError as problem:
+        raise Nonsense(
+            "A drive needs lease and sequence, whole numbers from 0 on, taken (s), and six axes from -1 to 1."
+        ) from problem
 
 
 def _refuse_constant(name: str) -> None:
