@@ -22,7 +22,7 @@ def measure() -> dict[str, float]:
         stack.api.post("/robot/arm").raise_for_status()
         stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
         parts = {
-            "server": stack.process,
+            "server": stack.server,
             "runtime": stack.child("robot_runtime --config"),
             "board": stack.child("build/board"),
             "simulator": stack.child("robot_runtime.simulation"),

@@ -18,6 +18,7 @@ class Commands:
             "arm": self._arm,
             "controller": self._controller,
             "set_points": self._set_points,
+            "steering": self._steering,
             "card": self._card,
             "vision": self._vision,
         }
@@ -48,6 +49,9 @@ class Commands:
         control = self._robot.control
         default = _number(question, "default", control.set_point_default)
         control.set_points(default, _number(question, "detected", control.set_point_detected))
+
+    def _steering(self, question: Mapping[str, Any]) -> None:
+        self._robot.control.steer(_text(question, "by"))
 
     def _card(self, question: Mapping[str, Any]) -> None:
         self._robot.vision.show_card(None if question.get("colour") is None else _text(question, "colour"))

@@ -152,6 +152,7 @@ class Core:
             set_point=self.control.set_point,
             set_point_default=self.control.set_point_default,
             set_point_detected=self.control.set_point_detected,
+            steering=self.control.steering,
             control_rate=self.config.control.rate,
             vision_rate=self.vision.rate,
             vision_colour=self.control.colour,
@@ -179,6 +180,7 @@ class Core:
         for name, gains in settings.gains.items():
             self.control.choose(name, gains)
         self.control.choose(settings.controller)
+        self.control.steer(settings.steering)
         self.control.set_points(settings.set_point, settings.set_point_detected)
         self.control.colour = self.config.vision.colour
 

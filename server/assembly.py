@@ -73,7 +73,7 @@ class Assembly:
         self.imports = Imports(settings.data, self.store)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
-        live = Live(
+        self._live = Live(
             settings,
             self.store,
             self.recorder,
@@ -83,7 +83,9 @@ class Assembly:
             self.clock,
             self.notices.tell,
         )
-        self.scenarios = ScenarioRuns(live, Simulated(settings, self.store, self.notices), self.hub.tell)
+        self.scenarios = ScenarioRuns(
+            self._live, Simulated(settings, self.store, self.notices), self.hub.tell
+        )
         self.bridge.on_stop = self.scenarios.see_stop
 
     @cached_property
@@ -124,6 +126,7 @@ class Assembly:
                 for work in (
                     self.handover.start_parts(),
                     self.recorder.run(),
+                    self._live.recover(),
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),

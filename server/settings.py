@@ -64,6 +64,11 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
+    def keeper(self) -> Path:
+        """Which process keeps the server of this folder running."""
+        return self.path / "server.pid"
+
+    @property
     def address(self) -> Path:
         """Where the server that works on this folder, or did last, is to be asked: host and port."""
         return self.path / "server.address"
@@ -97,6 +102,11 @@ class DataFolder:
     def firmware_away(self) -> Path:
         """There while the robot's board may hold anything but its firmware."""
         return self.path / "firmware-away"
+
+    @property
+    def scenario_before(self) -> Path:
+        """There while a scenario runs on the robot: how everything was before."""
+        return self.path / "scenario-before.json"
 
     @property
     def scenarios(self) -> Path:

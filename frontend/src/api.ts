@@ -26,6 +26,7 @@ export type ScenarioCheck = Schemas['ScenarioCheck'];
 export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
+export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
 
 export type Signal = Schemas['Signal'];
@@ -136,6 +137,7 @@ export const api = {
   arm: () => order('POST', '/robot/arm'),
   controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
   setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
+  steering: (by: Course) => order('PUT', '/robot/steering', { by }),
   card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
   simulator: (here: boolean) => order('PUT', '/simulator', { here }),

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from robot_runtime.config import SET_POINT, VISION_RATE, ConfigError, Range, parse, place
 from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.samples import Steering
 from robot_runtime.simulation.faults import Fault, Kind, check_sensor
 from robot_runtime.simulation.parameters import Vector
 from robot_runtime.simulation.surroundings import Current, Trim, Waves, check_beacons
@@ -114,6 +115,21 @@ class ChooseController(Event):
         """What happens, in a few words."""
         gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
         return f"Controller {self.name}" + (f": {gains}" if gains else "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Steer(Event):
+    """Where it swims while it holds its depth."""
+
+    do = "steering"
+    to = "runtime"
+
+    by: Steering
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return "Swim towards the light" if self.by == "beacons" else "Stay"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -326,6 +342,7 @@ EVENTS: tuple[type[Event], ...] = (
     Stop,
     SetPoints,
     ChooseController,
+    Steer,
     Card,
     Look,
     Beacons,

@@ -22,6 +22,7 @@ OPERATIONS: dict[str, Need] = {
     "armRobot": Need.CONTROL,
     "putController": Need.CONTROL,
     "putSetPoints": Need.CONTROL,
+    "putSteering": Need.CONTROL,
     "putCard": Need.CONTROL,
     "putVision": Need.CONTROL,
     "putSimulator": Need.CONTROL,

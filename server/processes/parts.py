@@ -22,17 +22,14 @@ from robot_runtime.firmware import firmware_path
 from robot_runtime.packets import DEFINITIONS_HASH
 from robot_runtime.samples import Severity
 from server import VERSION
+from server.processes.backoff import Backoff, describe_pause
 from server.processes.logs import PartLog
 from server.processes.pidfile import end_parts, pid_file
-from server.processes.process import AdoptedProcess, Process
+from server.processes.process import AdoptedProcess, Process, describe_status
 from server.settings import DataFolder, Settings
 
 log = logging.getLogger(__name__)
 
-BACKOFF_FIRST = 0.2
-BACKOFF_MAX = 5.0
-STEADY_SECONDS = 10.0
-"""A part that lived this long is started again quickly when it ends."""
 TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
 LINES_TOLD = 3
@@ -83,7 +80,7 @@ class Part:
         self._clock = clock
         self._tell = tell
         self._process: Process | AdoptedProcess | None = None
-        self._backoff = BACKOFF_FIRST
+        self._backoff = Backoff()
 
     @property
     def pid(self) -> int | None:
@@ -101,11 +98,9 @@ class Part:
                     await self._wait_for_needs()
                     began = self._clock.now()
                 problem = await self._run_once()
-                if self._clock.now() - began >= STEADY_SECONDS:
-                    self._backoff = BACKOFF_FIRST
-                self._fail(problem)
-                await asyncio.sleep(self._backoff)
-                self._backoff = min(2 * self._backoff, BACKOFF_MAX)
+                pause = self._backoff.after(self._clock.now() - began)
+                self._fail(problem, pause)
+                await asyncio.sleep(pause)
         finally:
             await self.end()
             self._set("ended")
@@ -163,14 +158,11 @@ class Part:
         self._process = None
         self._pid_file.remove()
 
-    def _fail(self, problem: str) -> None:
+    def _fail(self, problem: str, pause: float) -> None:
         self.problem = problem
         self._set("failed")
-        self._tell(
-            self.command.name,
-            "caution",
-            f"The {self.command.title} {problem}. It is started again in {self._backoff:.1f} s.",
-        )
+        text = f"The {self.command.title} {problem}. It is started again {describe_pause(pause)}."
+        self._tell(self.command.name, "caution", text)
 
     async def end(self) -> None:
         """End the process, also one that a killed server has left and that was not taken over yet."""
@@ -287,16 +279,3 @@ def plan(settings: Settings) -> list[Command]:
         water,
         sight,
     ]
-
-
-def describe_status(status: int | None) -> str:
-    """How a process ended, in words that go on after its name; None where nobody knows."""
-    if status is None:
-        return "has ended; how is not known, for an earlier server had started it"
-    if status >= 0:
-        return f"has ended with exit status {status}"
-    try:
-        name = signal.Signals(-status).name
-    except ValueError:
-        name = str(-status)
-    return f"was ended by signal {name}"

@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, HTTPException, Request
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from robot_runtime.samples import State
+from robot_runtime.samples import State, Steering
 from server.assembly import Assembly
 from server.routes.problems import answers
 
@@ -37,6 +37,13 @@ class SetPoints(BaseModel):
     model_config = ConfigDict(extra="forbid")
     default: Metres | None = None
     detected: Annotated[Metres | None, Field(description="while the wanted colour is seen")] = None
+
+
+class Course(BaseModel):
+    """Where it swims while it holds its depth."""
+
+    model_config = ConfigDict(extra="forbid")
+    by: Annotated[Steering, Field(description="none: nowhere; beacons: to the light that its detectors see")]
 
 
 class Card(BaseModel):
@@ -99,6 +106,14 @@ async def put_controller(request: Request, controller: Controller) -> None:
 async def put_set_points(request: Request, set_points: SetPoints) -> None:
     """Set the wanted depths."""
     await Assembly.of(request).bridge.command("set_points", set_points.model_dump(exclude_none=True))
+
+
+@router.put(
+    "/steering", status_code=204, summary="Choose a course", operation_id="putSteering", responses=COMMAND
+)
+async def put_steering(request: Request, course: Course) -> None:
+    """Stay, or swim towards a light beacon."""
+    await Assembly.of(request).bridge.command("steering", course.model_dump())
 
 
 @router.put(

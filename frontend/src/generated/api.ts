@@ -596,6 +596,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/steering": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Choose a course
+         * @description Stay, or swim towards a light beacon.
+         */
+        put: operations["putSteering"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/stop": {
         parameters: {
             query?: never;
@@ -1406,6 +1426,18 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+        };
+        /**
+         * Course
+         * @description Where it swims while it holds its depth.
+         */
+        Course: {
+            /**
+             * By
+             * @description none: nowhere; beacons: to the light that its detectors see
+             * @enum {string}
+             */
+            by: "none" | "beacons";
         };
         /**
          * Difference
@@ -2682,6 +2714,11 @@ export interface components {
             set_point_default: number;
             /** Set Point Detected */
             set_point_detected: number;
+            /**
+             * Steering
+             * @enum {string}
+             */
+            steering: "none" | "beacons";
             /** Time */
             time: number;
             /** Vision Colour */
@@ -4290,6 +4327,64 @@ export interface operations {
             };
             /** @description Control is with somebody else */
             423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putSteering: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Course"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -65,6 +65,7 @@ ALL_EVENTS = {
     "stop": "",
     "set_points": "detected = 1.5",
     "controller": "name = 'pid'\ngains = { kd = 1 }",
+    "steering": "by = 'beacons'",
     "card": "colour = 'yellow'",
     "vision": "rate = 8",
     "beacons": "positions = []",
