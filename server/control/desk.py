@@ -89,16 +89,8 @@ class Desk:
         self.settle()
         self.driving.take(command, self.lease.epoch if seat.number == self.lease.holder else None)
 
-    def change_role(self, identity: Identity) -> None:
-        """A device has another name or role now: as a viewer it has no control any more."""
-        with self._changing():
-            for seat in self.seats.of(identity.device):
-                seat.identity = identity
-                if identity.role != "operator":
-                    self.lease.forget(seat.number)
-
-    def revoke(self, device: int) -> None:
-        """A device is signed out: its seats are no more."""
+    def dismiss(self, device: int) -> None:
+        """A device is signed out, or has another role: its seats are no more. It may come back for others."""
         for seat in self.seats.of(device):
             self._close(seat)
         self.announce()

@@ -110,7 +110,7 @@ def test_a_request_dies_with_the_seat_and_who_asked_gets_what_a_dead_holder_leav
         assert desk.lease.holder == anna.number
         with desk.page(CLEO) as cleo:
             desk.take(cleo)
-            desk.revoke(ANNA.device)
+            desk.dismiss(ANNA.device)
             assert desk.lease.holder == cleo.number
 
 
@@ -126,16 +126,19 @@ def test_programs_of_one_device_have_so_many_seats_and_others_need_not_care() ->
         seen.desk.seat_program(ANNA)
 
 
-def test_who_becomes_a_viewer_has_control_no_more() -> None:
+def test_who_is_signed_out_or_made_a_viewer_has_no_seat_and_no_control_any_more() -> None:
     seen = Seen()
-    with seen.desk.page(ANNA) as anna:
+    with seen.desk.page(ANNA) as anna, seen.desk.page(ANNA) as other, seen.desk.page(BEN) as ben:
         seen.desk.take(anna)
-        seen.desk.change_role(replace(ANNA, name="Anna L."))
-        assert seen.told[-1]["holder"] == {"seat": anna.number, "name": "Anna L."}
-        seen.desk.change_role(replace(ANNA, role="viewer"))
+        seen.desk.dismiss(ANNA.device)
         assert seen.told[-1]["holder"] is None
-        with pytest.raises(Refused):
-            seen.desk.take(anna)
+        assert seen.desk.seats.use(ANNA, anna.key) is None
+        # Its sockets may live for a moment longer.
+        for seat in (anna, other):
+            seen.desk.drive(seat, seen.drive())
+        assert (seen.desk.lease.holder, seen.driven) == (None, [])
+        seen.desk.take(ben)
+    assert seen.desk.lease.holder is None
 
 
 def test_what_only_time_brings_is_told_on_time() -> None:
