@@ -11,6 +11,7 @@ from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
+from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
@@ -60,6 +61,7 @@ class Assembly:
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.telling = Telling(self.bridge.tell_lease)
         self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -112,6 +114,7 @@ class Assembly:
             self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
+            self.access.open()
             await self.bridge.open()
             tasks.append(asyncio.create_task(self._beat()))
             await self.parts.end_others()
@@ -146,6 +149,7 @@ class Assembly:
             await self.arming.close()
             await self._end_session()
             await self.bridge.close()
+            await self.access.close()
             await asyncio.to_thread(self.store.close)
 
     async def _catch_up(self, left: Left | None) -> None:
@@ -184,6 +188,10 @@ class Assembly:
     def _tell_session(self) -> None:
         session = self.recorder.session
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _dismiss(self, device: int, reason: str) -> None:
+        self.desk.dismiss(device)
+        self.hub.dismiss(device, reason)
 
     def _tell_control(self, message: dict[str, Any]) -> None:
         self.telling.see_epoch(message["epoch"])

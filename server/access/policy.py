@@ -16,6 +16,14 @@ class Need(IntEnum):
 
 
 OPERATIONS: dict[str, Need] = {
+    "getMe": Need.NOTHING,
+    "pairBrowser": Need.NOTHING,
+    "signOut": Need.VIEWER,
+    "makeCode": Need.OPERATOR,
+    "listDevices": Need.OPERATOR,
+    "changeDevice": Need.OPERATOR,
+    "revokeDevice": Need.OPERATOR,
+    "makeToken": Need.OPERATOR,
     "getHealth": Need.VIEWER,
     "getRobot": Need.VIEWER,
     "stopRobot": Need.VIEWER,

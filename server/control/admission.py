@@ -1,30 +1,24 @@
 """What a request has to show where it needs the control: the key of the seat that has it."""
 
-from fastapi import HTTPException, Request
+from fastapi import HTTPException
+from starlette.requests import HTTPConnection
 
 from server.access.identity import Identity
-from server.access.policy import Need
 from server.assembly import Assembly
 from server.control.seats import Seat
 
 HEADER = "x-mucat-seat"
-SHELL = Identity(device=0, name="This computer's shell", role="operator", kind="shell")
 
 
-def who(request: Request) -> Identity:
-    """Who asks."""
-    return getattr(request.state, "identity", SHELL)
-
-
-def find_seat(request: Request) -> Seat | None:
+def find_seat(connection: HTTPConnection) -> Seat | None:
     """The seat that this request names and may use; a program's lasts on by that."""
-    key = request.headers.get(HEADER)
-    return None if key is None else Assembly.of(request).desk.seats.use(who(request), key)
+    key = connection.headers.get(HEADER)
+    return None if key is None else Assembly.of(connection).desk.seats.use(Identity.of(connection), key)
 
 
-def require_seat(request: Request) -> Seat:
+def require_seat(connection: HTTPConnection) -> Seat:
     """The same, for a route that is about the seat itself. Raises HTTPException (409)."""
-    seat = find_seat(request)
+    seat = find_seat(connection)
     if seat is None:
         raise HTTPException(
             409,
@@ -34,15 +28,6 @@ def require_seat(request: Request) -> Seat:
     return seat
 
 
-def require_control(request: Request) -> None:
+def require_control(connection: HTTPConnection) -> None:
     """Raises NotInControl where it comes from another seat than the one that has control."""
-    Assembly.of(request).desk.require(find_seat(request))
-
-
-async def admit(request: Request) -> None:
-    """INTERIM, until the access room's own: enforce the control."""
-    from server.access.policy import OPERATIONS
-
-    operation = getattr(request.scope.get("route"), "operation_id", None)
-    if OPERATIONS.get(operation or "", Need.NOTHING) is Need.CONTROL:
-        require_control(request)
+    Assembly.of(connection).desk.require(find_seat(connection))

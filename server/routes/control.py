@@ -4,9 +4,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
 
+from server.access.identity import Identity
 from server.assembly import Assembly
 from server.control import shapes
-from server.control.admission import require_seat, who
+from server.control.admission import require_seat
 from server.control.desk import Desk
 from server.control.seats import PROGRAM_SECONDS, Seat
 from server.routes.problems import answers
@@ -35,7 +36,7 @@ async def get_control(request: Request) -> shapes.Control:
 )
 async def open_seat(request: Request) -> shapes.SeatGiven:
     """Its key goes into the header X-Mucat-Seat of what follows; 10 s without such a request end it."""
-    seat = _desk(request).seat_program(who(request))
+    seat = _desk(request).seat_program(Identity.of(request))
     return shapes.SeatGiven(seat=seat.number, key=seat.key, lasts=PROGRAM_SECONDS)
 
 
@@ -72,7 +73,7 @@ async def refuse(request: Request, seat: OwnSeat) -> shapes.ControlState:
 
 @router.post("/renew", summary="Keep a program's seat", operation_id="renewSeat", responses=NO_SEAT)
 async def renew(request: Request, _: OwnSeat) -> shapes.ControlState:
-    """Any request that names it does that too."""
+    """Any request that needs control or a seat does that too."""
     return _desk(request).state()
 
 

@@ -10,17 +10,17 @@ from pydantic import ValidationError
 
 from robot_runtime.messages import Refused
 from robot_runtime.packets import DEFINITIONS_HASH
+from server.access.admit import may_say
+from server.access.identity import Identity
+from server.access.policy import MESSAGES
 from server.assembly import Assembly
-from server.control.admission import SHELL
 from server.control.driving import Drive
 from server.control.seats import Seat
 from server.live.bridge import RuntimeSilent
-from server.live.hub import Client, Evicted
+from server.live.hub import POLICY_VIOLATION, Client, Evicted
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""
-POLICY_VIOLATION = 1008
-"""WebSocket close code for a client that breaks the rules."""
 FAREWELL_SECONDS = 1.0
 WATCHABLE = frozenset({"picture", "observer"})
 """Topics of pictures that a page can have."""
@@ -61,7 +61,14 @@ class _Conversation:
                 client.answer({"op": "error", "text": str(problem)})
 
     def _obey(self, client: Client, message: dict[str, Any]) -> None:
-        match message.get("op"):
+        op = message.get("op")
+        if not isinstance(op, str) or op not in MESSAGES:
+            raise Nonsense(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
+        reason = may_say(self._seat.identity, op)
+        if reason is not None:
+            client.answer({"op": "error", "text": reason})
+            return
+        match op:
             case "ping":
                 number = message.get("id")
                 if not isinstance(number, int | float | str):
@@ -73,10 +80,6 @@ class _Conversation:
                 self._assembly.hub.show(client, _topics(message.get("pictures")))
             case "drive":
                 self._assembly.desk.drive(self._seat, _drive(message))
-            case op:
-                raise Nonsense(
-                    f'Unknown op {json.dumps(op)[:80]}; there are "ping", "stop", "watch" and "drive".'
-                )
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -105,10 +108,14 @@ async def live(socket: WebSocket) -> None:
         kind = "bytes" if isinstance(data, bytes) else "text"
         await socket.send({"type": "websocket.send", kind: data})
 
+    identity = Identity.of(socket)
     try:
-        with assembly.desk.page(SHELL) as seat:
+        # It may have been revoked while the socket opened; from here on the hub knows it.
+        if not assembly.access.still(identity):
+            raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
+        with assembly.desk.page(identity) as seat:
             listen = _Conversation(assembly, socket, seat).listen
-            await assembly.hub.serve(send, _greeting(assembly, seat), listen)
+            await assembly.hub.serve(send, _greeting(assembly, seat), listen, identity.device)
     except WebSocketDisconnect:
         return
     except Evicted as reason:

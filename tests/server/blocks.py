@@ -49,6 +49,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "armed": False,
         "armed_since": None,
         "refusals": [],
+        "alarms": [],
         "connected": True,
         "connection": "connected",
         "port": "board.tty",
