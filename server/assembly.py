@@ -4,6 +4,7 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
+from dataclasses import asdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,9 +21,11 @@ from server.control.desk import Desk
 from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
+from server.live.alarms import Alarms
 from server.live.bridge import SENT_BY, Bridge
 from server.live.health import Watch
 from server.live.hub import Hub
+from server.live.inspection import DOWN, Inspection
 from server.live.notices import Notices
 from server.models import SessionRow
 from server.page import Page
@@ -51,8 +54,10 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command]) -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], ended: str = "") -> None:
         self.settings = settings
+        self._ended = ended
+        """How the server before this one has ended unexpectedly, a sentence."""
         self.clock: Clock = SteadyClock()
         self.page = Page(settings.page)
         self.store = Store(settings.data.database)
@@ -67,8 +72,10 @@ class Assembly:
         self.markers = Markers(self.store, self.clock, self.recorder)
         self.tidying = Tidying(self.store, settings, self.notices)
         self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
-        self.parts = Parts(commands, settings.data, self.clock, self.notices.tell)
+        self.alarms = Alarms(self.clock, self.notices.tell, self._tell_alarms)
+        self.parts = Parts(commands, settings.data, self.clock, self._see_down)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
+        self.inspection = Inspection(settings, self.clock, self.watch, self.parts, self.store, self.alarms)
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.jobs = Jobs(settings.data, self.store)
@@ -120,6 +127,9 @@ class Assembly:
             await self.parts.end_others()
             await self._catch_up(left)
             self._tell_session()
+            self._tell_alarms()
+            if self._ended:
+                self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
             if self.settings.hil.simulator == "elsewhere":
                 for name in SIMULATION:
                     await self.parts.pause(name, SIMULATION_ELSEWHERE)
@@ -135,6 +145,7 @@ class Assembly:
                     self.tidying.run(),
                     self.desk.run(),
                     self.telling.run(),
+                    self.inspection.run(),
                     self._tell_health(),
                 )
             ]
@@ -196,6 +207,12 @@ class Assembly:
     def _tell_control(self, message: dict[str, Any]) -> None:
         self.telling.see_epoch(message["epoch"])
         self.hub.tell(message)
+
+    def _tell_alarms(self) -> None:
+        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})
+
+    def _see_down(self, part: str, text: str) -> None:
+        self.alarms.begin(DOWN[part], text)
 
     async def _tell_health(self) -> None:
         while True:

@@ -15,6 +15,7 @@ from functools import partial
 from typing import Any
 
 from robot_runtime.cache import Kept, write_question
+from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
 from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages, NoAnswer, Subscription
@@ -34,7 +35,6 @@ The runtime sends at the same pace, and a page draws at about that pace.
 """
 QUIET_ROUNDS = 5
 """Empty rounds after which the rounds pause until something arrives."""
-PILOT = "pilot"
 QUEUE_MAX = 20_000
 """Blocks that wait while the event loop is held up; far more than can be normal."""
 ANSWER_SECONDS = 2.0
