@@ -160,3 +160,6 @@ class State(Document):
     colours: list[str]
     card: str | None
     camera: str
+    pilot_dropped: int = field(
+        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"}
+    )

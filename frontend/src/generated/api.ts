@@ -3048,6 +3048,8 @@ export interface components {
             mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
+            /** Pilot Dropped */
+            pilot_dropped: number;
             /** Port */
             port: string;
             /** Refusals */
