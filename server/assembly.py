@@ -49,7 +49,7 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command]) -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str) -> None:
         self.settings = settings
         self.clock: Clock = SteadyClock()
         self.page = Page(settings.page)
@@ -57,7 +57,7 @@ class Assembly:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self.hub.dismiss)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self.hub.dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
