@@ -36,6 +36,7 @@ from server.routes import (
     simulator,
     storage,
 )
+from server.routes.problems import EVERYWHERE
 from server.security import Guard
 from server.sessions.markers import UnknownMark
 from server.sessions.presence import NotNow, UnknownSession
@@ -58,7 +59,7 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands, token)
+        assembly = Assembly(settings, commands, token, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
             if started is not None:
@@ -75,10 +76,12 @@ def create_app(
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.ended = ""
     # What is added last is asked first.
     app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(400, _unreadable_body)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
@@ -92,7 +95,7 @@ def create_app(
     robots = (health, robot, simulator, scene, link, live)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
-        app.include_router(module.router, dependencies=[Depends(admit)])
+        app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app
 
@@ -103,6 +106,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
         f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
     )
     return _tell(422, f"The request is not valid. {words}")
+
+
+async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
+    return _tell(422, "The request is not valid. Its body is not JSON in UTF-8.")
 
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:

@@ -62,7 +62,8 @@ class Stack:
     def process(self) -> psutil.Process:
         """The process that was started, or the one that has taken its place: the keeper of the server."""
         pid = keeper_of(DataFolder(self.data))
-        assert pid is not None
+        if pid is None:
+            raise LookupError("no keeper runs")
         return psutil.Process(pid)
 
     @property
@@ -130,12 +131,12 @@ class Stack:
     def stop(self) -> None:
         """Press Ctrl-C and wait for the end."""
         self.api.close()
-        if keeper_of(DataFolder(self.data)) is None:
+        if self._process is None:
             return
-        keeper = self.process
-        keeper.send_signal(signal.SIGINT)
-        try:
-            keeper.wait(_STOP_SECONDS)
-        except psutil.TimeoutExpired:
-            keeper.kill()
-            raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None
+        if keeper_of(DataFolder(self.data)) is not None:
+            keeper = self.process
+            keeper.send_signal(signal.SIGINT)
+            if psutil.wait_procs([keeper], _STOP_SECONDS)[1]:
+                os.killpg(self._process.pid, signal.SIGKILL)
+                raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}")
+        self._process.wait()

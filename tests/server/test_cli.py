@@ -131,7 +131,11 @@ def test_a_killed_keeper_leaves_the_server_until_the_next_start_takes_its_place(
         process.wait()
         wait_for_answer(port, None)
     with running(settings, port) as process:
-        assert keeper_of(settings.data) == process.pid
+        end = time.monotonic() + 20
+        while keeper_of(settings.data) != process.pid:
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        wait_for_answer(port, process)
         assert running_parts(settings.data.run)["runtime"].pid == runtime
     assert not alive(runtime)
 
