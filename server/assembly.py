@@ -54,7 +54,7 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command], ended: str = "") -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
         self.settings = settings
         self._ended = ended
         """How the server before this one has ended unexpectedly, a sentence."""
@@ -66,7 +66,7 @@ class Assembly:
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.telling = Telling(self.bridge.tell_lease)
         self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
+from server.access.options import add_access, add_pair
 from server.exports.options import add_export, add_import
 from server.processes.keeper import Keeper, keeper_of, relieve
 from server.sessions.options import add_record, add_sessions
@@ -20,6 +21,7 @@ from server.settings import DataFolder, Settings, SetupError, make_folders, read
 
 if TYPE_CHECKING:
     from server.access.access import Access
+    from server.access.certificate import Certificate
 
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -45,6 +47,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _carry(options, settings)
         if options.command in ("sessions", "record"):
             return _sessions(options, settings)
+        if options.command in ("pair", "access"):
+            return _access(options, settings)
         relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
@@ -83,6 +87,9 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
     record = commands.add_parser("record", help="record with the running server")
     add_record(record.add_subparsers(dest="action", required=True), kept)
+    add_pair(commands, kept)
+    access = commands.add_parser("access", help="who may come in, in which role, and who no longer")
+    add_access(access.add_subparsers(dest="action", required=True), kept)
     return parser.parse_args(arguments)
 
 
@@ -188,6 +195,12 @@ def _sessions(options: argparse.Namespace, settings: Settings) -> int:
     return perform(options, settings, _claim)
 
 
+def _access(options: argparse.Namespace, settings: Settings) -> int:
+    from server.access.command import perform
+
+    return perform(options, settings)
+
+
 def _report(options: argparse.Namespace, settings: Settings) -> int:
     from server.comparison.command import perform
 
@@ -204,6 +217,7 @@ def _carry(options: argparse.Namespace, settings: Settings) -> int:
 def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
     from robot_runtime.firmware import BuildError, build_firmware
+    from server.access.certificate import prepare_certificate
     from server.app import create_app
     from server.processes.parts import plan
     from server.running import announce
@@ -216,13 +230,14 @@ def _run(settings: Settings) -> int:
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
+        certificate = prepare_certificate(settings) if settings.tls else None
 
         def greet(access: "Access") -> None:
             if not app.state.ended:
-                _greet(settings, access)
+                _greet(settings, access, certificate)
 
         app = create_app(settings, plan(settings), greet)
-        server = make_server(app)
+        server = make_server(app, certificate)
         server.config.load()
 
         def serve(ended: str) -> int:
@@ -231,7 +246,7 @@ def _run(settings: Settings) -> int:
                 prepare(settings.data)
             except SetupError as problem:
                 return _complain(problem)
-            announce(settings.data, settings.host, settings.port)
+            announce(settings)
             # The server ends in order at these, and then sends them to itself once more; once is enough.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: None)
@@ -242,10 +257,10 @@ def _run(settings: Settings) -> int:
         return Keeper(serve, settings.data).run()
 
 
-def _greet(settings: Settings, access: "Access") -> None:
+def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:
     from server.access.welcome import welcome
 
-    lines = welcome(settings, access, picture=sys.stdout.isatty())
+    lines = welcome(settings, access, certificate, picture=sys.stdout.isatty())
     print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 

@@ -64,7 +64,7 @@ def test_what_a_running_server_is_asked(
 
     async def scenario() -> None:
         async with serve(settings) as served:
-            announce(settings.data, "127.0.0.1", served.settings.port)
+            announce(served.settings)
             for arguments in (
                 ("record", "start", "from the shell"),
                 ("sessions", "tag", "1", "pool"),
