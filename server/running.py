@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from migrations import HEAD
+from server.durable import write_whole
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, SetupError
 from server.store import Reader
@@ -23,7 +24,7 @@ ASK_SECONDS = 10.0
 def announce(folder: DataFolder, host: str, port: int) -> None:
     """Write down where the server of this folder is to be asked."""
     host = "127.0.0.1" if host in ("0.0.0.0", "::") else host
-    folder.address.write_text(f"{f'[{host}]' if ':' in host else host}:{port}\n", encoding="ascii")
+    write_whole(folder.address, f"{f'[{host}]' if ':' in host else host}:{port}\n".encode("ascii"))
 
 
 def server_runs(folder: DataFolder, claim: Claim) -> bool:

@@ -1,4 +1,3 @@
-import json
 import sqlite3
 from contextlib import closing
 
@@ -11,15 +10,12 @@ from sqlmodel import SQLModel
 
 import server.models  # noqa: F401 - declares the tables
 from migrations import HEAD
-from robot_runtime.topics import BY_NAME
 from server import schema
 from server.sessions.catalogue import Catalogue
-from server.sessions.chunks import describe_topics, encode_rows
 from server.sessions.recording import Recording
 from server.settings import Settings, SetupError
 from server.store import Store
-from tests.server.blocks import depth_block
-from tests.server.older import upgrade_to
+from tests.server.older import ROWS, make_session, upgrade_to
 
 
 def test_the_newest_revision_is_the_one_the_server_wants() -> None:
@@ -86,23 +82,8 @@ def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
 
 def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings) -> None:
     upgrade_to(settings, "0003")
-    rows = [depth_block(0, 10).payload]
-    data, first, last = encode_rows(rows, BY_NAME["depth"].row_bytes)
-    topics = {name: one for name, one in describe_topics().items() if name != "thumbnail"}
-    session = (1, "old", "cold", "complete", "turtle", "0.0.9", "00c0ffee", 1e9, 100.0, 1e9 + 1, 1.0, 10)
     with closing(sqlite3.connect(settings.data.database)) as database:
-        database.execute(
-            "INSERT INTO session (id, name, note, state, robot, version, definitions, started, "
-            "started_steady, ended, duration, samples, bytes, configuration, robot_state, topics) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 100, '', 'null', ?)",
-            (*session, json.dumps(topics)),
-        )
-        database.execute(
-            "INSERT INTO chunk (session_id, topic, number, first_time, last_time, first, count, encoding, "
-            "data) VALUES (1, 'depth', 0, ?, ?, 0, 10, 'shuffle-zlib', ?)",
-            (first, last, data),
-        )
-        database.commit()
+        make_session(database)
     schema.prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
         catalogue = Catalogue(store)
@@ -116,7 +97,7 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
         )
         (topic,) = catalogue.detail(1).topics
         assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
-        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == rows[0]
+        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == ROWS
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
