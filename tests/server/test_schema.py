@@ -1,5 +1,6 @@
 import sqlite3
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -80,11 +81,14 @@ def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
         schema.prepare(settings.data)
 
 
-def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings) -> None:
-    upgrade_to(settings, "0003")
+@pytest.mark.parametrize("revision", ["0001", "0002", "0003"])
+def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings, revision: str) -> None:
+    upgrade_to(settings, revision)
     with closing(sqlite3.connect(settings.data.database)) as database:
         make_session(database)
     schema.prepare(settings.data)
+    (copy,) = settings.data.backups.glob(f"mucat-before-{revision}-*.db")
+    assert schema.read_revision(copy) == revision
     with closing(Store(settings.data.database)) as store:
         catalogue = Catalogue(store)
         (found,) = catalogue.list("COLD")
@@ -101,3 +105,36 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def describe(database: Path) -> list[tuple[str, ...]]:
+    with closing(sqlite3.connect(database)) as connection:
+        return connection.execute("SELECT type, name, sql FROM sqlite_master ORDER BY name").fetchall()
+
+
+def test_an_upgrade_that_is_broken_off_changes_nothing_and_can_be_done_again(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    upgrade_to(settings, "0003")
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+    before = describe(settings.data.database)
+    with monkeypatch.context() as broken:
+        broken.setattr("alembic.op.create_index", lambda *_, **__: interrupt())
+        with pytest.raises(KeyboardInterrupt):
+            schema.prepare(settings.data)
+    assert describe(settings.data.database) == before
+    assert schema.read_revision(settings.data.database) == "0003"
+    schema.prepare(settings.data)
+    assert schema.read_revision(settings.data.database) == HEAD
+
+
+def interrupt() -> None:
+    raise KeyboardInterrupt
+
+
+def test_what_a_session_holds_is_read_from_an_index_alone(store: Store) -> None:
+    with store.read() as database:
+        query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "
+        plan = database.connection().exec_driver_sql(f"{query} WHERE session_id = 1 GROUP BY topic").all()
+    assert "USING COVERING INDEX chunk_time" in str(plan)
