@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from server import VERSION, simulator_command
+from server import VERSION, backup_command, simulator_command
 from server.access.options import add_access, add_pair
+from server.durable import make_folder
 from server.exports.options import add_export, add_import
 from server.processes.keeper import Keeper, keeper_of, relieve
 from server.sessions.options import add_record, add_sessions
@@ -49,6 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _sessions(options, settings)
         if options.command in ("pair", "access"):
             return _access(options, settings)
+        if options.command in ("backup", "restore"):
+            return backup_command.perform(options, settings, _claim)
         relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
@@ -86,6 +89,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     sessions = commands.add_parser("sessions", help="find sessions, write about them, delete them")
     add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
     record = commands.add_parser("record", help="record with the running server")
+    backup_command.add_arguments(commands, kept)
     add_record(record.add_subparsers(dest="action", required=True), kept)
     add_pair(commands, kept)
     access = commands.add_parser("access", help="who may come in, in which role, and who no longer")
@@ -150,7 +154,7 @@ def _claim(folder: DataFolder) -> Iterator[None]:
     Parts of a killed server look now and then whether the lock is held, and then have it for a moment.
     """
     try:
-        folder.path.mkdir(parents=True, exist_ok=True)
+        make_folder(folder.path)
         handle = folder.lock.open("w")
     except OSError as problem:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem

@@ -11,6 +11,7 @@ from typing import IO, Any
 
 from migrations import HEAD
 from server.access.certificate import trust_only
+from server.durable import write_whole
 from server.schema import prepare, read_revision
 from server.settings import DataFolder, Settings, SetupError
 from server.store import Reader
@@ -25,7 +26,7 @@ def announce(settings: Settings) -> None:
     """Write down where the server of this folder is to be asked."""
     host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
     host = f"[{host}]" if ":" in host else host
-    settings.data.address.write_text(f"{settings.scheme}://{host}:{settings.port}\n", encoding="ascii")
+    write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
 
 
 def server_runs(folder: DataFolder, claim: Claim) -> bool:

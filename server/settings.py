@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
+from server.durable import make_folder
 from server.processes.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
@@ -217,7 +218,7 @@ def make_folders(folder: DataFolder) -> None:
     """Create the data folder, and empty its `run` where nothing runs. Raises SetupError where it cannot."""
     try:
         for path in (folder.path, folder.logs, folder.run):
-            path.mkdir(parents=True, exist_ok=True)
+            make_folder(path)
         folder.run.chmod(0o700)
         # What lives there belongs to parts of a killed server, as long as one of them runs.
         if not running_parts(folder.run):

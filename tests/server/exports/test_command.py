@@ -1,5 +1,6 @@
 import asyncio
 import hashlib
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -10,6 +11,7 @@ from server.cli import main
 from server.exports.options import FORMATS
 from server.exports.shapes import Format
 from server.running import announce
+from server.schema import prepare
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import depth_block
@@ -18,8 +20,10 @@ from tests.server.serving import serve
 
 
 @pytest.fixture
-def session(store: Store, settings: Settings) -> int:
-    return record(store, settings, [depth_block(0, 20)])
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, [depth_block(0, 20)])
 
 
 def run(settings: Settings, *arguments: str, data: Path | None = None) -> int:
