@@ -4,6 +4,7 @@ import base64
 import heapq
 import json
 from collections.abc import Iterator, Sequence
+from itertools import repeat
 from typing import Any, BinaryIO
 
 from server.exports.source import Source
@@ -20,10 +21,10 @@ def write_lines(_store: Reader, source: Source, output: BinaryIO) -> None:
     """
     topics = [_lines(source, name, place) for place, name in enumerate(source.names)]
     for _time, _place, line in heapq.merge(*topics):
-        output.write(line.encode() + b"\n")
+        output.write(line + b"\n")
 
 
-def _lines(source: Source, name: str, place: int) -> Iterator[tuple[float, int, str]]:
+def _lines(source: Source, name: str, place: int) -> Iterator[tuple[float, int, bytes]]:
     kind = source.topics[name]["kind"]
     if kind == "rows":
         rows = Rows(source, name)
@@ -33,14 +34,14 @@ def _lines(source: Source, name: str, place: int) -> Iterator[tuple[float, int, 
                 [source.since_start(time) for time in times],
                 [source.utc(time) for time in times],
             ]
-            for time, line in zip(times, rows.texts(head, heads, columns), strict=True):
-                yield time, place, line
+            yield from zip(times, repeat(place), rows.lines(head, heads, columns))
     elif kind == "documents":
         for document in source.documents(name, source.start, source.end):
             time = document["time"]
             told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
-            yield time, place, json.dumps({**document, **told}, ensure_ascii=False, separators=(",", ":"))
+            line = json.dumps({**document, **told}, ensure_ascii=False, separators=(",", ":"))
+            yield time, place, line.encode()
     else:
         for time, jpeg in source.pictures(name, source.start, source.end):
             told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
-            yield time, place, json.dumps({**told, "jpeg": base64.b64encode(jpeg).decode()})
+            yield time, place, json.dumps({**told, "jpeg": base64.b64encode(jpeg).decode()}).encode()

@@ -7,6 +7,7 @@ import base64
 import heapq
 import json
 from collections.abc import Iterator
+from itertools import repeat
 from typing import Any, BinaryIO
 
 from sqlmodel import col, select
@@ -143,8 +144,8 @@ def _rows(source: Source, name: str, place: int) -> Iterator[_Sample]:
     rows = Rows(source, name)
     for times, columns in rows.batches():
         since = [source.since_start(time) for time in times]
-        for time, text in zip(times, rows.texts('"time":%.6f', [since], columns), strict=True):
-            yield source.utc_ns(time), place, text.encode(), None
+        lines = rows.lines('"time":%.6f', [since], columns)
+        yield from zip(map(source.utc_ns, times), repeat(place), lines, repeat(None))
 
 
 def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:

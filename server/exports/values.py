@@ -83,8 +83,8 @@ class Rows:
                 ],
             )
 
-    def texts(self, head: str, heads: list[Sequence[Any]], columns: Columns) -> list[str]:
-        """A JSON object for each row: `head` is formatted with `heads`, and then come the fields.
+    def lines(self, head: str, heads: list[Sequence[Any]], columns: Columns) -> list[bytes]:
+        """A JSON object for each row, in UTF-8: `head` is formatted with `heads`, and then come the fields.
 
         NaN and infinity, which JSON lacks, are null.
         """
@@ -95,7 +95,7 @@ class Rows:
             all(map(isfinite, column)) for column, wide in zip(columns, self._floats, strict=True) if wide
         ):
             text = NOT_FINITE.sub("null", text)
-        return text.splitlines()
+        return text.encode().splitlines()
 
 
 def _member(field: Field) -> str:
