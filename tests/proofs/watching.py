@@ -17,8 +17,8 @@ from robot_runtime.simulation.simulator import FinMotion
 from robot_runtime.topics import Kind, read_blocks
 from tests.stack import Stack
 
-MOVING = 0.1
-"""rad/s; the shafts of fins that are told to rest are below this, noise of the encoders included."""
+MOVING = 0.5
+"""rad/s. A stroke reaches 7; below this a fin only coasts to its rest, without a drive."""
 _LOOK = 0.004
 _AGAIN = 0.01
 
