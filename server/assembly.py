@@ -12,6 +12,7 @@ from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.topics import Block
+from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
@@ -61,6 +62,7 @@ class Assembly:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self.hub.dismiss)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -115,6 +117,7 @@ class Assembly:
             self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
+            self.access.open()
             await self.bridge.open()
             tasks.append(asyncio.create_task(self._beat()))
             await self.parts.end_others()
@@ -151,6 +154,7 @@ class Assembly:
             await self.arming.close()
             await self._end_session()
             await self.bridge.close()
+            await self.access.close()
             await asyncio.to_thread(self.store.close)
 
     async def _catch_up(self, left: Left | None) -> None:

@@ -12,10 +12,9 @@ from functools import partial
 from math import acos, inf
 from pathlib import Path
 
+from robot_runtime.config import LinkConfig
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.watch import TILT_MAX
-
-from robot_runtime.config import LinkConfig
 from robot_runtime.errors import Refused
 from robot_runtime.firmware import firmware_path
 from robot_runtime.samples import Mode
@@ -65,7 +64,8 @@ class Swim(Flight):
         words = BY_NAME[fault].what
         for event in self.events:
             if event.kind == "alarm" and event.time >= since and event.text.startswith(words):
-                return event.time
+                time: float = event.time
+                return time
         return None
 
     def tilt(self) -> float:

@@ -43,8 +43,8 @@ def main() -> int:
     print(outages.table(outcomes))
     RESULT.parent.mkdir(exist_ok=True)
     RESULT.write_text(json.dumps(figures(measured, outcomes), indent=2) + "\n")
-    problems = sum(len(one.problems) for one in [*measured.values(), *outcomes])
-    return 1 if problems or any(one.is_slow for one in outcomes) else 0
+    late = any(one.problems for one in measured.values())
+    return 1 if late or any(one.problems or one.is_slow for one in outcomes) else 0
 
 
 if __name__ == "__main__":

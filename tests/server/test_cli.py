@@ -99,7 +99,7 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
         process.send_signal(number)
         output, _ = process.communicate(timeout=15)
         assert (process.returncode, "Traceback" in output) == (0, False)
-        assert f"http://127.0.0.1:{port}/" in output
+        assert f"http://localhost:{port}/" in output
         assert not any(child.is_running() for child in children)
 
 
