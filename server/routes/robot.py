@@ -121,7 +121,9 @@ async def check_fins(request: Request) -> None:
 )
 async def acknowledge(request: Request) -> None:
     """Say that all alarms were seen; after a failsafe the robot may be armed again from then on."""
-    await Assembly.of(request).bridge.command("acknowledge", {})
+    assembly = Assembly.of(request)
+    assembly.alarms.acknowledge()
+    await assembly.bridge.command("acknowledge", {})
 
 
 @router.put(
