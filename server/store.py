@@ -28,7 +28,7 @@ class Reader:
     """A database that `schema.prepare` has made ready, open only for reading; also beside a server."""
 
     def __init__(self, database: Path) -> None:
-        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool)
+        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool, _configure)
 
     @contextmanager
     def read(self) -> Iterator[Session]:
@@ -50,7 +50,7 @@ class Store(Reader):
     def __init__(self, database: Path) -> None:
         super().__init__(database)
         self.failing: str | None = None
-        self._writer = _engine(f"sqlite:///{database}", pool.StaticPool)
+        self._writer = _engine(f"sqlite:///{database}", pool.StaticPool, _configure_writer)
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
 
@@ -91,15 +91,22 @@ def _touch(connection: Connection) -> None:
     connection.exec_driver_sql(f"PRAGMA user_version = {(version + 1) % 1000}")
 
 
-def _engine(url: str, pool_class: type[pool.Pool]) -> Engine:
+def _engine(
+    url: str, pool_class: type[pool.Pool], configure: Callable[[DriverConnection, object], None]
+) -> Engine:
     engine = create_engine(url, poolclass=pool_class, connect_args={"check_same_thread": False})
-    event.listen(engine, "connect", _configure)
+    event.listen(engine, "connect", configure)
     return engine
 
 
-def _configure(connection: DriverConnection, _record: object) -> None:
+def _configure_writer(connection: DriverConnection, record: object) -> None:
+    # In a database that no server has opened yet, a reader could not do this.
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = FULL")
+    _configure(connection, record)
+
+
+def _configure(connection: DriverConnection, _record: object) -> None:
     connection.execute("PRAGMA foreign_keys = ON")
     connection.execute("PRAGMA busy_timeout = 2000")
     connection.execute(f"PRAGMA cache_size = -{PAGE_CACHE_KIB}")
