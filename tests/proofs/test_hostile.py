@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.comm_test.document import SKETCH
 from tests.board.rig import ROOT
 from tests.proofs.hostile import ENTRANCES, Field, open_field
 from tests.proofs.words import SHELL, Words
@@ -59,13 +60,8 @@ def test_a_shell_runs_hostile_documents_as_they_are(tmp_path: Path) -> None:
     """By `mucat commtest`, down to the compiler and the boards."""
     canary = tmp_path / "canary"
     named = [one.format(canary=canary, secret=ROOT / "README.md", name="x") for one in SHELL[:TESTS_RUN]]
-    test = {
-        "ino_path": "comm_test/comm_test.ino",
-        "delay": [0.0],
-        "baud_rate": [115200],
-        "arduinodelay": [0.0],
-    }
-    test |= {"from_val": 0, "to_val": 2, "expected": 2, "framing": "plain"}
+    test: dict[str, object] = {"ino_path": SKETCH, "delay": [0.0], "baud_rate": [115200]}
+    test |= {"arduinodelay": [0.0], "from_val": 0, "to_val": 2, "expected": 2, "framing": "plain"}
     file = tmp_path / f"$(touch {canary.name}).json"
     file.write_text(json.dumps([test | {"id": i, "name": name} for i, name in enumerate(named)]))
     command = [sys.executable, "-m", "server.cli", "commtest", "run", str(file), "--place", "emulated"]
