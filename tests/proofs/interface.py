@@ -35,6 +35,7 @@ from server.settings import DataFolder, Settings, make_folders
 from tests.server.blocks import depth_block, state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
+from tests.shell import shell_headers
 
 AnyCase = Case[Any]
 SILENT = {"putView": {503, 504}}
@@ -53,9 +54,10 @@ class Surface:
         self.served = served
         self.url = str(served.api.base_url).removesuffix("/api/").removesuffix("/api")
         self.session = requests.Session()
-        self.session.headers.update(dict(served.api.headers))
-        document = self.session.get(f"{self.url}/api/openapi.json").json()
-        found = schemathesis.openapi.from_dict(document).get_all_operations()
+        self.session.headers.update(shell_headers(served.settings.data))
+        answer = self.session.get(f"{self.url}/api/openapi.json")
+        answer.raise_for_status()
+        found = schemathesis.openapi.from_dict(answer.json()).get_all_operations()
         self.operations = {
             one.ok().definition.raw["operationId"]: one.ok() for one in found if isinstance(one, Ok)
         }
