@@ -6,12 +6,13 @@ KILLS ?= 100
 FAULTS ?= 100
 CHAOS_SECONDS ?= 3600
 QUESTIONS ?= 300
+WORDS ?= 500
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills faults chaos guards interface generate firmware \
+.PHONY: help run test check bench figures fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -36,6 +37,9 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 
 guards: setup-test ## take away every guard in turn: a test must miss it (some with ONLY=words of their names)
 	@nice $(PYTHON) -m tests.proofs.guards $(ONLY)
+
+hostile: setup ## hostile words through every entrance to a build, a file name or a path (WORDS=500 each)
+	@nice $(PYTHON) -W ignore -m tests.proofs.hostile $(WORDS)
 
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
