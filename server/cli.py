@@ -19,6 +19,8 @@ from server.sessions.options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
+    from server.access.access import Access
+
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
 LOCK_TRIES = 20
@@ -214,7 +216,12 @@ def _run(settings: Settings) -> int:
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
-        app = create_app(settings, plan(settings))
+
+        def greet(access: "Access") -> None:
+            if not app.state.ended:
+                _greet(settings, access)
+
+        app = create_app(settings, plan(settings), greet)
         server = make_server(app)
         server.config.load()
 
@@ -228,15 +235,18 @@ def _run(settings: Settings) -> int:
             # The server ends in order at these, and then sends them to itself once more; once is enough.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: None)
-            if not ended:
-                address = f"[{settings.host}]" if ":" in settings.host else settings.host
-                told = f"µ-CAT {VERSION} ({settings.mode}): http://{address}:{settings.port}/"
-                print(f"{told} (data in {settings.data.path})", flush=True)  # noqa: T201 - a command line speaks
             app.state.ended = ended
             server.run(sockets=[listener])
             return 0
 
         return Keeper(serve, settings.data).run()
+
+
+def _greet(settings: Settings, access: "Access") -> None:
+    from server.access.welcome import welcome
+
+    lines = welcome(settings, access, picture=sys.stdout.isatty())
+    print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
@@ -74,6 +75,11 @@ class DataFolder:
         return self.path / "server.address"
 
     @property
+    def token(self) -> Path:
+        """What the shell of this computer proves itself with to the running server; for its user alone."""
+        return self.path / "server.token"
+
+    @property
     def runtime_socket(self) -> Path:
         """Where the runtime listens for Zenoh."""
         return self.run / "runtime.sock"
@@ -137,6 +143,20 @@ class Settings:
     page: Path = Path(__file__).parent / "page"
 
     @property
+    def only_here(self) -> bool:
+        """Whether no other computer can reach the server."""
+        return _is_loopback(self.host)
+
+    def base_url(self, called: str = "") -> str:
+        """The server's address for a browser; `called` is the name by which somebody has just called it.
+
+        Where others can reach the server, it is a name that works for them too.
+        """
+        names = [name for name in self.allowed_hosts if self.only_here or not _is_loopback(name)]
+        name = called if called in names else (names or [self.host])[0]
+        return f"http://{name}:{self.port}"
+
+    @property
     def emulated_board(self) -> bool:
         """Whether the robot's board is an emulated one."""
         return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
@@ -197,6 +217,13 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
     everywhere = host in ("0.0.0.0", "::")
     own = [] if everywhere else [f"[{host}]" if ":" in host else host]
     return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+
+
+def _is_loopback(name: str) -> bool:
+    try:
+        return ip_address(name.strip("[]")).is_loopback
+    except ValueError:
+        return name == "localhost"
 
 
 def _check_socket_paths(folder: DataFolder) -> None:

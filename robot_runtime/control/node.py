@@ -6,6 +6,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import SET_POINT
 from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
 from robot_runtime.errors import Refused
 from robot_runtime.packets import Beacon, Depth, Navigation
@@ -13,8 +14,8 @@ from robot_runtime.samples import Control, Detection, Document, Event, Steering
 
 BEACON_STALE = 0.5
 """s after which what the beacon detectors saw no longer counts."""
-VISION_STALE = 1.0
-"""s after which what the vision node saw no longer counts."""
+VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
+"""s after which, at a tick, what the vision node saw no longer counts."""
 
 
 class ControlNode:
@@ -77,7 +78,7 @@ class ControlNode:
         raise Refused(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self, armed: bool) -> None:
-        """Decide, and send the command where the robot is armed."""
+        """Decide, and send the command where the robot is armed and steers itself."""
         now = self._clock.now()
         self._choose_set_point(now)
         if self._depth is None:
@@ -90,15 +91,18 @@ class ControlNode:
         output = self.controller.step(self.set_point, depth, seconds) if armed else 0.0
         self._ticked = now if armed else None
         if armed:
-            surge, yaw = self._steer(now, seconds)
-            command = Navigation(x=surge, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=yaw)
-            self._send(command)
-            self._bus.publish_row("navigation", now, command.to_bytes())
+            surge, yaw = self._course(now, seconds)
+            self.command(Navigation(x=surge, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=yaw))
         error = self.set_point - depth
         tick = Control(set_point=self.set_point, depth=depth, error=error, output=output, latency=now - time)
         self._bus.publish_row("control", now, tick.to_bytes())
 
-    def _steer(self, now: float, seconds: float) -> tuple[float, float]:
+    def command(self, command: Navigation) -> None:
+        """Send a command to the board, and tell what it was."""
+        self._send(command)
+        self._bus.publish_row("navigation", self._clock.now(), command.to_bytes())
+
+    def _course(self, now: float, seconds: float) -> tuple[float, float]:
         if self.steering == "none":
             return 0.0, 0.0
         time, right, left = self._lights

@@ -16,10 +16,21 @@ class Need(IntEnum):
 
 
 OPERATIONS: dict[str, Need] = {
+    "getMe": Need.NOTHING,
+    "pairBrowser": Need.NOTHING,
+    "signOut": Need.VIEWER,
+    "makeCode": Need.OPERATOR,
+    "listDevices": Need.OPERATOR,
+    "changeDevice": Need.OPERATOR,
+    "revokeDevice": Need.OPERATOR,
+    "makeToken": Need.OPERATOR,
     "getHealth": Need.VIEWER,
     "getRobot": Need.VIEWER,
     "stopRobot": Need.VIEWER,
     "armRobot": Need.CONTROL,
+    "putMode": Need.CONTROL,
+    "checkFins": Need.CONTROL,
+    "acknowledgeAlarms": Need.CONTROL,
     "putController": Need.CONTROL,
     "putSetPoints": Need.CONTROL,
     "putSteering": Need.CONTROL,

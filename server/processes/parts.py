@@ -43,6 +43,8 @@ SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connec
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
+SeeDown = Callable[[str, str], None]
+"""Told a part's name, and in a sentence how it has ended unexpectedly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ class Command:
 class Part:
     """One supervised process; `run` is the folder that tells the next server of it."""
 
-    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, tell: Tell) -> None:
+    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, see_down: SeeDown) -> None:
         self.command = command
         self.state: State = "waiting"
         self.since = clock.now()
@@ -78,7 +80,7 @@ class Part:
         self._log = log
         self._pid_file = pid_file(run, command.name)
         self._clock = clock
-        self._tell = tell
+        self._see_down = see_down
         self._process: Process | AdoptedProcess | None = None
         self._backoff = Backoff()
 
@@ -162,7 +164,7 @@ class Part:
         self.problem = problem
         self._set("failed")
         text = f"The {self.command.title} {problem}. It is started again {describe_pause(pause)}."
-        self._tell(self.command.name, "caution", text)
+        self._see_down(self.command.name, text)
 
     async def end(self) -> None:
         """End the process, also one that a killed server has left and that was not taken over yet."""
@@ -191,10 +193,14 @@ class Part:
 class Parts:
     """All parts of this robot, by name."""
 
-    def __init__(self, commands: Sequence[Command], folder: DataFolder, clock: Clock, tell: Tell) -> None:
+    def __init__(
+        self, commands: Sequence[Command], folder: DataFolder, clock: Clock, see_down: SeeDown
+    ) -> None:
         self._run = folder.run
         self._parts = {
-            command.name: Part(command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, tell)
+            command.name: Part(
+                command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
+            )
             for command in commands
         }
         self._tasks: dict[str, asyncio.Task[None]] = {}

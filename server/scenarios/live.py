@@ -183,6 +183,8 @@ class Live:
             reasons.append(f"“{recording.name}” is being recorded. Stop the recording first.")
         if state["armed"]:
             reasons.append("The robot is armed. STOP it first.")
+        elif state["mode"] == "failsafe":
+            reasons.append("The robot is in failsafe. Acknowledge its alarms first.")
         if not state["connected"]:
             reasons.append(f"There is no connection to the board: {state['connection']}.")
         reasons += [f"The {name} does not run." for name, pid in self._processes().items() if pid is None]

@@ -4,6 +4,150 @@
  */
 
 export interface paths {
+    "/api/access/codes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make a pairing code
+         * @description For one browser, within ten minutes.
+         */
+        post: operations["makeCode"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/devices": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Who may come in
+         * @description Browsers and programs, in the order in which they came.
+         */
+        get: operations["listDevices"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/devices/{device}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke access
+         * @description At once, also on live sockets, which are closed.
+         */
+        delete: operations["revokeDevice"];
+        options?: never;
+        head?: never;
+        /**
+         * Rename, promote or demote
+         * @description A new role closes its live sockets, which come back in that role.
+         */
+        patch: operations["changeDevice"];
+        trace?: never;
+    };
+    "/api/access/me": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Who asks
+         * @description Answered to everybody.
+         */
+        get: operations["getMe"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/pair": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Sign this browser in with a code
+         * @description Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more.
+         */
+        post: operations["pairBrowser"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/sign-out": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Sign this browser out
+         * @description It has to be paired anew afterwards. For a program: its token is void.
+         */
+        post: operations["signOut"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/access/tokens": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Let a program in
+         * @description The token is shown this once; the program sends it as `Authorization: Bearer`.
+         */
+        post: operations["makeToken"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/comm-tests/cancel": {
         parameters: {
             query?: never;
@@ -376,6 +520,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Acknowledge the alarms
+         * @description Say that all alarms were seen; after a failsafe the robot may be armed again from then on.
+         */
+        post: operations["acknowledgeAlarms"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/arm": {
         parameters: {
             query?: never;
@@ -387,7 +551,7 @@ export interface paths {
         put?: never;
         /**
          * Arm
-         * @description Refused with every reason that stands against it.
+         * @description Refused with every reason that stands against it; without a body the depth controller steers.
          */
         post: operations["armRobot"];
         delete?: never;
@@ -416,6 +580,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/check-fins": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check the fins
+         * @description Arm for some seconds, try each axis, and tell in an event which fins followed; then disarm.
+         */
+        post: operations["checkFins"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/controller": {
         parameters: {
             query?: never;
@@ -429,6 +613,26 @@ export interface paths {
          * @description Choose a controller, and set gains of it.
          */
         put: operations["putController"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/mode": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Hand over
+         * @description Let the pilot or the depth controller steer the armed robot.
+         */
+        put: operations["putMode"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1256,6 +1460,45 @@ export interface components {
             by: "none" | "beacons";
         };
         /**
+         * DeviceChanges
+         * @description What is left out stays as it is.
+         */
+        DeviceChanges: {
+            /** Name */
+            name?: string | null;
+            /** Role */
+            role?: ("viewer" | "operator") | null;
+        };
+        /**
+         * DeviceShape
+         * @description A browser or a program that may come in; times in s since 1970.
+         */
+        DeviceShape: {
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /** Paired */
+            paired: number;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
+            /** Seen */
+            seen: number;
+            /**
+             * You
+             * @description whether it is what asks
+             */
+            you: boolean;
+        };
+        /**
          * Difference
          * @description Something that is not the same in all sessions.
          */
@@ -1305,6 +1548,17 @@ export interface components {
             series: {
                 [key: string]: components["schemas"]["Line"];
             };
+        };
+        /**
+         * Driver
+         * @description Who steers: the depth controller, or the pilot by hand.
+         */
+        Driver: {
+            /**
+             * Mode
+             * @enum {string}
+             */
+            mode: "automatic" | "manual";
         };
         /**
          * EndedRun
@@ -1412,11 +1666,6 @@ export interface components {
             /** Value */
             value: number;
         };
-        /** HTTPValidationError */
-        HTTPValidationError: {
-            /** Detail */
-            detail?: components["schemas"]["ValidationError"][];
-        };
         /**
          * Health
          * @description Everything together: "failed" where a part has failed, else "starting" where one starts, else "ok".
@@ -1496,6 +1745,26 @@ export interface components {
              */
             state: "waiting" | "running" | "done" | "failed";
             wanted: components["schemas"]["Wanted"];
+        };
+        /**
+         * Known
+         * @description Somebody who is signed in; device 0 is the shell of the robot's computer.
+         */
+        Known: {
+            /** Device */
+            device: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
         };
         /**
          * Line
@@ -1602,6 +1871,34 @@ export interface components {
             time: number;
         };
         /**
+         * MadeCode
+         * @description A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
+         */
+        MadeCode: {
+            /** Code */
+            code: string;
+            /** Expires */
+            expires: number;
+            /** Link */
+            link: string;
+            /** Qr Svg */
+            qr_svg: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
+        };
+        /**
+         * MadeToken
+         * @description A program's token, which is shown this once.
+         */
+        MadeToken: {
+            device: components["schemas"]["DeviceShape"];
+            /** Token */
+            token: string;
+        };
+        /**
          * Mark
          * @description A moment that somebody pointed out.
          */
@@ -1633,6 +1930,19 @@ export interface components {
             time?: number | null;
         };
         /**
+         * Me
+         * @description Who asks, as far as the server knows; `pairing_open` says whether some code is valid now.
+         */
+        Me: {
+            identity: components["schemas"]["Known"] | null;
+            /** Pairing Open */
+            pairing_open: boolean;
+            /** Robot */
+            robot: string;
+            /** Signed In */
+            signed_in: boolean;
+        };
+        /**
          * Moment
          * @description An event: something that happened, in words.
          */
@@ -1651,6 +1961,18 @@ export interface components {
              * @description s since the session's start
              */
             time: number;
+        };
+        /**
+         * NewCode
+         * @description A code that is to be made.
+         */
+        NewCode: {
+            /**
+             * Role
+             * @default viewer
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
         };
         /**
          * NewExport
@@ -1721,6 +2043,20 @@ export interface components {
             note: string;
         };
         /**
+         * NewToken
+         * @description A program that is to be let in.
+         */
+        NewToken: {
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @default viewer
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
+        };
+        /**
          * NextEvent
          * @description What happens next.
          */
@@ -1742,6 +2078,16 @@ export interface components {
             period: number;
             /** Topic */
             topic: string;
+        };
+        /**
+         * Pairing
+         * @description A code, and what this browser is to be called.
+         */
+        Pairing: {
+            /** Code */
+            code: string;
+            /** Name */
+            name: string;
         };
         /**
          * PartHealth
@@ -2626,19 +2972,6 @@ export interface components {
             /** Time */
             time: number;
         };
-        /** ValidationError */
-        ValidationError: {
-            /** Context */
-            ctx?: Record<string, never>;
-            /** Input */
-            input?: unknown;
-            /** Location */
-            loc: (string | number)[];
-            /** Message */
-            msg: string;
-            /** Error Type */
-            type: string;
-        };
         /**
          * View
          * @description The bystander's view; all pages share it.
@@ -2781,6 +3114,380 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    makeCode: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCode"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MadeCode"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listDevices: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeviceShape"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revokeDevice: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                device: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such device */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    changeDevice: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                device: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DeviceChanges"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeviceShape"];
+                };
+            };
+            /** @description There is no such device */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getMe: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Me"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pairBrowser: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Pairing"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Me"];
+                };
+            };
+            /** @description The code is not valid */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too many wrong codes; Retry-After says how long */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    signOut: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    makeToken: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewToken"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MadeToken"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     cancelTestRun: {
         parameters: {
             query?: never;
@@ -2796,6 +3503,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
             };
         };
     };
@@ -2821,13 +3537,13 @@ export interface operations {
                     "application/json": components["schemas"]["Check"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2850,6 +3566,15 @@ export interface operations {
                     "application/json": components["schemas"]["TestDocument"][];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     listTestRuns: {
@@ -2868,6 +3593,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RunSummary"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2921,6 +3655,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getTestRun: {
@@ -2952,13 +3695,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -2992,13 +3735,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3032,13 +3775,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3059,6 +3802,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ThesisTable"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3094,17 +3846,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3145,17 +3897,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3186,13 +3938,13 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Successful Response */
+            /** @description The file */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": string;
+                    "text/html": unknown;
                 };
             };
             /** @description There is no such session */
@@ -3201,16 +3953,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Validation Error */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description The database does not work */
@@ -3219,7 +3962,16 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": components["schemas"]["Problem"];
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3240,6 +3992,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Job"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3293,6 +4054,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getExport: {
@@ -3324,13 +4094,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3371,13 +4141,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3427,13 +4197,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3454,6 +4224,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -3516,6 +4295,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getLinkFrames: {
@@ -3554,6 +4342,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getRobot: {
@@ -3583,9 +4380,18 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
-    armRobot: {
+    acknowledgeAlarms: {
         parameters: {
             query?: never;
             header?: never;
@@ -3630,6 +4436,82 @@ export interface operations {
             };
             /** @description The runtime did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    armRobot: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["Driver"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3695,6 +4577,78 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    checkFins: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     putController: {
@@ -3746,6 +4700,82 @@ export interface operations {
             };
             /** @description The runtime did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putMode: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Driver"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3811,6 +4841,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     putSteering: {
@@ -3869,6 +4908,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     stopRobot: {
@@ -3898,6 +4946,15 @@ export interface operations {
             };
             /** @description The runtime did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -3963,6 +5020,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     listScenarios: {
@@ -3981,6 +5047,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioText"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4025,6 +5100,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     cancelScenario: {
@@ -4042,6 +5126,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
             };
         };
     };
@@ -4067,13 +5160,13 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioCheck"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4118,6 +5211,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getScenarioState: {
@@ -4136,6 +5238,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioState"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4196,6 +5307,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     listSessions: {
@@ -4224,13 +5344,13 @@ export interface operations {
                     "application/json": components["schemas"]["Session"][];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4266,17 +5386,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4315,13 +5435,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4364,17 +5484,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4426,17 +5546,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4479,13 +5599,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4519,13 +5639,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -4572,17 +5692,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4629,17 +5749,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4692,17 +5812,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4748,17 +5868,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4806,17 +5926,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4855,17 +5975,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4913,17 +6033,17 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description The database does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
-            503: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4965,13 +6085,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -5005,13 +6125,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -5045,13 +6165,13 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Validation Error */
-            422: {
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["HTTPValidationError"];
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };
@@ -5072,6 +6192,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Storage"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

@@ -92,7 +92,7 @@ def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
     for _ in range(12):
         rig.tick()
         set_points.append(rig.ticks[-1].set_point)
-    assert set_points == [1.0] * 10 + [0.5] * 2
+    assert set_points == [1.0] * 9 + [0.5] * 3
 
 
 def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:

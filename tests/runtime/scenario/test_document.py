@@ -63,6 +63,7 @@ depth = 3
 ALL_EVENTS = {
     "arm": "",
     "stop": "",
+    "acknowledge": "",
     "set_points": "detected = 1.5",
     "controller": "name = 'pid'\ngains = { kd = 1 }",
     "steering": "by = 'beacons'",
