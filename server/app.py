@@ -15,6 +15,7 @@ from server.access.devices import UnknownDevice
 from server.access.gate import Gate
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
+from server.control.lease import NotInControl
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.processes.parts import Command
@@ -22,6 +23,7 @@ from server.routes import (
     access,
     comm_tests,
     compare,
+    control,
     exports,
     health,
     link,
@@ -81,6 +83,7 @@ def create_app(
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(NotInControl, _not_in_control)
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(UnknownDevice, _absent)
@@ -88,7 +91,7 @@ def create_app(
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live)
+    robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
@@ -110,6 +113,10 @@ async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _not_in_control(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(423, str(problem))
 
 
 async def _absent(_: Request, problem: Exception) -> JSONResponse:

@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from starlette.requests import HTTPConnection
 
@@ -17,6 +17,8 @@ from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.control.desk import Desk
+from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
 from server.live.alarms import Alarms
@@ -62,7 +64,9 @@ class Assembly:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self.hub.dismiss)
+        self.telling = Telling(self.bridge.tell_lease)
+        self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -139,6 +143,8 @@ class Assembly:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
+                    self.desk.run(),
+                    self.telling.run(),
                     self.inspection.run(),
                     self._tell_health(),
                 )
@@ -173,8 +179,10 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
-            if block.topic.name == "state" and self.settings.sessions.record_at_arming:
-                self.arming.see(block)
+            if block.topic.name == "state":
+                self.telling.see_run(self.bridge.run)
+                if self.settings.sessions.record_at_arming:
+                    self.arming.see(block)
 
     def _board_occupied(self) -> str | None:
         run, session = self.scenarios.active, self.recorder.session
@@ -191,6 +199,14 @@ class Assembly:
     def _tell_session(self) -> None:
         session = self.recorder.session
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _dismiss(self, device: int, reason: str) -> None:
+        self.desk.dismiss(device)
+        self.hub.dismiss(device, reason)
+
+    def _tell_control(self, message: dict[str, Any]) -> None:
+        self.telling.see_epoch(message["epoch"])
+        self.hub.tell(message)
 
     def _tell_alarms(self) -> None:
         self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})

@@ -24,6 +24,7 @@ from server.comm_tests.shapes import (
     ThesisTable,
 )
 from server.comm_tests.shipped import shipped_documents
+from server.control.admission import require_control
 from server.models import CommTestRun
 from server.routes.problems import answers
 from server.sessions.session import IDENTIFIER_MAX
@@ -58,11 +59,16 @@ def check(document: DocumentText) -> Check:
     summary="Run a document",
     operation_id="startTestRun",
     responses=answers(
-        _409="Refused now", _422="The document cannot be run", _503="The database does not work"
+        _409="Refused now",
+        _422="The document cannot be run",
+        _423="On the robot's board: control is with somebody else",
+        _503="The database does not work",
     ),
 )
 async def start(request: Request, wanted: Start) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
+    if wanted.place == "robot":
+        require_control(request)
     try:
         return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
     except DocumentError as problem:

@@ -10,7 +10,12 @@ from server.assembly import Assembly
 from server.routes.problems import answers
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
-COMMAND = {**answers(_409="The runtime refuses", _422="The request is not valid"), **SILENT}
+COMMAND = {
+    **answers(
+        _409="The runtime refuses", _422="The request is not valid", _423="Control is with somebody else"
+    ),
+    **SILENT,
+}
 
 router = APIRouter(prefix="/api/robot", tags=["robot"])
 

@@ -1,4 +1,7 @@
-"""A whole server on a loopback port, inside the test's own event loop."""
+"""A whole server on a loopback port, inside the test's own event loop.
+
+The client of it has a seat, and control, which lasts while it asks something every few seconds.
+"""
 
 import asyncio
 import json
@@ -57,6 +60,13 @@ class Served:
                 except (RuntimeSilent, Refused):
                     await asyncio.sleep(0.005)
 
+    async def take_control(self) -> None:
+        """Let the client have control, from now on and with a seat of its own."""
+        seat = (await self.api.post("/control/seat")).raise_for_status().json()
+        self.api.headers["X-Mucat-Seat"] = seat["key"]
+        state = (await self.api.post("/control/take")).raise_for_status().json()
+        assert state["holder"]["seat"] == seat["seat"], state
+
 
 @asynccontextmanager
 async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIterator[Served]:
@@ -76,6 +86,7 @@ async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIt
                     served = Served(settings, app.state.assembly, api, runtime)
                     await served.heard("stream")
                     await served.reached()
+                    await served.take_control()
                     yield served
             finally:
                 server.should_exit = True
