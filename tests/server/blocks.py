@@ -63,7 +63,6 @@ def state_block(first: int, **changes: Any) -> Block:
         "set_point": 0.5,
         "set_point_default": 0.5,
         "set_point_detected": 1.0,
-        "steering": "none",
         "control_rate": 10.0,
         "vision_rate": 4.0,
         "vision_colour": "yellow",
