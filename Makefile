@@ -3,12 +3,13 @@ PORT ?= 8000
 ONLY ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
+QUESTIONS ?= 300
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench figures fuzz soak samples kills guards interface generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -29,6 +30,12 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
 	cd frontend && npm run --silent check
 	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
+
+guards: setup-test ## take away every guard in turn: a test must miss it (some with ONLY=words of their names)
+	@nice $(PYTHON) -m tests.proofs.guards $(ONLY)
+
+interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
+	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
 
 generate: .venv/.ready frontend/node_modules/.ready ## write the generated files from their definitions
 	$(PYTHON) -m robot_runtime.generate

@@ -309,6 +309,7 @@ def _state(start: float, since: float) -> State:
         set_point=set_point,
         set_point_default=SHALLOW,
         set_point_detected=DEEP,
+        steering="none",
         control_rate=10.0,
         vision_rate=4.0,
         vision_colour="yellow",

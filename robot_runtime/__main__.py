@@ -8,7 +8,6 @@ from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.config import ConfigError, load
-from robot_runtime.heartbeat import Heartbeat
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.robot import Robot
@@ -25,10 +24,9 @@ def main() -> int:
         with Messages(
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
-            robot = Robot(config, options.port or config.link.port, messages)
+            port = options.port or config.link.port
+            robot = Robot(config, port, messages, heartbeat=options.heartbeat)
             robot.answer()
-            if options.heartbeat is not None:
-                Heartbeat(robot.supervisor, messages, robot.clock, options.heartbeat).start()
             if options.server_lock is not None:
                 watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)
             for number in (signal.SIGINT, signal.SIGTERM):

@@ -4,8 +4,10 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.core import Core
 from robot_runtime.errors import Refused
+from robot_runtime.samples import Mode
 
 
 class Commands:
@@ -16,8 +18,13 @@ class Commands:
         handlers: dict[str, Callable[[Mapping[str, Any]], None]] = {
             "stop": self._stop,
             "arm": self._arm,
+            "mode": self._mode,
+            "check_fins": self._check_fins,
+            "acknowledge": self._acknowledge,
+            "lease": self._lease,
             "controller": self._controller,
             "set_points": self._set_points,
+            "steering": self._steering,
             "card": self._card,
             "vision": self._vision,
         }
@@ -35,8 +42,24 @@ class Commands:
     def _stop(self, _: Mapping[str, Any]) -> None:
         self._robot.supervisor.stop("Stopped by the operator.")
 
-    def _arm(self, _: Mapping[str, Any]) -> None:
-        self._robot.supervisor.arm()
+    def _arm(self, question: Mapping[str, Any]) -> None:
+        mode, alone = read_arming(question)
+        self._robot.supervisor.arm(mode, alone)
+
+    def _mode(self, question: Mapping[str, Any]) -> None:
+        self._robot.supervisor.change_mode(_mode(question))
+
+    def _check_fins(self, _: Mapping[str, Any]) -> None:
+        self._robot.supervisor.arm("test")
+
+    def _acknowledge(self, _: Mapping[str, Any]) -> None:
+        self._robot.supervisor.acknowledge()
+
+    def _lease(self, question: Mapping[str, Any]) -> None:
+        epoch = question.get("epoch")
+        if type(epoch) is not int:
+            raise Refused(f"epoch is {epoch!r}; it must be a whole number")
+        self._robot.supervisor.pilot.change_lease(epoch)
 
     def _controller(self, question: Mapping[str, Any]) -> None:
         gains = question.get("gains") or {}
@@ -49,6 +72,9 @@ class Commands:
         default = _number(question, "default", control.set_point_default)
         control.set_points(default, _number(question, "detected", control.set_point_detected))
 
+    def _steering(self, question: Mapping[str, Any]) -> None:
+        self._robot.control.steer(_text(question, "by"))
+
     def _card(self, question: Mapping[str, Any]) -> None:
         self._robot.vision.show_card(None if question.get("colour") is None else _text(question, "colour"))
 
@@ -59,6 +85,22 @@ class Commands:
             raise Refused(f"no colour is named {colour!r}; there are {', '.join(self._robot.vision.colours)}")
         self._robot.vision.rate = rate
         self._robot.vision.colour = self._robot.control.colour = colour
+
+
+def read_arming(question: Mapping[str, Any]) -> tuple[Mode, float]:
+    """How the robot is to be armed, and for how many s it may go on without the server. Raises Refused."""
+    alone = _number(question, "alone", 0.0)
+    if not 0 <= alone <= ALONE_MAX:
+        raise Refused(f"alone is {alone:g} s; it must lie between 0 and {ALONE_MAX:g}")
+    return _mode(question) if "mode" in question else "automatic", alone
+
+
+def _mode(question: Mapping[str, Any]) -> Mode:
+    modes: dict[Any, Mode] = {"automatic": "automatic", "manual": "manual"}
+    mode = _text(question, "mode")
+    if mode not in modes:
+        raise Refused(f"mode is {mode!r}; it must be automatic or manual")
+    return modes[mode]
 
 
 def _text(question: Mapping[str, Any], name: str) -> str:

@@ -88,6 +88,7 @@ class ControlConfig:
     controller: str = "bang_bang"
     set_point: Annotated[float, SET_POINT] = 0.5
     set_point_detected: Annotated[float, SET_POINT] = 1.0
+    steering: Literal["none", "beacons"] = "none"
     gains: dict[str, dict[str, float]] = field(default_factory=dict)
 
 

@@ -49,7 +49,7 @@ class Core:
     """The robot without its threads. `run` is this run's name, 16 hexadecimal digits.
 
     Pictures come from `open_camera`, without it from the configured camera, which may ask by `messages`. A
-    `loop` stands for sensors that the board has not.
+    `loop` stands for sensors that the board has not. With `heartbeat` a server must be heard so often (s).
 
     `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
     That, `control_tick`, `publish_tick` and `vision.tick` may each have a thread of their own.
@@ -67,6 +67,7 @@ class Core:
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,
         loop: InTheLoop | None = None,
+        heartbeat: float | None = None,
     ) -> None:
         self.config = config
         self.clock = clock
@@ -79,7 +80,7 @@ class Core:
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
-        self.supervisor = Supervisor(clock, self.line, self.tell, loop)
+        self.supervisor = Supervisor(clock, self.line, self.tell, loop, heartbeat)
         self.control = ControlNode(self.bus, clock, self._navigate)
         self.vision = Vision(
             config.vision,
@@ -111,15 +112,30 @@ class Core:
 
     def control_tick(self) -> None:
         """Decide and command once; to be called at the control rate."""
+        self.look()
         try:
-            self.supervisor.tick()
-            self.control.tick(self.supervisor.armed)
+            mode = self.supervisor.mode
+            self.control.tick(mode == "automatic")
+            if mode == "manual":
+                self.control.command(self.supervisor.pilot.command())
+            elif mode == "test":
+                self._check_fins()
         except Exception:
             log.exception("a control tick failed")
-            self.supervisor.stop("The control loop failed; the log says why.", "alarm")
+            self.supervisor.fail("control_failed")
+
+    def look(self) -> None:
+        """Look for faults; to be called every `PUBLISH_EVERY` at least."""
+        try:
+            self.supervisor.tick()
+        except Exception:
+            log.exception("looking for faults failed")
+            self.supervisor.fail("control_failed")
 
     def publish_tick(self) -> None:
-        """Send what waits; to be called every `PUBLISH_EVERY`."""
+        """Look for faults and send what waits; to be called every `PUBLISH_EVERY`."""
+        # Here too, as the control loop may be slower.
+        self.look()
         now = self.clock.now()
         for index, (seconds, action) in enumerate(self._every):
             if now >= self._due[index]:
@@ -139,7 +155,7 @@ class Core:
             mode=self.supervisor.mode,
             armed=self.supervisor.armed,
             armed_since=self.supervisor.armed_since,
-            alarms=[],
+            alarms=self.supervisor.alarms,
             refusals=self.supervisor.refusals(),
             connected=self.line.connected,
             connection=self.line.text,
@@ -152,6 +168,7 @@ class Core:
             set_point=self.control.set_point,
             set_point_default=self.control.set_point_default,
             set_point_detected=self.control.set_point_detected,
+            steering=self.control.steering,
             control_rate=self.config.control.rate,
             vision_rate=self.vision.rate,
             vision_colour=self.control.colour,
@@ -179,36 +196,54 @@ class Core:
         for name, gains in settings.gains.items():
             self.control.choose(name, gains)
         self.control.choose(settings.controller)
+        self.control.steer(settings.steering)
         self.control.set_points(settings.set_point, settings.set_point_detected)
         self.control.colour = self.config.vision.colour
 
     def _join(self) -> None:
+        self.bus.on_row("motor", self._check_motor)
         for topic in TOPICS:
             if topic.kind is Kind.ROWS:
                 self.bus.on_row(topic.name, self.outbox.add_row)
             elif topic.kind is Kind.DOCUMENTS:
                 self.bus.on_document(topic.name, self.outbox.add_document)
 
+    def _check_motor(self, _topic: str, _time: float, record: bytes) -> None:
+        if self.supervisor.mode == "test":
+            self.supervisor.fin_check.see(Motor.from_bytes(record))
+
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
+
+    def _check_fins(self) -> None:
+        command = self.supervisor.fin_check.step()
+        if command is None:
+            self.supervisor.end_fin_check()
+        else:
+            self.control.command(command)
 
     def _navigate(self, command: Navigation) -> None:
         self.line.send(command)
 
     def take_messages(self, messages: list[Message]) -> None:
         """Publish what the board said, and send it on."""
+        watch = self.supervisor.watch
+        watch.see_messages()
         for message in messages:
             topic = _ROW_OF.get(message.type)
             if topic is not None:
                 self.bus.publish_row(topic, message.time, message.payload)
             if message.type == Depth.type:
-                self.supervisor.see_depth()
+                watch.see_depth(Depth.from_bytes(message.payload))
+            elif message.type == Imu.type:
+                watch.see_imu(Imu.from_bytes(message.payload))
             elif message.type == Status.type:
                 self.supervisor.see_status(Status.from_bytes(message.payload))
             elif message.type == Debug.type:
                 debug = Debug.from_bytes(message.payload)
                 line = DebugLine(time=message.time, level=debug.level, text=debug.text)
                 self.bus.publish_document("debug", line)
+        self.look()
         self.outbox.flush()
 
     def link_changed(self) -> None:
@@ -221,6 +256,7 @@ class Core:
         self.outbox.add_picture("thumbnail", time, jpeg)
 
     def _take_detection(self, detection: Detection) -> None:
+        self.supervisor.watch.see_picture(detection.taken)
         self.bus.publish_document("detection", detection)
 
 

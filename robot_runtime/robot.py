@@ -8,16 +8,25 @@ from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
 from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
+from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.link.connection import Connection
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
 
 
 class Robot(Core):
-    """The running robot. `run` returns after `close`."""
+    """The running robot. `run` returns after `close`. `heartbeat`: s for which no server need be heard."""
 
-    def __init__(self, config: Config, port: str, messages: Messages, clock: Clock | None = None) -> None:
+    def __init__(
+        self,
+        config: Config,
+        port: str,
+        messages: Messages,
+        clock: Clock | None = None,
+        heartbeat: float | None = None,
+    ) -> None:
         clock = clock or SteadyClock()
         self.cache = Cache(messages.run, clock)
         self._messages = messages
@@ -43,7 +52,11 @@ class Robot(Core):
             loop=self.loop,
             picture_wanted=lambda: messages.watched("picture"),
             messages=messages,
+            heartbeat=heartbeat,
         )
+        watch, pilot = self.supervisor.watch, self.supervisor.pilot
+        messages.subscribe(HEARTBEAT, lambda *_: watch.see_server())
+        messages.subscribe(PILOT, lambda _, payload: pilot.take(payload))
 
     def answer(self) -> None:
         """From now on do what the other processes ask, and answer their queries, which change nothing."""

@@ -112,6 +112,7 @@ class Pace:
     period: float
 
 
+Steering = Literal["none", "beacons"]
 Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
 
 
@@ -152,6 +153,7 @@ class State(Document):
     set_point: float
     set_point_default: float
     set_point_detected: float
+    steering: Steering = field(metadata={"meaning": "where it swims while it holds its depth"})
     control_rate: float
     vision_rate: float
     vision_colour: str

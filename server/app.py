@@ -1,20 +1,25 @@
 """The application: routes, guard and page around one assembly."""
 
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 
-from fastapi import FastAPI, Request
+from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 
 from robot_runtime.errors import Refused
 from server import VERSION
+from server.access.access import Access
+from server.access.admit import admit
+from server.access.devices import UnknownDevice
+from server.access.gate import Gate
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.processes.parts import Command
 from server.routes import (
+    access,
     comm_tests,
     compare,
     exports,
@@ -30,6 +35,7 @@ from server.routes import (
     simulator,
     storage,
 )
+from server.routes.problems import EVERYWHERE
 from server.security import Guard
 from server.sessions.markers import UnknownMark
 from server.sessions.presence import NotNow, UnknownSession
@@ -39,14 +45,21 @@ from server.settings import Settings
 from server.store import StoreError
 
 
-def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
-    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`)."""
+def create_app(
+    settings: Settings, commands: Sequence[Command] = (), started: Callable[[Access], None] | None = None
+) -> FastAPI:
+    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`).
+
+    `started` is called once everything is there, before anybody is served.
+    """
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands)
+        assembly = Assembly(settings, commands, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
+            if started is not None:
+                started(assembly.access)
             yield
 
     app = FastAPI(
@@ -59,21 +72,26 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.ended = ""
+    # What is added last is asked first.
+    app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(400, _unreadable_body)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
+    app.add_exception_handler(UnknownDevice, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live)
     kept = (sessions, marks, replay, storage, compare, exports)
-    for module in (*robots, *kept, comm_tests, scenarios):
-        app.include_router(module.router)
+    for module in (access, *robots, *kept, comm_tests, scenarios):
+        app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app
 
@@ -84,6 +102,10 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
         f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
     )
     return _tell(422, f"The request is not valid. {words}")
+
+
+async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
+    return _tell(422, "The request is not valid. Its body is not JSON in UTF-8.")
 
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:

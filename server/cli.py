@@ -14,10 +14,13 @@ from typing import IO, TYPE_CHECKING
 
 from server import VERSION, simulator_command
 from server.exports.options import add_export, add_import
+from server.processes.keeper import Keeper, keeper_of, relieve
 from server.sessions.options import add_record, add_sessions
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
+    from server.access.access import Access
+
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
 LOCK_TRIES = 20
@@ -42,11 +45,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _carry(options, settings)
         if options.command in ("sessions", "record"):
             return _sessions(options, settings)
+        relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
-        print(f"mucat: {problem}", file=sys.stderr)  # noqa: T201 - a command line speaks
-        return 1
+        return _complain(problem)
+
+
+def _complain(problem: SetupError) -> int:
+    print(f"mucat: {problem}", file=sys.stderr)  # noqa: T201 - a command line speaks
+    return 1
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -141,8 +149,11 @@ def _claim(folder: DataFolder) -> Iterator[None]:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
     with handle:
         if not _lock(handle):
+            keeper = keeper_of(folder)
+            process = f" (process {keeper})" if keeper is not None else ""
             raise SetupError(
-                f"Another server works on {folder.path}. End it, or choose another folder with --data."
+                f"Another server works on {folder.path}{process}. End it, or choose another folder with "
+                "--data."
             )
         make_folders(folder)
         yield
@@ -205,17 +216,37 @@ def _run(settings: Settings) -> int:
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
-        prepare(settings.data)
-        announce(settings.data, settings.host, settings.port)
-        server = make_server(create_app(settings, plan(settings)))
-        # The server ends in order at these, and then sends them to itself once more; once is enough.
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: None)
-        address = f"[{settings.host}]" if ":" in settings.host else settings.host
-        told = f"µ-CAT {VERSION} ({settings.mode}): http://{address}:{settings.port}/"
-        print(f"{told} (data in {settings.data.path})", flush=True)  # noqa: T201 - a command line speaks
-        server.run(sockets=[listener])
-    return 0
+
+        def greet(access: "Access") -> None:
+            if not app.state.ended:
+                _greet(settings, access)
+
+        app = create_app(settings, plan(settings), greet)
+        server = make_server(app)
+        server.config.load()
+
+        def serve(ended: str) -> int:
+            """In a process of its own; `ended` says how the server before it did, if there was one."""
+            try:
+                prepare(settings.data)
+            except SetupError as problem:
+                return _complain(problem)
+            announce(settings.data, settings.host, settings.port)
+            # The server ends in order at these, and then sends them to itself once more; once is enough.
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, lambda *_: None)
+            app.state.ended = ended
+            server.run(sockets=[listener])
+            return 0
+
+        return Keeper(serve, settings.data).run()
+
+
+def _greet(settings: Settings, access: "Access") -> None:
+    from server.access.welcome import welcome
+
+    lines = welcome(settings, access, picture=sys.stdout.isatty())
+    print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 
 if __name__ == "__main__":

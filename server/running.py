@@ -88,6 +88,7 @@ def _send(
 ) -> Any:
     try:
         address = folder.address.read_text(encoding="ascii").strip()
+        headers["authorization"] = f"Bearer {folder.token.read_text(encoding='ascii').strip()}"
     except OSError as problem:
         raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
     request = urllib.request.Request(f"http://{address}/api{path}", body, headers, method=method)

@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
@@ -64,9 +65,19 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
+    def keeper(self) -> Path:
+        """Which process keeps the server of this folder running."""
+        return self.path / "server.pid"
+
+    @property
     def address(self) -> Path:
         """Where the server that works on this folder, or did last, is to be asked: host and port."""
         return self.path / "server.address"
+
+    @property
+    def token(self) -> Path:
+        """What the shell of this computer proves itself with to the running server; for its user alone."""
+        return self.path / "server.token"
 
     @property
     def runtime_socket(self) -> Path:
@@ -99,6 +110,11 @@ class DataFolder:
         return self.path / "firmware-away"
 
     @property
+    def scenario_before(self) -> Path:
+        """There while a scenario runs on the robot: how everything was before."""
+        return self.path / "scenario-before.json"
+
+    @property
     def scenarios(self) -> Path:
         """One's own scenarios."""
         return self.path / "scenarios"
@@ -125,6 +141,20 @@ class Settings:
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
     build: Path = Path(__file__).parent.parent / "build"
     page: Path = Path(__file__).parent / "page"
+
+    @property
+    def only_here(self) -> bool:
+        """Whether no other computer can reach the server."""
+        return _is_loopback(self.host)
+
+    def base_url(self, called: str = "") -> str:
+        """The server's address for a browser; `called` is the name by which somebody has just called it.
+
+        Where others can reach the server, it is a name that works for them too.
+        """
+        names = [name for name in self.allowed_hosts if self.only_here or not _is_loopback(name)]
+        name = called if called in names else (names or [self.host])[0]
+        return f"http://{name}:{self.port}"
 
     @property
     def emulated_board(self) -> bool:
@@ -187,6 +217,13 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
     everywhere = host in ("0.0.0.0", "::")
     own = [] if everywhere else [f"[{host}]" if ":" in host else host]
     return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+
+
+def _is_loopback(name: str) -> bool:
+    try:
+        return ip_address(name.strip("[]")).is_loopback
+    except ValueError:
+        return name == "localhost"
 
 
 def _check_socket_paths(folder: DataFolder) -> None:

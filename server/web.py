@@ -11,13 +11,15 @@ SEND_BUFFER_BYTES = 65_536
 """With the kernel's own megabytes a client that has stopped reading would go unnoticed for minutes."""
 USER_TIMEOUT_MS = 10_000
 """The kernel ends a connection whose data nobody has taken for this long."""
+BACKLOG = 128
+"""Clients that may wait while the server is being replaced."""
 MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
 
 
 def open_socket(host: str, port: int) -> socket.socket:
-    """A bound socket whose connections inherit its limits. Raises SetupError where it cannot be had."""
+    """A listening socket whose connections inherit its limits. Raises SetupError where it cannot be had."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         listener = socket.socket(family, kind, protocol)
@@ -30,6 +32,7 @@ def open_socket(host: str, port: int) -> socket.socket:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, USER_TIMEOUT_MS)
         listener.bind(address)
+        listener.listen(BACKLOG)
     except OSError as problem:
         listener.close()
         raise SetupError(

@@ -53,11 +53,13 @@ def main() -> None:
             told["camera"] = state(stack)["camera"]
             hosts.loss = 1.0
             wait(lambda: not state(stack)["armed"], "the stop after the cut", stack)
-            told["cut"] = refusals(stack)
             time.sleep(CUT_SECONDS)
+            told["cut"] = refusals(stack)
             hosts.loss = 0.01
-            wait(lambda: refusals(stack) == [], "the simulator's return", stack)
-            told["back"] = state(stack)["armed"]
+            wait(lambda: len(refusals(stack)) == 1, "the simulator's return", stack)
+            told["back"] = state(stack)["mode"]
+            stack.api.post("/robot/acknowledge").raise_for_status()
+            wait(lambda: refusals(stack) == [], "the acknowledgement", stack)
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
             (data / "session.zip").write_bytes(stack.api.get(f"/sessions/{session['id']}/csv").content)
         finally:

@@ -6,12 +6,17 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 import httpx
 import psutil
+
+from server.processes.keeper import keeper_of
+from server.settings import DataFolder
+from tests.shell import ShellToken
 
 ROOT = Path(__file__).resolve().parents[1]
 READY_SECONDS = 40.0
@@ -37,7 +42,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0)
+        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
@@ -55,9 +60,23 @@ class Stack:
 
     @property
     def process(self) -> psutil.Process:
-        """The process that was started."""
-        assert self._process is not None
-        return psutil.Process(self._process.pid)
+        """The process that was started, or the one that has taken its place: the keeper of the server."""
+        pid = keeper_of(DataFolder(self.data))
+        if pid is None:
+            raise LookupError("no keeper runs")
+        return psutil.Process(pid)
+
+    @property
+    def server(self) -> psutil.Process:
+        """The process that serves, or will in a moment."""
+        end = time.monotonic() + READY_SECONDS
+        while time.monotonic() < end:
+            for process in psutil.process_iter():
+                with suppress(psutil.NoSuchProcess):
+                    if process.name() == "mucat-server" and str(self.port) in process.cmdline():
+                        return process
+            time.sleep(_POLL)
+        raise AssertionError("no server comes")
 
     def start(self) -> None:
         """Start `mucat run` without waiting for anything."""
@@ -86,7 +105,7 @@ class Stack:
         health: dict[str, Any] = {}
         while time.monotonic() < end:
             assert self._process is not None
-            if self._process.poll() is not None:
+            if self._process.poll() is not None and keeper_of(DataFolder(self.data)) is None:
                 break
             try:
                 health = self.api.get("/health").json()
@@ -104,20 +123,20 @@ class Stack:
         return found[0]
 
     def kill(self) -> None:
-        """Kill the server alone, with -9."""
-        assert self._process is not None
-        self._process.kill()
-        self._process.wait()
+        """Kill the server alone, with -9; its keeper starts the next one."""
+        server = self.server
+        server.kill()
+        psutil.wait_procs([server])
 
     def stop(self) -> None:
         """Press Ctrl-C and wait for the end."""
         self.api.close()
-        if self._process is None or self._process.poll() is not None:
+        if self._process is None:
             return
-        self._process.send_signal(signal.SIGINT)
-        try:
-            self._process.wait(_STOP_SECONDS)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-            raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None
+        if keeper_of(DataFolder(self.data)) is not None:
+            keeper = self.process
+            keeper.send_signal(signal.SIGINT)
+            if psutil.wait_procs([keeper], _STOP_SECONDS)[1]:
+                os.killpg(self._process.pid, signal.SIGKILL)
+                raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}")
+        self._process.wait()

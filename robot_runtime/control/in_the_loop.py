@@ -26,12 +26,17 @@ class InTheLoop:
         self._send = send
         self._tell = tell
         self._heard = float("-inf")
-        self._present = False
+        self._told = False
 
     @property
     def present(self) -> bool:
         """Whether the simulator's last word is fresh."""
         return self._clock.now() - self._heard <= SILENCE
+
+    @property
+    def lost(self) -> bool:
+        """Whether it was here, and is no more."""
+        return self._heard > float("-inf") and not self.present
 
     def hear(self, data: bytes) -> None:
         """Pass on a word of the simulator's; what is no such word is dropped and logged."""
@@ -44,24 +49,13 @@ class InTheLoop:
         self._send(word)
 
     def tick(self) -> None:
-        """Tell where the simulator came or went."""
-        present = self.present
-        if present == self._present:
-            return
-        self._present = present
-        if present:
-            event = Event(
-                time=self._clock.now(), kind="simulator", severity="info", text="The simulator is here."
-            )
-        else:
-            event = Event(
-                time=self._clock.now(),
-                kind="simulator",
-                severity="alarm",
-                text=f"The simulator has been silent for {SILENCE:g} s; without it the board feels nothing. "
-                "Look whether it runs and whether the network between is well.",
-            )
-        self._tell(event)
+        """Tell where the simulator came; that it is lost is a fault."""
+        if self.present and not self._told:
+            self._told = True
+            now, text = self._clock.now(), "The simulator is here."
+            self._tell(Event(time=now, kind="simulator", severity="info", text=text))
+        elif not self.present:
+            self._told = False
 
     def refusals(self) -> list[str]:
         """Why arming would be refused now."""

@@ -1,46 +1,37 @@
-"""Who may move the fins: arming with reasons, stopping without, and noticing a board that disarms itself."""
+"""Who may move the fins: the robot's state, arming with reasons, stopping without, and what faults do."""
 
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 from robot_runtime.clock import Clock
+from robot_runtime.control.alarms import Alarms
+from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.fin_check import FinCheck
 from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.control.pilot import Pilot
+from robot_runtime.control.transitions import ARMED, Trigger, follow
+from robot_runtime.control.watch import Line, Watch
 from robot_runtime.errors import Refused
-from robot_runtime.link.pace import airtime, stale_after
-from robot_runtime.packets import Depth, Hello, Packet, SensorFault, Start, Status, StatusFlag, Stop
-from robot_runtime.samples import Event, Mode, Severity
+from robot_runtime.link.pace import airtime
+from robot_runtime.packets import Hello, Start, Status, StatusFlag, Stop
+from robot_runtime.samples import Alarm, Event, Mode, Severity
 
-DEPTH_STALE = 0.5
-"""s without a depth after which there is nothing to steer by; more where the line is too slow for that."""
-_STATUS_STALE = 0.5
 _ARM_TRIES = 10
 ARM_WAIT = 0.1
 """s between two STARTs."""
 _ARM_BYTES = 96
 """What START and the answer wait for and are themselves, on the line."""
+ALONE_MAX = 3600.0
+"""s for which a mission may go on without the server, at most."""
 
-
-class Line(Protocol):
-    """What the supervisor needs of the connection to the board."""
-
-    text: str
-    baud: int
-
-    @property
-    def connected(self) -> bool:
-        """Whether the board answers and speaks the same definitions."""
-        ...
-
-    @property
-    def board(self) -> Hello | None:
-        """The greeting of the board."""
-        ...
-
-    def send(self, *packets: Packet) -> bool:
-        """Hand these packets to the line; False where nobody is there to take them."""
-        ...
+_ARM: dict[Mode, Trigger] = {"automatic": "arm", "manual": "arm manual", "test": "check fins"}
+_CHANGE: dict[Mode, Trigger] = {"manual": "take over", "automatic": "hand back"}
+_ARMED_WORDS: dict[Mode, str] = {
+    "automatic": "Armed.",
+    "manual": "Armed, by hand.",
+    "test": "The fins are checked.",
+}
 
 
 @dataclass(slots=True)
@@ -49,15 +40,17 @@ class Arming:
 
     board: Hello | None
     tries: int
+    mode: Mode = "automatic"
+    alone: float = 0.0
     over: bool = False
     refusal: str = ""
 
 
 class Supervisor:
-    """Knows whether the robot is armed, and decides whether it may be.
+    """Holds the robot's state, which changes as `transitions` says and in no other way.
 
-    `tick` runs with the control loop; `arm` and `stop` may be called from any thread. Where there is a
-    `loop`, the board must be one for it.
+    `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
+    the board must be one for it; with `heartbeat` a server must be heard so often (s).
     """
 
     def __init__(
@@ -66,18 +59,20 @@ class Supervisor:
         line: Line,
         tell: Callable[[Event], None],
         loop: InTheLoop | None = None,
+        heartbeat: float | None = None,
     ) -> None:
+        self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
+        self.pilot = Pilot(clock)
+        self.watch = Watch(clock, line, self.pilot, loop, heartbeat)
+        self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line
         self._tell = tell
         self._loop = loop
+        self._heartbeat = heartbeat
+        self._alarms = Alarms(clock, tell)
         self._arming: Arming | None = None
-        self._status: Status | None = None
-        self._status_time = float("-inf")
-        self._depth_time = float("-inf")
-        self._depth_stale = stale_after(DEPTH_STALE, Depth, line.baud)
-        self._status_stale = stale_after(_STATUS_STALE, Status, line.baud)
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
         self._changed = threading.Condition(threading.RLock())
@@ -85,75 +80,71 @@ class Supervisor:
     @property
     def armed(self) -> bool:
         """Whether the board is armed and this process armed it."""
-        return self.armed_since is not None
+        return self.mode in ARMED
 
     @property
-    def mode(self) -> Mode:
-        """The mode in one word."""
-        return "automatic" if self.armed else "disarmed"
+    def alarms(self) -> list[Alarm]:
+        """What is wrong, or was and is not acknowledged."""
+        with self._changed:
+            return self._alarms.listed()
 
-    def see_depth(self) -> None:
-        """Note that a depth has come now.
-
-        Its arrival counts, not its stamp: an emulated board that had to pause keeps its clock behind.
-        """
-        self._depth_time = self._clock.now()
+    @property
+    def board_armed(self) -> bool:
+        """Whether the board says that it is armed."""
+        status = self.watch.status
+        return status is not None and bool(status.flags & StatusFlag.ARMED)
 
     def see_status(self, status: Status) -> None:
         """Note what the board says of itself now."""
         with self._changed:
-            old, self._status, self._status_time = self._status, status, self._clock.now()
-            if old is not None and old.epoch != status.epoch:
-                self._disarmed("alarm", "The board restarted by itself; it is disarmed.")
+            old = self.watch.status
+            self.watch.see_status(status)
+            if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
+                # Its silence may have been noticed first; this is what it was.
+                self._fail("board_restarted")
             elif self.armed and not status.flags & StatusFlag.ARMED:
-                self._disarmed("alarm", "The board disarmed itself; the console says why.")
+                self._fail("board_disarmed")
             self._changed.notify_all()
 
     def refusals(self) -> list[str]:
         """Why arming would be refused now; empty where it would not."""
-        if not self._line.connected:
-            return [f"There is no connection to the board: {self._line.text}."]
-        now, status = self._clock.now(), self._status
-        if status is None or now - self._status_time > self._status_stale:
-            return ["The board says nothing of its state. Wait a moment, or reset it."]
-        if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
-            return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
-        reasons = self._loop.refusals() if self._loop else []
-        if reasons:
-            return reasons
-        reasons = [_FAULTS[fault] for fault in SensorFault if status.faults & fault]
-        if now - self._depth_time > self._depth_stale:
-            reasons.append("There is no fresh depth. Check the pressure sensor.")
-        if status.flags & StatusFlag.BATTERY_LOW:
-            reasons.append(f"The battery is low ({status.battery:.2f} V). Charge it.")
-        return reasons
+        with self._changed:
+            failsafe = [_ACKNOWLEDGE] if self.mode == "failsafe" else []
+            return [*failsafe, *self.watch.refusals()]
 
-    def arm(self) -> None:
+    def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
         """Arm the board, and wait until it is.
 
         Raises Refused with every reason where it may not be, or does not follow.
         """
         with self._changed:
-            arming = self.begin_arming()
+            arming = self.begin_arming(mode, alone)
             while not arming.over:
                 self._changed.wait_for(lambda: self.board_armed or arming.over, ARM_WAIT)
                 self.go_on_arming()
             if arming.refusal:
                 raise Refused(arming.refusal)
 
-    def begin_arming(self) -> Arming:
-        """Ask the board to arm; `go_on_arming` does the rest. Raises Refused with every reason against it."""
-        if self.armed:
-            return Arming(None, tries=0, over=True)
-        reasons = self.refusals()
-        board = self._line.board
-        if reasons or board is None:
-            raise Refused(" ".join(reasons))
+    def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
+        """Ask the board to arm; `go_on_arming` does the rest. Raises Refused with every reason against it.
+
+        `alone` are the s for which the robot may go on without the server.
+        """
         with self._changed:
+            if self.mode == mode != "test":
+                return Arming(None, tries=0, over=True)
+            if self.armed:
+                raise Refused(f"The robot is armed, in {self.mode}. Change its mode, or STOP it first.")
+            reasons = self.refusals()
+            board = self._line.board
+            if reasons or board is None:
+                raise Refused(" ".join(reasons))
             if self._arming is None:
-                self._arming = arming = Arming(board, self._arm_tries)
+                self._arming = arming = Arming(board, self._arm_tries, mode, alone)
                 self._ask_to_arm(arming)
                 return arming
+            if self._arming.mode != mode:
+                raise Refused(f"The robot is being armed for {self._arming.mode} just now.")
             return self._arming
 
     def go_on_arming(self) -> None:
@@ -163,34 +154,81 @@ class Supervisor:
             if arming is None:
                 return
             if self.board_armed:
-                self.armed_since = self._clock.now()
-                self._end_arming("")
-                self._event("armed", "info", "Armed.")
+                self._become_armed(arming)
             elif arming.tries > 0:
                 self._ask_to_arm(arming)
             else:
                 self._line.send(Stop())
                 self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
+    def change_mode(self, mode: Mode) -> None:
+        """Hand over between pilot and controller while armed. Raises Refused with every reason against it."""
+        with self._changed:
+            if self.mode == mode:
+                return
+            if mode not in _CHANGE or follow(self.mode, _CHANGE[mode]) is None:
+                raise Refused(f"The robot is {self.mode}; only while it is armed can it change to {mode}.")
+            if mode == "automatic" and (reasons := self.watch.depth_refusals()):
+                raise Refused(" ".join(reasons))
+            self.pilot.begin()
+            self._go(_CHANGE[mode])
+            text = "The pilot steers." if mode == "manual" else "The controller steers."
+            self._event("mode", "info", text)
+
+    def acknowledge(self) -> None:
+        """Somebody has seen the alarms; after a failsafe the robot may be armed again."""
+        with self._changed:
+            self._alarms.acknowledge()
+            if self._go("acknowledge"):
+                self._event("mode", "info", "The failsafe is acknowledged; the robot is disarmed.")
+
     def stop(self, why: str, severity: Severity = "info") -> None:
         """Disarm at once, whatever was before."""
         with self._changed:
-            self._end_arming("Stopped before the board was armed.")
             # First, so that the board's own word of it is no surprise.
-            self._disarmed(severity, why)
+            self._leave("stop", severity, why)
+        self._line.send(Stop())
+
+    def fail(self, fault: str) -> None:
+        """Stop for this fault, by its name, which is over at once."""
+        with self._changed:
+            if self.armed:
+                self._fail(fault)
+
+    def end_fin_check(self) -> None:
+        """Disarm after a fin check, and tell what it found."""
+        with self._changed:
+            failed = self.fin_check.failed()
+            if failed:
+                moved = "; ".join(f"{fin} {how}" for fin, how in failed.items())
+                self._alarms.note("fin_failing", f"({moved})")
+            words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _FINS_WELL
+            self._leave("checked", "caution" if failed else "info", words)
         self._line.send(Stop())
 
     def tick(self) -> None:
-        """Look for what should end an armed run; repeat STOP until the board follows."""
+        """Look for faults, and do what each demands; repeat STOP until the board follows."""
         if self._loop is not None:
             self._loop.tick()
         with self._changed:
-            if self.armed and not self._line.connected:
-                self._disarmed("alarm", f"The connection to the board was lost: {self._line.text}.")
-            elif self.armed and self._clock.now() - self._depth_time > self._depth_stale:
-                self.stop("The depth is too old to steer by; the fins are stopped.", "alarm")
-            elif not self.armed and self._arming is None and self.board_armed:
+            active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}
+            wrong = self.watch.wrong(self.mode, active)
+            self._alarms.update(wrong)
+            for name in wrong:
+                if BY_NAME[name].stops(self.mode):
+                    self._all_stop()
+            if not self.armed and self._arming is None and self.board_armed:
                 self._line.send(Stop())
+
+    def _become_armed(self, arming: Arming) -> None:
+        self._end_arming("")
+        self.watch.server_patience = self._heartbeat and max(self._heartbeat, arming.alone)
+        self.watch.note_armed()
+        self.pilot.begin()
+        self.fin_check.begin()
+        self.armed_since = self._clock.now()
+        self._go(_ARM[arming.mode])
+        self._event("armed", "info", _ARMED_WORDS[arming.mode])
 
     def _ask_to_arm(self, arming: Arming) -> None:
         # Repeated because the board wants half a second of steady traffic first. It ignores what it has, and
@@ -205,32 +243,35 @@ class Supervisor:
             self._arming = None
         self._changed.notify_all()
 
-    @property
-    def board_armed(self) -> bool:
-        """Whether the board says that it is armed."""
-        return self._status is not None and bool(self._status.flags & StatusFlag.ARMED)
+    def _fail(self, name: str) -> None:
+        """An alarm for something that is over already, and all-stop."""
+        self._alarms.note(name)
+        self._all_stop()
 
-    def _disarmed(self, severity: Severity, text: str) -> None:
-        if self.armed:
+    def _all_stop(self) -> None:
+        if self._leave("fault", "alarm", f"All-stop: the fins rest. {_ACKNOWLEDGE}"):
+            self._line.send(Stop())
+
+    def _leave(self, trigger: Trigger, severity: Severity, why: str) -> bool:
+        """Out of whatever armed state it is; whether it was in one."""
+        was_armed = self.armed
+        self._end_arming("Stopped before the board was armed.")
+        self._go(trigger)
+        if was_armed:
             self.armed_since = None
-            self._event("disarmed", severity, text)
+            self.watch.note_stopped()
+            self._event("disarmed", severity, why)
+        return was_armed
+
+    def _go(self, trigger: Trigger) -> bool:
+        after = follow(self.mode, trigger)
+        if after is not None:
+            self.mode = after
+        return after is not None
 
     def _event(self, kind: str, severity: Severity, text: str) -> None:
         self._tell(Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
 
 
-_WRONG_FIRMWARE = (
-    "The board runs the firmware for hardware in the loop, which moves nothing. Upload the robot's own, or "
-    "set robot.mode to hil."
-)
-_NO_HIL_FIRMWARE = (
-    "The board does not run the firmware for hardware in the loop. Upload build/firmware/hil/robot.hex."
-)
-_FAULTS = {
-    SensorFault.IMU: "The IMU does not answer.",
-    SensorFault.PRESSURE: "The pressure sensor does not answer.",
-    SensorFault.FIN_FRONT_RIGHT: "The front right fin does not answer.",
-    SensorFault.FIN_BACK_RIGHT: "The back right fin does not answer.",
-    SensorFault.FIN_BACK_LEFT: "The back left fin does not answer.",
-    SensorFault.FIN_FRONT_LEFT: "The front left fin does not answer.",
-}
+_ACKNOWLEDGE = "Acknowledge the alarms before the robot is armed again."
+_FINS_WELL = "Fin check: all four fins followed."

@@ -9,6 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from robot_runtime.config import SET_POINT, VISION_RATE, ConfigError, Range, parse, place
 from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.supervisor import ALONE_MAX
+from robot_runtime.samples import Steering
 from robot_runtime.simulation.faults import Fault, Kind, check_sensor
 from robot_runtime.simulation.parameters import Vector
 from robot_runtime.simulation.surroundings import Current, Trim, Waves, check_beacons
@@ -49,10 +51,12 @@ class Event(ABC):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arm(Event):
-    """Arm the robot."""
+    """Arm the robot; it may go on without the server for `alone` s."""
 
     do = "arm"
     to = "runtime"
+
+    alone: Annotated[float, Range(0, ALONE_MAX)] = 0.0
 
     @property
     def words(self) -> str:
@@ -71,6 +75,19 @@ class Stop(Event):
     def words(self) -> str:
         """What happens, in a few words."""
         return "STOP"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Acknowledge(Event):
+    """Acknowledge the alarms, so that the robot may be armed again after a failsafe."""
+
+    do = "acknowledge"
+    to = "runtime"
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return "Alarms acknowledged"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,6 +131,21 @@ class ChooseController(Event):
         """What happens, in a few words."""
         gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
         return f"Controller {self.name}" + (f": {gains}" if gains else "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Steer(Event):
+    """Where it swims while it holds its depth."""
+
+    do = "steering"
+    to = "runtime"
+
+    by: Steering
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        return "Swim towards the light" if self.by == "beacons" else "Stay"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -324,8 +356,10 @@ class Mark(Event):
 EVENTS: tuple[type[Event], ...] = (
     Arm,
     Stop,
+    Acknowledge,
     SetPoints,
     ChooseController,
+    Steer,
     Card,
     Look,
     Beacons,

@@ -187,7 +187,7 @@ class _Performance:
     def _do(self, event: Event, now: float) -> None:
         stage = self._stage
         if isinstance(event, Arm):
-            self._arming = stage.robot.supervisor.begin_arming(), event
+            self._arming = stage.robot.supervisor.begin_arming(alone=event.alone), event
             self._ask_again = now + ARM_WAIT
         elif isinstance(event, Line):
             stage.board.line(event.command)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from hashlib import sha256
+from random import Random
 from typing import Protocol, Self
 
 from robot_runtime.clock import SimulatedClock
@@ -91,6 +92,8 @@ class Stage:
         self._at_surface = STILL_WATER._replace(
             pressure=scenario.robot.surface_pressure, temperature=scenario.robot.temperature
         )
+        # No sensor is without noise, and one that is counts as frozen.
+        self._noise = Random(f"{scenario.seed} prelude").gauss
         self._broken: frozenset[str] = frozenset()
         self._camera: Camera | None = None
         self.robot = Robot(scenario, self.clock, send, self._open_camera)
@@ -125,7 +128,8 @@ class Stage:
 
     def _feel(self, fins: FinMotion) -> Reading:
         if self._period < 0:
-            return self._at_surface
+            pressure = self._noise(self._at_surface.pressure, self.scenario.robot.pressure.noise)
+            return self._at_surface._replace(pressure=pressure)
         reading = self.simulator.advance(PERIOD, fins)
         self._swum += 1
         if self._swum % _TRUTH_EVERY == 0:

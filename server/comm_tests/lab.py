@@ -22,8 +22,7 @@ from robot_runtime.comm_test.runner import estimate_seconds
 from robot_runtime.errors import Refused
 from server.comm_tests.runs import End, Runs
 from server.comm_tests.shapes import Cell, Phase, Place
-from server.processes.parts import describe_status
-from server.processes.process import PipedProcess
+from server.processes.process import PipedProcess, describe_status
 from server.settings import Settings
 from server.store import StoreError
 

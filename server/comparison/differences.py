@@ -24,6 +24,7 @@ _STATE: Mapping[str, str] = {
     "set_point_detected": "Set point while the colour is seen, m",
     "control_rate": "Control rate, Hz",
     "vision_rate": "Vision rate, Hz",
+    "steering": "Course",
     "vision_colour": "Colour looked for",
     "camera": "Camera",
     "baud": "Serial line, baud",

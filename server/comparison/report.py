@@ -30,7 +30,9 @@ DEPTHS = frozenset(
         "truth.position_2",
     )
 )
-HIGH_FIRST, HIGH, GAP, EDGE = 300, 180, 46, 60
+TOLD = frozenset({"armed", "disarmed", "controller"})
+"""Kinds of events that have a sign above the charts, as what is no mere information has."""
+HIGH_FIRST, HIGH, GAP, EDGE, ROW = 300, 180, 46, 60, 22
 FONT = "Inter, Helvetica, Arial, sans-serif"
 ALIGNED = {"start": "the start of the recording", "armed": "arming"}
 WANTED = ("set_point", "wanted")
@@ -66,10 +68,11 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
     if not charts or not laid:
         return "<p>There is nothing to draw: no signal, or no session that has this moment.</p>"
     heights = [HIGH_FIRST, *[HIGH] * (len(charts) - 1)]
-    inside = sum(heights) + GAP * len(heights)
+    signs = ROW * len(laid)
+    inside = signs + sum(heights) + GAP * len(heights)
     figure = go.Figure()
     for number, (title, signals) in enumerate(charts, 1):
-        top = sum(heights[: number - 1]) + GAP * number
+        top = signs + sum(heights[: number - 1]) + GAP * number
         axis: dict[str, Any] = {
             "domain": [1 - (top + heights[number - 1]) / inside, 1 - top / inside],
             "gridcolor": "#d9e0e5",
@@ -93,7 +96,11 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
             for signal in signals:
                 if signal.name in session.series:
                     figure.add_trace(_trace(session, signal, _colour(place), number, len(signals)))
-    for place, session in laid:
+    axis_of_signs = len(charts) + 1
+    shown = {"domain": [1 - signs / inside, 1], "range": [len(laid) - 0.5, -0.5], "visible": False}
+    figure.update_layout({f"yaxis{axis_of_signs}": shown})
+    for row, (place, session) in enumerate(laid):
+        figure.add_trace(_signs(session, row, _colour(place), axis_of_signs))
         for marker in session.markers:
             figure.add_vline(marker.time - (session.offset or 0), line_dash="dot", line_color=_colour(place))
     figure.update_layout(
@@ -160,6 +167,28 @@ def _trace(session: Compared, signal: Signal, colour: str, number: int, together
         line={"color": colour, "width": 1.5, "dash": "dash" if wanted else "solid"},
         line_shape="hv" if wanted else "linear",
         hovertemplate=f"%{{y:.4~g}} {signal.unit}",
+    )
+
+
+def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
+    """What happened: a stroke for what was to be expected, a triangle for a caution or an alarm."""
+    told = [one for one in session.events if one.kind in TOLD or one.severity != "info"]
+    happened = [(one, "line-ns" if one.severity == "info" else "triangle-down") for one in told]
+    happened += [(one, "diamond") for one in session.markers]
+    return go.Scatter(
+        x=[one.time - (session.offset or 0.0) for one, _ in happened],
+        y=[row] * len(happened),
+        yaxis=f"y{axis}",
+        name=session.name,
+        mode="markers",
+        text=[escape(one.text) for one, _ in happened],
+        hovertemplate="%{text}",
+        marker={
+            "symbol": [symbol for _, symbol in happened],
+            "size": 9,
+            "color": colour,
+            "line": {"width": 2, "color": colour},
+        },
     )
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from signal import SIGTERM
 from typing import Any
 
-from server.processes.parts import describe_status
-from server.processes.process import PipedProcess
+from server.processes.process import PipedProcess, describe_status
 
 WORDS_BYTES = 2_000
 """Of what is no JSON the end is kept: the last words of a process that fails."""

@@ -22,17 +22,14 @@ from robot_runtime.firmware import firmware_path
 from robot_runtime.packets import DEFINITIONS_HASH
 from robot_runtime.samples import Severity
 from server import VERSION
+from server.processes.backoff import Backoff, describe_pause
 from server.processes.logs import PartLog
 from server.processes.pidfile import end_parts, pid_file
-from server.processes.process import AdoptedProcess, Process
+from server.processes.process import AdoptedProcess, Process, describe_status
 from server.settings import DataFolder, Settings
 
 log = logging.getLogger(__name__)
 
-BACKOFF_FIRST = 0.2
-BACKOFF_MAX = 5.0
-STEADY_SECONDS = 10.0
-"""A part that lived this long is started again quickly when it ends."""
 TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
 LINES_TOLD = 3
@@ -46,6 +43,8 @@ SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connec
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
+SeeDown = Callable[[str, str], None]
+"""Told a part's name, and in a sentence how it has ended unexpectedly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +72,7 @@ class Command:
 class Part:
     """One supervised process; `run` is the folder that tells the next server of it."""
 
-    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, tell: Tell) -> None:
+    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, see_down: SeeDown) -> None:
         self.command = command
         self.state: State = "waiting"
         self.since = clock.now()
@@ -81,9 +80,9 @@ class Part:
         self._log = log
         self._pid_file = pid_file(run, command.name)
         self._clock = clock
-        self._tell = tell
+        self._see_down = see_down
         self._process: Process | AdoptedProcess | None = None
-        self._backoff = BACKOFF_FIRST
+        self._backoff = Backoff()
 
     @property
     def pid(self) -> int | None:
@@ -101,11 +100,9 @@ class Part:
                     await self._wait_for_needs()
                     began = self._clock.now()
                 problem = await self._run_once()
-                if self._clock.now() - began >= STEADY_SECONDS:
-                    self._backoff = BACKOFF_FIRST
-                self._fail(problem)
-                await asyncio.sleep(self._backoff)
-                self._backoff = min(2 * self._backoff, BACKOFF_MAX)
+                pause = self._backoff.after(self._clock.now() - began)
+                self._fail(problem, pause)
+                await asyncio.sleep(pause)
         finally:
             await self.end()
             self._set("ended")
@@ -163,14 +160,11 @@ class Part:
         self._process = None
         self._pid_file.remove()
 
-    def _fail(self, problem: str) -> None:
+    def _fail(self, problem: str, pause: float) -> None:
         self.problem = problem
         self._set("failed")
-        self._tell(
-            self.command.name,
-            "caution",
-            f"The {self.command.title} {problem}. It is started again in {self._backoff:.1f} s.",
-        )
+        text = f"The {self.command.title} {problem}. It is started again {describe_pause(pause)}."
+        self._see_down(self.command.name, text)
 
     async def end(self) -> None:
         """End the process, also one that a killed server has left and that was not taken over yet."""
@@ -199,10 +193,14 @@ class Part:
 class Parts:
     """All parts of this robot, by name."""
 
-    def __init__(self, commands: Sequence[Command], folder: DataFolder, clock: Clock, tell: Tell) -> None:
+    def __init__(
+        self, commands: Sequence[Command], folder: DataFolder, clock: Clock, see_down: SeeDown
+    ) -> None:
         self._run = folder.run
         self._parts = {
-            command.name: Part(command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, tell)
+            command.name: Part(
+                command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
+            )
             for command in commands
         }
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -287,16 +285,3 @@ def plan(settings: Settings) -> list[Command]:
         water,
         sight,
     ]
-
-
-def describe_status(status: int | None) -> str:
-    """How a process ended, in words that go on after its name; None where nobody knows."""
-    if status is None:
-        return "has ended; how is not known, for an earlier server had started it"
-    if status >= 0:
-        return f"has ended with exit status {status}"
-    try:
-        name = signal.Signals(-status).name
-    except ValueError:
-        name = str(-status)
-    return f"was ended by signal {name}"

@@ -179,3 +179,16 @@ def started_at(pid: int) -> int | None:
     fields = status.rpartition(")")[2].split()
     state, start = fields[0], fields[19]
     return None if state in "ZX" else int(start)
+
+
+def describe_status(status: int | None) -> str:
+    """How a process ended, in words that go on after its name; None where nobody knows."""
+    if status is None:
+        return "has ended; how is not known, for an earlier server had started it"
+    if status >= 0:
+        return f"has ended with exit status {status}"
+    try:
+        name = Signals(-status).name
+    except ValueError:
+        name = str(-status)
+    return f"was ended by signal {name}"

@@ -9,14 +9,15 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from robot_runtime.messages import Refused
 from robot_runtime.packets import DEFINITIONS_HASH
+from server.access.admit import may_say
+from server.access.identity import Identity
+from server.access.policy import MESSAGES
 from server.assembly import Assembly
 from server.live.bridge import RuntimeSilent
-from server.live.hub import Client, Evicted
+from server.live.hub import POLICY_VIOLATION, Client, Evicted
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""
-POLICY_VIOLATION = 1008
-"""WebSocket close code for a client that breaks the rules."""
 FAREWELL_SECONDS = 1.0
 WATCHABLE = frozenset({"picture", "observer"})
 """Topics of pictures that a page can have."""
@@ -34,6 +35,7 @@ class _Conversation:
     def __init__(self, assembly: Assembly, socket: WebSocket) -> None:
         self._assembly = assembly
         self._socket = socket
+        self._identity = Identity.of(socket)
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -56,7 +58,14 @@ class _Conversation:
                 client.answer({"op": "error", "text": str(problem)})
 
     def _obey(self, client: Client, message: dict[str, Any]) -> None:
-        match message.get("op"):
+        op = message.get("op")
+        if not isinstance(op, str) or op not in MESSAGES:
+            raise Nonsense(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
+        reason = may_say(self._identity, op)
+        if reason is not None:
+            client.answer({"op": "error", "text": reason})
+            return
+        match op:
             case "ping":
                 number = message.get("id")
                 if not isinstance(number, int | float | str):
@@ -66,8 +75,6 @@ class _Conversation:
                 self._stop(client)
             case "watch":
                 self._assembly.hub.show(client, _topics(message.get("pictures")))
-            case op:
-                raise Nonsense(f'Unknown op {json.dumps(op)[:80]}; there are "ping", "stop" and "watch".')
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -96,8 +103,13 @@ async def live(socket: WebSocket) -> None:
         kind = "bytes" if isinstance(data, bytes) else "text"
         await socket.send({"type": "websocket.send", kind: data})
 
+    identity = Identity.of(socket)
     try:
-        await assembly.hub.serve(send, _greeting(assembly), _Conversation(assembly, socket).listen)
+        # It may have been revoked while the socket opened; from here on the hub knows it.
+        if not assembly.access.still(identity):
+            raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
+        listen = _Conversation(assembly, socket).listen
+        await assembly.hub.serve(send, _greeting(assembly, identity), listen, identity.device)
     except WebSocketDisconnect:
         return
     except Evicted as reason:
@@ -109,7 +121,7 @@ async def live(socket: WebSocket) -> None:
             return
 
 
-def _greeting(assembly: Assembly) -> dict[str, Any]:
+def _greeting(assembly: Assembly, identity: Identity) -> dict[str, Any]:
     return {
         "op": "hello",
         "definitions": f"{DEFINITIONS_HASH:08x}",
@@ -117,6 +129,7 @@ def _greeting(assembly: Assembly) -> dict[str, Any]:
         "steady": assembly.clock.now(),
         "utc": time(),
         "page_version": assembly.page.version,
+        "you": {"name": identity.name, "role": identity.role},
     }
 
 

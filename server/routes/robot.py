@@ -1,11 +1,11 @@
 """The robot: its state, and commands to it. The runtime checks every command again, and may refuse it."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, HTTPException, Request
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from robot_runtime.samples import State
+from robot_runtime.samples import State, Steering
 from server.assembly import Assembly
 from server.routes.problems import answers
 
@@ -32,6 +32,20 @@ class SetPoints(BaseModel):
     model_config = ConfigDict(extra="forbid")
     default: Metres | None = None
     detected: Annotated[Metres | None, Field(description="while the wanted colour is seen")] = None
+
+
+class Driver(BaseModel):
+    """Who steers: the depth controller, or the pilot by hand."""
+
+    model_config = ConfigDict(extra="forbid")
+    mode: Literal["automatic", "manual"]
+
+
+class Course(BaseModel):
+    """Where it swims while it holds its depth."""
+
+    model_config = ConfigDict(extra="forbid")
+    by: Annotated[Steering, Field(description="none: nowhere; beacons: to the light that its detectors see")]
 
 
 class Card(BaseModel):
@@ -71,9 +85,35 @@ async def stop(request: Request) -> None:
 
 
 @router.post("/arm", status_code=204, summary="Arm", operation_id="armRobot", responses=COMMAND)
-async def arm(request: Request) -> None:
-    """Refused with every reason that stands against it."""
-    await Assembly.of(request).bridge.command("arm", {})
+async def arm(request: Request, driver: Driver | None = None) -> None:
+    """Refused with every reason that stands against it; without a body the depth controller steers."""
+    await Assembly.of(request).bridge.command("arm", driver.model_dump() if driver else {})
+
+
+@router.put("/mode", status_code=204, summary="Hand over", operation_id="putMode", responses=COMMAND)
+async def put_mode(request: Request, driver: Driver) -> None:
+    """Let the pilot or the depth controller steer the armed robot."""
+    await Assembly.of(request).bridge.command("mode", driver.model_dump())
+
+
+@router.post(
+    "/check-fins", status_code=204, summary="Check the fins", operation_id="checkFins", responses=COMMAND
+)
+async def check_fins(request: Request) -> None:
+    """Arm for some seconds, try each axis, and tell in an event which fins followed; then disarm."""
+    await Assembly.of(request).bridge.command("check_fins", {})
+
+
+@router.post(
+    "/acknowledge",
+    status_code=204,
+    summary="Acknowledge the alarms",
+    operation_id="acknowledgeAlarms",
+    responses=COMMAND,
+)
+async def acknowledge(request: Request) -> None:
+    """Say that all alarms were seen; after a failsafe the robot may be armed again from then on."""
+    await Assembly.of(request).bridge.command("acknowledge", {})
 
 
 @router.put(
@@ -94,6 +134,14 @@ async def put_controller(request: Request, controller: Controller) -> None:
 async def put_set_points(request: Request, set_points: SetPoints) -> None:
     """Set the wanted depths."""
     await Assembly.of(request).bridge.command("set_points", set_points.model_dump(exclude_none=True))
+
+
+@router.put(
+    "/steering", status_code=204, summary="Choose a course", operation_id="putSteering", responses=COMMAND
+)
+async def put_steering(request: Request, course: Course) -> None:
+    """Stay, or swim towards a light beacon."""
+    await Assembly.of(request).bridge.command("steering", course.model_dump())
 
 
 @router.put(

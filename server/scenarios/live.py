@@ -13,6 +13,7 @@ from robot_runtime.simulation.parameters import Parameters
 from server.live.bridge import Bridge, RuntimeSilent
 from server.live.health import Watch
 from server.processes.parts import Parts, Tell
+from server.scenarios.left import Left
 from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunCancelled, RunFailed
 from server.scenarios.surroundings import Before, Surroundings
@@ -48,6 +49,8 @@ class Live:
         self._parts = parts
         self._clock = clock
         self._tell = tell
+        self._left = Left(settings.data.scenario_before)
+        self._recovering = False
         self._surroundings = Surroundings(
             bridge, settings.data.board_socket if settings.emulated_board else None
         )
@@ -62,6 +65,7 @@ class Live:
         self.check(run.scenario)
         run.phase = "preparing"
         before = await self._surroundings.read(self._state())
+        await asyncio.to_thread(self._left.keep, before)
         try:
             await self._surroundings.prepare(run.scenario, before)
             await run.sleep(SETTLE_SECONDS)
@@ -69,6 +73,32 @@ class Live:
         finally:
             run.phase = "ending"
             await _whole(self._put_back(before))
+
+    async def recover(self) -> None:
+        """End what a killed server has left running: disarm, close the recording, put everything back."""
+        before = await asyncio.to_thread(self._left.read)
+        recording = self._recorder.session
+        session = recording.id if recording is not None and recording.origin == "scenario" else None
+        if before is None and session is None:
+            return
+        self._recovering = True
+        try:
+            while (state := self._watch.state()) is None:
+                await asyncio.sleep(LOOK_SECONDS)
+            if session is not None:
+                words = "The server was killed, and the scenario ends here."
+                await mark(self._store, session, self._clock.now(), words)
+            await self._finish(session)
+            # A runtime that has started since is as robot.toml says.
+            if before is not None and state["run"] == before.robot["run"]:
+                await self._put_back(before)
+            await asyncio.to_thread(self._left.forget)
+        finally:
+            self._recovering = False
+        words = (
+            "The server was killed in the middle of a scenario. The robot is disarmed, and as it was before."
+        )
+        self._tell("scenario", "caution", words)
 
     async def _record(self, run: Run) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
@@ -119,8 +149,8 @@ class Live:
             if pid != processes[name]:
                 raise RunFailed(f"The {name} ended in the middle of it, and with it what was set.")
 
-    async def _finish(self, session: int) -> None:
-        """Disarm, and close the recording with that in it."""
+    async def _finish(self, session: int | None) -> None:
+        """Disarm, and close the scenario's recording with that in it."""
         try:
             await self._surroundings.disarm()
             await asyncio.sleep(SETTLE_SECONDS)
@@ -133,9 +163,12 @@ class Live:
         if problems := await self._surroundings.put_back(before):
             told = " ".join(problems)
             self._tell("scenario", "caution", f"Not everything is as before the scenario. {told}")
+        await asyncio.to_thread(self._left.forget)
 
     def _occupied(self) -> list[str]:
         recording = self._recorder.session
+        if self._recovering:
+            return ["What a scenario has changed before the server ended is being put back. Wait a moment."]
         if self._settings.mode == "robot":
             return [
                 "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
@@ -150,6 +183,8 @@ class Live:
             reasons.append(f"“{recording.name}” is being recorded. Stop the recording first.")
         if state["armed"]:
             reasons.append("The robot is armed. STOP it first.")
+        elif state["mode"] == "failsafe":
+            reasons.append("The robot is in failsafe. Acknowledge its alarms first.")
         if not state["connected"]:
             reasons.append(f"There is no connection to the board: {state['connection']}.")
         reasons += [f"The {name} does not run." for name, pid in self._processes().items() if pid is None]

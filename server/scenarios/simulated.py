@@ -21,7 +21,7 @@ from robot_runtime.packets.layout import LayoutError
 from robot_runtime.scenario.document import Scenario
 from robot_runtime.topics import Block, read_blocks
 from server.live.notices import Notices
-from server.processes.parts import describe_status
+from server.processes.process import describe_status
 from server.scenarios.recording import begin, describe_session, mark
 from server.scenarios.run import Run, RunFailed
 from server.sessions.recorder import Recorder

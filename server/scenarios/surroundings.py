@@ -64,6 +64,7 @@ class Surroundings:
         await self._bridge.command(
             "set_points", {"default": control.set_point, "detected": control.set_point_detected}
         )
+        await self._bridge.command("steering", {"by": control.steering})
         await self._bridge.command("vision", {"rate": vision.rate, "colour": vision.colour})
         if vision.camera == "card":
             await self._bridge.command("card", {"colour": None})
@@ -102,6 +103,7 @@ class Surroundings:
                 "set_points",
                 {"default": robot["set_point_default"], "detected": robot["set_point_detected"]},
             ),
+            lambda: self._bridge.command("steering", {"by": robot["steering"]}),
             lambda: self._bridge.command(
                 "vision", {"rate": robot["vision_rate"], "colour": robot["vision_colour"]}
             ),

@@ -14,8 +14,8 @@ from server.models import Chunk, SessionRow
 from server.store import Store
 
 _STATE = BY_NAME["state"]
-RESUMED_ORIGINS = ("operator", "arming")
-"""A scenario is over where nobody goes on with its events, whatever is recorded."""
+RESUMED_ORIGINS = ("operator", "arming", "scenario")
+"""Not one in simulated time, which was computed by the server itself."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -202,7 +202,8 @@ def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack)
     epoch = stack.api.get("/robot").json()["epoch"]
     with Board(stack.data / "run/board.sock") as board:
         board.reset()
-    wait_for_state(stack, lambda state: not state["armed"] and state["epoch"] == epoch + 1)
+    wait_for_state(stack, lambda state: state["mode"] == "failsafe" and state["epoch"] == epoch + 1)
+    stack.api.post("/robot/acknowledge").raise_for_status()
     wait_for_state(stack, lambda state: state["refusals"] == [])
     # The chip wants half a second of steady traffic first, and says so where it refuses.
     wait_for_state(stack, lambda _: stack.api.post("/robot/arm").status_code == 204)

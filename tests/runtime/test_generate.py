@@ -4,7 +4,11 @@ import json
 import subprocess
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, typescript
+import pytest
+
+from robot_runtime.control.faults import FAULTS
+from robot_runtime.control.transitions import TRANSITIONS
+from robot_runtime.generate import cpp, json_schema, safety, typescript
 from robot_runtime.packets import DEFINITIONS_HASH, PACKETS, definitions
 from robot_runtime.topics import TOPICS, Kind
 
@@ -54,3 +58,18 @@ def test_the_page_knows_every_topic() -> None:
         assert f"  {topic.name}: " in text
         if topic.kind is Kind.ROWS:
             assert f"rowBytes: {topic.row_bytes}," in text
+
+
+def test_the_document_shows_the_states_and_the_faults_as_they_are_in_the_code() -> None:
+    text = (Path(__file__).resolve().parents[2] / "docs/safety.md").read_text()
+    assert safety.weave(text) == text
+    for one in TRANSITIONS:
+        assert f"    {one.before} --> {one.after}: {one.trigger}\n" in text
+        assert f"| {one.before} | {one.trigger} | {one.after} | {one.why} |\n" in text
+    for fault in FAULTS:
+        assert f"| `{fault.name}` | {fault.limit:g} s |" in text
+
+
+def test_a_document_without_its_marks_is_refused() -> None:
+    with pytest.raises(ValueError, match="lacks its marks of states"):
+        safety.weave("# Safety\n")

@@ -1,5 +1,6 @@
 """The runtime as its own process: a board on a pseudo-terminal below it, Zenoh above it."""
 
+import itertools
 import json
 import os
 import signal
@@ -16,7 +17,18 @@ import pytest
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
-from robot_runtime.packets import Debug, Depth, Hello, Navigation, Packet, Start, Status, StatusFlag, Stop
+from robot_runtime.packets import (
+    Debug,
+    Depth,
+    Hello,
+    Imu,
+    Navigation,
+    Packet,
+    Start,
+    Status,
+    StatusFlag,
+    Stop,
+)
 from robot_runtime.topics import Kind, read_blocks, read_rows
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
@@ -70,10 +82,13 @@ class Board:
             self._armed = False
 
     def _report(self) -> None:
+        # A sensor that hangs shows the same again and again; this one is well.
+        pressures = itertools.cycle((103_000, 103_010))
         while not self._ending.wait(0.02):
             if not self.silent:
-                depth = Depth(time=_micros(), depth=self.depth, pressure=103_000, temperature=20.0)
-                self.end.say(depth, self._status())
+                pressure = next(pressures)
+                depth = Depth(time=_micros(), depth=self.depth, pressure=pressure, temperature=20.0)
+                self.end.say(depth, _level(), self._status())
 
     def _status(self) -> Packet:
         flags = StatusFlag.HOST_ALIVE | (StatusFlag.ARMED if self._armed else 0)
@@ -162,6 +177,11 @@ def rig(tmp_path: Path) -> Iterator[Rig]:
     rig = Rig(tmp_path)
     yield rig
     rig.close()
+
+
+def _level() -> Imu:
+    rest = (0.0, 0.0, 0.0)
+    return Imu(time=_micros(), attitude=(1.0, 0.0, 0.0, 0.0), rate=rest, force=(0.0, 0.0, -9.81))
 
 
 def _micros() -> int:
@@ -264,8 +284,13 @@ def test_a_port_that_vanishes_disarms_and_its_return_does_not_arm(rig: Rig) -> N
     with pytest.raises(Refused, match="no connection"):
         rig.ask("arm")
     rig.board = Board(rig.board.path)
+    rig.listener.wait(lambda: len(rig.listener.newest_state()["refusals"]) == 1)
+    assert rig.listener.newest_state()["mode"] == "failsafe"
+    with pytest.raises(Refused, match="Acknowledge the alarms"):
+        rig.ask("arm")
+    rig.ask("acknowledge")
     rig.ready()
-    assert not rig.listener.newest_state()["armed"]
+    assert rig.listener.newest_state()["mode"] == "disarmed"
     assert rig.board.count(Start.type) == 0
 
 

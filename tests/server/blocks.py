@@ -48,6 +48,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "mode": "disarmed",
         "armed": False,
         "armed_since": None,
+        "alarms": [],
         "refusals": [],
         "connected": True,
         "connection": "connected",

@@ -20,11 +20,12 @@ from server.settings import Settings
 from server.web import make_server, open_socket
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
+from tests.shell import ShellToken, shell_headers
 
 
 @dataclass
 class Served:
-    """A running server, an HTTP client of it, and the runtime's end."""
+    """A running server, an HTTP client of it that has the shell's token, and the runtime's end."""
 
     settings: Settings
     assembly: Assembly
@@ -32,9 +33,15 @@ class Served:
     runtime: RuntimeEnd
 
     def connect(self, **options: Any) -> connect:
-        """A WebSocket to /api/live, as from the server's own page."""
+        """A WebSocket to /api/live, with the shell's token and as from the server's own page."""
         own = f"http://127.0.0.1:{self.settings.port}"
-        defaults: dict[str, Any] = {"origin": own, "max_size": None, "compression": None}
+        token = shell_headers(self.settings.data)
+        defaults: dict[str, Any] = {
+            "origin": own,
+            "max_size": None,
+            "compression": None,
+            "additional_headers": token,
+        }
         return connect(f"ws://127.0.0.1:{self.settings.port}/api/live", **(defaults | options))
 
     async def heard(self, topic: str) -> None:
@@ -65,7 +72,7 @@ async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIt
             try:
                 await until(lambda: server.started or running.done(), "the server to start")
                 url = f"http://127.0.0.1:{settings.port}/api"
-                async with httpx.AsyncClient(base_url=url, timeout=10) as api:
+                async with httpx.AsyncClient(base_url=url, timeout=10, auth=ShellToken(settings.data)) as api:
                     served = Served(settings, app.state.assembly, api, runtime)
                     await served.heard("stream")
                     await served.reached()

@@ -14,6 +14,7 @@ import psutil
 import pytest
 
 from server import VERSION
+from server.processes.keeper import keeper_of
 from server.processes.pidfile import pid_file, running_parts
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from tests.server.waiting import alive
@@ -41,7 +42,12 @@ def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
     command = [sys.executable, "-m", "server.cli", "run", "--port", str(port)]
     command += ["--config", str(settings.config), "--data", str(settings.data.path)]
     with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        command,
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
     ) as process:
         try:
             wait_for_answer(port, process)
@@ -52,15 +58,16 @@ def running(settings: Settings, port: int) -> Iterator[subprocess.Popen[str]]:
             process.wait(15)
 
 
-def wait_for_answer(port: int, process: subprocess.Popen[str]) -> None:
+def wait_for_answer(port: int, process: subprocess.Popen[str] | None) -> None:
     end = time.monotonic() + 20
-    while time.monotonic() < end and process.poll() is None:
+    while time.monotonic() < end and (process is None or process.poll() is None):
         try:
             httpx.get(f"http://127.0.0.1:{port}/api/health")
         except httpx.TransportError:
             time.sleep(0.05)
         else:
             return
+    assert process is not None, "the server does not answer any more"
     process.terminate()
     raise AssertionError(f"the server did not answer: {process.stdout and process.stdout.read()}")
 
@@ -92,7 +99,7 @@ def test_it_ends_in_order_and_leaves_nothing_behind(
         process.send_signal(number)
         output, _ = process.communicate(timeout=15)
         assert (process.returncode, "Traceback" in output) == (0, False)
-        assert f"http://127.0.0.1:{port}/" in output
+        assert f"http://localhost:{port}/" in output
         assert not any(child.is_running() for child in children)
 
 
@@ -103,11 +110,33 @@ def test_a_killed_server_leaves_the_runtime_to_the_next_one(settings: Settings, 
             assert time.monotonic() < end
             time.sleep(0.02)
         runtime = running_parts(settings.data.run)["runtime"].pid
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)
         process.wait()
     with running(settings, port):
         assert running_parts(settings.data.run)["runtime"].pid == runtime
         assert alive(runtime)
+    assert not alive(runtime)
+
+
+def test_a_killed_keeper_leaves_the_server_until_the_next_start_takes_its_place(
+    settings: Settings, port: int
+) -> None:
+    with running(settings, port) as process:
+        end = time.monotonic() + 10
+        while "runtime" not in running_parts(settings.data.run):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        runtime = running_parts(settings.data.run)["runtime"].pid
+        process.kill()
+        process.wait()
+        wait_for_answer(port, None)
+    with running(settings, port) as process:
+        end = time.monotonic() + 20
+        while keeper_of(settings.data) != process.pid:
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        wait_for_answer(port, process)
+        assert running_parts(settings.data.run)["runtime"].pid == runtime
     assert not alive(runtime)
 
 
@@ -191,7 +220,17 @@ def test_no_heavy_library_is_in_the_server_s_process() -> None:
     program = (
         "import sys, server.app; print(*sorted({'numpy', 'cv2', 'plotly', 'alembic'} & set(sys.modules)))"
     )
+    assert printed(program) == ""
+
+
+def test_what_the_server_loads_starts_no_thread() -> None:
+    """The keeper forks itself after it has loaded all that, which only a process without threads may."""
+    program = "import os, server.app, server.web; print(*os.listdir('/proc/self/task'), os.getpid())"
+    assert len(set(printed(program).split())) == 1
+
+
+def printed(program: str) -> str:
     result = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
-    assert result.stdout.strip() == ""
+    return result.stdout.strip()

@@ -444,6 +444,7 @@ export interface State {
   set_point: number;
   set_point_default: number;
   set_point_detected: number;
+  steering: 'none' | 'beacons';
   control_rate: number;
   vision_rate: number;
   vision_colour: string;

@@ -4,9 +4,9 @@ import pytest
 
 from robot_runtime.bus import Bus
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.control.node import ControlNode
+from robot_runtime.control.node import BEACON_STALE, ControlNode
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Depth, Navigation
+from robot_runtime.packets import Beacon, Depth, Navigation
 from robot_runtime.samples import Control, Detection, Document, Event
 
 
@@ -32,6 +32,10 @@ class Rig:
     def depth(self, metres: float) -> None:
         record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
         self.bus.publish_row("depth", self.clock.now(), record.to_bytes())
+
+    def lights(self, right: bool, left: bool) -> None:
+        record = Beacon(time=0, right=int(right), left=int(left))
+        self.bus.publish_row("beacon", self.clock.now(), record.to_bytes())
 
     def see(self, colour: str | None) -> None:
         now = self.clock.now()
@@ -88,7 +92,7 @@ def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
     for _ in range(12):
         rig.tick()
         set_points.append(rig.ticks[-1].set_point)
-    assert set_points == [1.0] * 10 + [0.5] * 2
+    assert set_points == [1.0] * 9 + [0.5] * 3
 
 
 def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
@@ -124,3 +128,27 @@ def test_set_points_out_of_range_are_refused(rig: Rig, depth: float) -> None:
         with pytest.raises(Refused, match="not between 0 and 10"):
             rig.node.set_points(*pair)
     assert (rig.node.set_point_default, rig.node.set_point_detected) == (0.5, 1.0)
+
+
+def test_it_steers_only_where_it_is_told_to(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.lights(right=True, left=False)
+    rig.tick()
+    assert (rig.commands[-1].x, rig.commands[-1].yaw) == (0.0, 0.0)
+    rig.node.steer("beacons")
+    rig.tick()
+    assert rig.commands[-1].x > 0
+    assert rig.commands[-1].yaw > 0
+    with pytest.raises(Refused, match="there is no steering 'home'"):
+        rig.node.steer("home")
+    assert rig.node.steering == "beacons"
+
+
+def test_a_light_that_was_seen_too_long_ago_is_looked_for(rig: Rig) -> None:
+    rig.node.steer("beacons")
+    rig.lights(right=True, left=True)
+    rig.clock.forward(BEACON_STALE)
+    rig.depth(0.5)
+    rig.tick()
+    assert rig.commands[-1].x == 0.0
+    assert rig.commands[-1].yaw != 0.0

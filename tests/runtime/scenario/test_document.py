@@ -63,8 +63,10 @@ depth = 3
 ALL_EVENTS = {
     "arm": "",
     "stop": "",
+    "acknowledge": "",
     "set_points": "detected = 1.5",
     "controller": "name = 'pid'\ngains = { kd = 1 }",
+    "steering": "by = 'beacons'",
     "card": "colour = 'yellow'",
     "vision": "rate = 8",
     "beacons": "positions = []",

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from math import dist
 from pathlib import Path
 from struct import Struct
 from typing import Any
@@ -64,6 +65,13 @@ def test_what_ships_arms_and_dives_towards_its_set_point(path: Path) -> None:
     assert len(told.between("imu", 1, 8)) == pytest.approx(700, abs=2)
     assert len(told.between("truth", 1, 8)) == pytest.approx(140, abs=1)
     assert told.documents["state"][-1]["armed"] is False
+
+
+def test_the_beacon_approach_reaches_both_lights() -> None:
+    told = perform((ROOT / "robot_runtime/scenario/shipped/beacon_approach.toml").read_text())
+    for light, start, end in (((-1.0, 3.0), 0.0, 45.0), ((3.0, 0.0), 45.0, 89.0)):
+        nearest = min(dist(light, one.position[:2]) for one in told.between("truth", start, end))
+        assert nearest < 0.3
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_gives_others() -> None:

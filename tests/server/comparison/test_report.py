@@ -24,6 +24,7 @@ def test_it_is_one_file_with_all_that_it_needs(store: Store, settings: Settings,
     assert "Time 0 is arming." in text
     assert "Step from 0.00 m to 0.50 m." in text
     assert "Plotly.newPlot" in text
+    assert text.count('"symbol":["line-ns"') == 2
     assert 'src="http' not in text
     assert 'rel="stylesheet"' not in text
 

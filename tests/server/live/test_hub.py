@@ -22,7 +22,7 @@ class Page:
         self.reading.set()
         self.gone = asyncio.Event()
         self.client: Client | None = None
-        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen))
+        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen, device=1))
 
     @property
     def texts(self) -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+import server.processes.backoff as backoff_module
 import server.processes.parts as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig
@@ -28,9 +29,7 @@ class Crew:
         self.told: list[tuple[str, str]] = []
         data = DataFolder(folder)
         make_folders(data)
-        self.parts = Parts(
-            commands, data, SteadyClock(), lambda kind, _, text: self.told.append((kind, text))
-        )
+        self.parts = Parts(commands, data, SteadyClock(), lambda name, text: self.told.append((name, text)))
 
     def part(self, name: str) -> Part:
         part = self.parts.get(name)
@@ -60,8 +59,8 @@ def run(crew: Crew, scenario: Callable[[], Awaitable[None]]) -> None:
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parts_module, "BACKOFF_FIRST", 0.01)
-    monkeypatch.setattr(parts_module, "BACKOFF_MAX", 0.04)
+    monkeypatch.setattr(backoff_module, "FIRST", 0.01)
+    monkeypatch.setattr(backoff_module, "MAX", 0.04)
 
 
 def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path) -> None:
@@ -80,7 +79,8 @@ def test_what_dies_is_told_with_its_last_words_and_started_again(tmp_path: Path)
         assert [kind for kind, _ in crew.told] == ["engine", "engine"]
         assert "The part engine has ended with exit status 1." in crew.told[0][1]
         assert "no oil / broken 0" in crew.told[0][1]
-        assert "started again in 0.0 s" in crew.told[0][1]
+        assert "It is started again at once." in crew.told[0][1]
+        assert "It is started again in 0.0 s." in crew.told[1][1]
 
     run(crew, scenario)
     assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
@@ -104,7 +104,7 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pauses: list[float] = []
-    lives = iter([0, 1, 2, 3, 20, 0])
+    lives = iter([0, 1, 2, 3, 4, 20, 0])
     clock = SimulatedClock()
     part = Part(Command("engine", "engine", ()), PartLog(tmp_path), tmp_path, clock, lambda *_: None)
 
@@ -114,14 +114,14 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
 
     async def pause(seconds: float) -> None:
         pauses.append(seconds)
-        if len(pauses) == 6:
+        if len(pauses) == 7:
             raise asyncio.CancelledError
 
     monkeypatch.setattr(part, "_run_once", live)
     monkeypatch.setattr(asyncio, "sleep", pause)
     with suppress(asyncio.CancelledError):
         asyncio.run(part.run())
-    assert pauses == [0.01, 0.02, 0.04, 0.04, 0.01, 0.02]
+    assert pauses == [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]
 
 
 def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -190,6 +190,20 @@ def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
     stack.wait_ready()
 
 
+def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: Stack) -> None:
+    before = settings_of(stack)
+    begin_long(stack)
+    session = state(stack)["active"]["session"]
+    stack.kill()
+    stack.start()
+    stack.wait_ready()
+    wait(lambda: settings_of(stack) == before, "everything to be as before")
+    wait(lambda: not (stack.data / "scenario-before.json").exists(), "nothing to be left to put back")
+    marks = query(stack, f"SELECT text FROM marker WHERE session_id = {session} ORDER BY id")
+    assert marks[-1] == ("The server was killed, and the scenario ends here.",)
+    assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
+
+
 def test_what_is_refused_says_why(stack: Stack) -> None:
     hull = SHORT + "[robot]\nmass = 3.1\n"
     assert (

@@ -25,6 +25,7 @@ STATE = {
     "controllers": [{"name": "pid", "gains": [{"name": "kp", "value": 7.0}]}],
     "set_point_default": 0.9,
     "set_point_detected": 1.1,
+    "steering": "beacons",
     "vision_rate": 4.0,
     "vision_colour": "yellow",
     "card": "red",
@@ -162,6 +163,7 @@ def test_everything_is_put_back(
         ("controller", {"name": "pid", "gains": {"kp": 7.0}}),
         ("controller", {"name": "bang_bang"}),
         ("set_points", {"default": 0.9, "detected": 1.1}),
+        ("steering", {"by": "beacons"}),
         ("vision", {"rate": 4.0, "colour": "yellow"}),
         ("card", {"colour": "red"}),
     ]

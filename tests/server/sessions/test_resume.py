@@ -223,9 +223,11 @@ def test_a_simulator_that_has_begun_anew_is_noted_as_a_gap(wreck: Wreck) -> None
 
 @pytest.mark.parametrize(
     "change",
-    [{"boot": "another"}, {"boot": ""}, {"origin": "scenario"}, {"origin": "simulated"}],
+    [{"boot": "another"}, {"boot": ""}, {"origin": "simulated"}],
 )
-def test_other_starts_of_the_computer_and_scenarios_are_over(wreck: Wreck, change: dict[str, str]) -> None:
+def test_other_starts_of_the_computer_and_simulated_runs_are_over(
+    wreck: Wreck, change: dict[str, str]
+) -> None:
     async def scenario() -> None:
         await wreck.start()
         await wreck.before.store.write(

@@ -1,0 +1,75 @@
+"""What is wrong, or was and nobody has acknowledged it yet: the list that everybody is shown."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from robot_runtime.clock import Clock
+from robot_runtime.control.faults import BY_NAME
+from robot_runtime.samples import Alarm, Event
+
+CLEAR_AFTER = 1.0
+"""s without the fault after which it is over: what flickers is one alarm."""
+
+
+class Alarms:
+    """Each beginning and end is told as an event. Not for several threads at once."""
+
+    def __init__(self, clock: Clock, tell: Callable[[Event], None]) -> None:
+        self._clock = clock
+        self._tell = tell
+        self._alarms: dict[str, Alarm] = {}
+        self._last: dict[str, float] = {}
+
+    def update(self, wrong: Mapping[str, str]) -> None:
+        """Say what is wrong now, each fault by name with what is special about it this time."""
+        now = self._clock.now()
+        for name, detail in wrong.items():
+            self._last[name] = now
+            known = self._alarms.get(name)
+            if known is None or not known.active:
+                self._begin(name, detail, active=True)
+        for name, alarm in list(self._alarms.items()):
+            if alarm.active and name not in wrong and now - self._last[name] >= CLEAR_AFTER:
+                self._end(name, alarm)
+
+    def note(self, name: str, detail: str = "") -> None:
+        """Say that something happened that is over already."""
+        self._begin(name, detail, active=False)
+
+    def acknowledge(self) -> None:
+        """Somebody has seen them all; what is over goes away."""
+        self._alarms = {
+            name: replace(alarm, acknowledged=True) for name, alarm in self._alarms.items() if alarm.active
+        }
+
+    def listed(self) -> list[Alarm]:
+        """As everybody is shown them, the newest last."""
+        return sorted(self._alarms.values(), key=lambda alarm: alarm.since)
+
+    def _begin(self, name: str, detail: str, *, active: bool) -> None:
+        fault, now = BY_NAME[name], self._clock.now()
+        what = f"{fault.what} {detail}".strip()
+        self._alarms[name] = Alarm(
+            fault=name,
+            severity=fault.severity,
+            since=now,
+            active=active,
+            acknowledged=False,
+            what=what,
+            cause=fault.cause,
+            remedy=fault.remedy,
+        )
+        self._tell(
+            Event(
+                time=now, kind="alarm", severity=fault.severity, text=f"{what} {fault.cause} {fault.remedy}"
+            )
+        )
+
+    def _end(self, name: str, alarm: Alarm) -> None:
+        if alarm.acknowledged:
+            del self._alarms[name]
+        else:
+            self._alarms[name] = replace(alarm, active=False)
+        self._tell(
+            Event(time=self._clock.now(), kind="alarm", severity="info", text=f"It is over: {alarm.what}")
+        )

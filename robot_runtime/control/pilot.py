@@ -1,0 +1,80 @@
+"""What the pilot's sticks say: the newest fresh input, and nothing that is old or somebody else's."""
+
+import json
+import math
+from collections import Counter
+from typing import Any
+
+from robot_runtime.clock import Clock
+from robot_runtime.control.faults import BY_NAME, LOOK
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Navigation
+
+PILOT = "pilot"
+"""The name under which the server sends it."""
+AGE_MAX = 0.3
+"""s by which an input may be old, or ahead of this clock."""
+PATIENCE = BY_NAME["pilot_quiet"].limit - LOOK - 0.05
+"""s for which, at a look, an input counts: the next look, and the way to the board, are to come."""
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
+
+
+class Pilot:
+    """Takes what comes from the server, from any thread; `dropped` counts, by reason, what did not count."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.lease = 0
+        """The epoch of the control's holder; what was sent under another is dropped."""
+        self.taken = float("-inf")
+        """s; when the newest input was taken from the sticks, or control by hand began."""
+        self.dropped: Counter[str] = Counter()
+        self._clock = clock
+        self._sequence = -1
+        self._command = NEUTRAL
+
+    def begin(self) -> None:
+        """Control by hand begins now, with the sticks in the middle."""
+        self.taken, self._command = self._clock.now(), NEUTRAL
+
+    def change_lease(self, epoch: int) -> None:
+        """From now on only this holder's input counts. Raises Refused where the epoch is an older one."""
+        if epoch < self.lease:
+            raise Refused(f"the lease {epoch} is older than {self.lease}, which counts")
+        if epoch > self.lease:
+            self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
+
+    def take(self, payload: bytes) -> None:
+        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1)."""
+        try:
+            lease, sequence, taken, axes = _read(json.loads(payload))
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+            self.dropped["invalid"] += 1
+            return
+        now = self._clock.now()
+        if lease != self.lease:
+            self.dropped["lease"] += 1
+        elif sequence <= self._sequence:
+            self.dropped["sequence"] += 1
+        elif not abs(now - taken) <= AGE_MAX:
+            self.dropped["age"] += 1
+        else:
+            self._sequence = sequence
+            self.taken, self._command = min(taken, now), Navigation(**dict(zip(AXES, axes, strict=True)))
+
+    def command(self) -> Navigation:
+        """The newest input; neutral where that is too old."""
+        return self._command if self._clock.now() - self.taken <= PATIENCE else NEUTRAL
+
+
+def _read(words: Any) -> tuple[int, int, float, list[float]]:
+    """Raises ValueError, TypeError, KeyError or OverflowError where it is no input."""
+    lease, sequence, taken, axes = (words[name] for name in ("lease", "sequence", "taken", "axes"))
+    if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
+        raise TypeError("lease and sequence are whole numbers, axes a list")
+    numbers = [taken, *axes]
+    if len(axes) != len(AXES) or not all(type(one) in (int, float) for one in numbers):
+        raise TypeError("taken and six axes are numbers")
+    if not all(math.isfinite(one) for one in numbers) or not all(abs(one) <= 1 for one in axes):
+        raise ValueError("taken and axes are finite, axes between -1 and 1")
+    return lease, sequence, float(taken), [float(one) for one in axes]

@@ -1,0 +1,45 @@
+"""The supervisor's states, and every way from one to another; docs/safety.md shows this very table."""
+
+from typing import Literal, NamedTuple
+
+from robot_runtime.samples import Mode
+
+Trigger = Literal[
+    "arm", "arm manual", "check fins", "take over", "hand back", "checked", "stop", "fault", "acknowledge"
+]
+ARMED: tuple[Mode, ...] = ("manual", "automatic", "test")
+"""The states in which the board is armed, and fins are commanded."""
+
+
+class Transition(NamedTuple):
+    """From `before` to `after` when `trigger` happens."""
+
+    before: Mode
+    trigger: Trigger
+    after: Mode
+    why: str
+
+
+TRANSITIONS = (
+    Transition("disarmed", "arm", "automatic", "nothing stands against it, and the board followed"),
+    Transition("disarmed", "arm manual", "manual", "the same"),
+    Transition("disarmed", "check fins", "test", "the same"),
+    Transition("automatic", "take over", "manual", "the operator takes the sticks"),
+    Transition("manual", "hand back", "automatic", "the operator lets go, and the depth is fresh"),
+    Transition("test", "checked", "disarmed", "the fin check is over"),
+    Transition("automatic", "stop", "disarmed", "STOP, or the end of a scenario or of the runtime"),
+    Transition("manual", "stop", "disarmed", "the same"),
+    Transition("test", "stop", "disarmed", "the same"),
+    Transition("disarmed", "stop", "disarmed", "STOP is never refused; it goes to the board each time"),
+    Transition("failsafe", "stop", "failsafe", "the same"),
+    Transition("automatic", "fault", "failsafe", "a fault whose action is all-stop"),
+    Transition("manual", "fault", "failsafe", "the same"),
+    Transition("test", "fault", "failsafe", "the same"),
+    Transition("failsafe", "acknowledge", "disarmed", "somebody has seen what happened"),
+)
+_AFTER = {(one.before, one.trigger): one.after for one in TRANSITIONS}
+
+
+def follow(mode: Mode, trigger: Trigger) -> Mode | None:
+    """The state after it; None where that cannot happen in this one."""
+    return _AFTER.get((mode, trigger))

@@ -1,0 +1,104 @@
+"""The whole robot in simulated time, its firmware and water included, with an operator who is the test."""
+
+import json
+from collections.abc import Callable
+from typing import Any, Self
+
+from robot_runtime.commands import Commands
+from robot_runtime.packets import Navigation
+from robot_runtime.samples import Event, Mode
+from robot_runtime.scenario.boards import boards
+from robot_runtime.scenario.document import read_scenario
+from robot_runtime.scenario.run import PRELUDE, _Performance
+from robot_runtime.scenario.stage import Stage
+from robot_runtime.simulation.changes import changes
+from tests.runtime.scenario.staging import Told, document
+
+STEP = 0.02
+"""s, in which what the test does between two looks falls."""
+
+
+class Flight:
+    """From the moment at which everything is well; `sticks` are sent every 0.1 s where there are some."""
+
+    def __init__(self, board: str = "host", more: str = "") -> None:
+        self.stage = Stage(read_scenario(document(3600, more=more)), boards()[board], lambda _: None, PRELUDE)
+        self.robot, self.clock = self.stage.robot, self.stage.clock
+        self.supervisor, self.board = self.robot.supervisor, self.stage.board
+        self.events: list[Event] = []
+        self.sent: list[tuple[float, Navigation]] = []
+        self.sticks: list[float] | None = None
+        self.server = True
+        self._sequence = 0
+        self._commands = Commands(self.robot).do
+        self._water = changes(self.stage.simulator)
+        self._performance = _Performance(self.stage, Told(), lambda: False)
+        self.robot.bus.on_document("event", self._hear)
+        self.robot.bus.on_row(
+            "navigation", lambda _, time, record: self.sent.append((time, Navigation.from_bytes(record)))
+        )
+        self._performance.wait_for_start()
+        self.run(0.5)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stage.__exit__()
+
+    @property
+    def now(self) -> float:
+        return self.clock.now()
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        end = self.now + seconds
+        while self.now < end - 1e-6:
+            if self.server:
+                self.supervisor.watch.see_server()
+            if self.sticks is not None and self._sequence * 0.1 <= self.now:
+                self.push(self.sticks)
+            self._performance._until(min(self.now + STEP, end))
+
+    def until(self, holds: Callable[[], bool], limit: float) -> float:
+        """s until that holds. Fails beyond the limit."""
+        began = self.now
+        while not holds():
+            assert self.now - began <= limit + 1e-6, f"not within {limit} s: {self.supervisor.mode}"
+            self.run(STEP)
+        return self.now - began
+
+    def push(self, axes: list[float], **more: Any) -> None:
+        """An input of the pilot's, as the server passes it on."""
+        self._sequence = int(self.now / 0.1) + 1
+        words = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
+        self.supervisor.pilot.take(json.dumps(words).encode())
+
+    def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
+        arming = self.supervisor.begin_arming(mode, alone)
+        while not arming.over:
+            self.run(0.1)
+            self.supervisor.go_on_arming()
+        assert arming.refusal == ""
+
+    def command(self, name: str, **question: Any) -> None:
+        self._commands[name](question)
+
+    def break_(self, sensor: str, kind: str, **more: float) -> None:
+        self._water["fault"]({"sensor": sensor, "kind": kind} | more)
+        self.stage.break_devices()
+
+    def water(self, what: str, **question: Any) -> None:
+        self._water[what](question)
+
+    def cut(self, *, on: bool) -> None:
+        for way in ("to_board", "from_board"):
+            self.board.line(f"line {way} cut {'on' if on else 'off'}")
+
+    def alarm(self, fault: str) -> bool:
+        """Whether this is in the list of alarms, and wrong still."""
+        return any(one.fault == fault and one.active for one in self.supervisor.alarms)
+
+    def _hear(self, _: str, document: object) -> None:
+        assert isinstance(document, Event)
+        self.events.append(document)

@@ -1,0 +1,186 @@
+"""Arming under whatever may come, in any order: commands, faults, silences and restarts."""
+
+from typing import Any
+
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
+
+from robot_runtime.control.transitions import ARMED, TRANSITIONS
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Start, StatusFlag, Stop
+from robot_runtime.samples import Mode
+from tests.runtime.control.test_supervisor import Rig
+
+HEARTBEAT = 4.0
+LOOK = 0.1
+ALL_STOP = 0.6
+"""s within which a lost depth, seen at the slowest look, ends control by depth."""
+_WAYS = {(one.before, one.after) for one in TRANSITIONS}
+
+
+class Arming(RuleBasedStateMachine):
+    """One supervisor whose board obeys or not; what happened is compared with what may."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rig = Rig(heartbeat=HEARTBEAT)
+        self.supervisor, self.board = self.rig.supervisor, self.rig.board
+        self.depth = self.imu = self.server = self.pilot = self.speaks = True
+        self.frozen = False
+        self.without = {"depth": 0.0, "imu": 0.0, "server": 0.0, "pilot": 0.0, "board": 0.0}
+        self.acknowledged = True
+        self.mode: Mode = "disarmed"
+        self._live(LOOK)
+
+    def _live(self, seconds: float) -> None:
+        end = self.rig.clock.now() + seconds
+        while self.rig.clock.now() < end:
+            self.rig.clock.forward(0.05)
+            watch = self.supervisor.watch
+            if self.speaks:
+                self.rig.report()
+                if self.depth and self.imu:
+                    self.rig.feel(frozen=self.frozen)
+                elif self.depth:
+                    self.rig.feel_depth(frozen=self.frozen)
+                elif self.imu:
+                    self.rig.feel_attitude()
+            if self.server:
+                watch.see_server()
+            if self.pilot:
+                self.supervisor.pilot.taken = self.rig.clock.now()
+            self._age(0.05)
+            self._look()
+            self.supervisor.go_on_arming()
+            self._look()
+            self.supervisor.tick()
+            self._look()
+
+    def _age(self, seconds: float) -> None:
+        lives = {
+            "depth": self.depth and self.speaks and not self.frozen,
+            "imu": self.imu or not self.speaks,
+            "server": self.server,
+            "pilot": self.pilot or self.supervisor.mode != "manual",
+            "board": self.speaks and self.board.connected,
+        }
+        for name, alive in lives.items():
+            self.without[name] = 0.0 if alive else self.without[name] + seconds
+
+    def _look(self) -> None:
+        """Every change of state is a way in the table, and none leads past the acknowledgement."""
+        now = self.supervisor.mode
+        if now != self.mode:
+            assert (self.mode, now) in _WAYS
+            if now == "failsafe":
+                self.acknowledged = False
+            if now in ARMED:
+                assert self.acknowledged
+            self.mode = now
+
+    @rule(mode=st.sampled_from(["automatic", "manual", "test"]), alone=st.sampled_from([0.0, 8.0]))
+    def arm(self, mode: Any, alone: float) -> None:
+        """Try to; whether it is refused depends on everything else."""
+        reasons, armed = self.supervisor.refusals(), self.supervisor.armed
+        before = sum(isinstance(one, Start) for one in self.board.sent)
+        try:
+            self.supervisor.begin_arming(mode, alone)
+        except Refused:
+            assert sum(isinstance(one, Start) for one in self.board.sent) == before
+        else:
+            assert armed or not reasons
+        self._look()
+
+    @rule(mode=st.sampled_from(["automatic", "manual"]))
+    def change(self, mode: Any) -> None:
+        """Hand over, where there is something to."""
+        armed = self.supervisor.mode in ("automatic", "manual")
+        try:
+            self.supervisor.change_mode(mode)
+        except Refused:
+            return
+        assert armed
+        self._look()
+
+    @rule()
+    def stop(self) -> None:
+        """It ends whatever it was, at once, and goes out each time."""
+        failsafe = self.supervisor.mode == "failsafe"
+        sent = len(self.board.sent)
+        self.supervisor.stop("Stopped.")
+        assert self.supervisor.mode == ("failsafe" if failsafe else "disarmed")
+        assert any(isinstance(one, Stop) for one in self.board.sent[sent:])
+        self._look()
+
+    @rule()
+    def acknowledge(self) -> None:
+        """The only way out of failsafe."""
+        armed = self.supervisor.armed
+        self.supervisor.acknowledge()
+        assert self.supervisor.mode != "failsafe"
+        assert self.supervisor.armed == armed
+        self.acknowledged = True
+        self._look()
+
+    @rule(seconds=st.sampled_from([0.05, 0.3, 0.6, 2.0, 5.0]))
+    def pass_time(self, seconds: float) -> None:
+        """Everything goes on as it is."""
+        self._live(seconds)
+
+    @rule(what=st.sampled_from(["depth", "imu", "server", "pilot", "speaks", "frozen"]), on=st.booleans())
+    def change_what_is_there(self, what: str, on: bool) -> None:
+        """Something falls silent, or speaks again."""
+        setattr(self, what, on)
+
+    @rule(connected=st.booleans())
+    def plug(self, connected: bool) -> None:
+        """The cable."""
+        self.board.connected = connected
+
+    @rule(obeys=st.booleans())
+    def will(self, obeys: bool) -> None:
+        """Whether the board follows a START."""
+        self.board.obeys = obeys
+
+    @rule()
+    def restart(self) -> None:
+        """The board's watchdog."""
+        self.board.epoch += 1
+        self.board.flags &= ~StatusFlag.ARMED
+
+    @rule()
+    def disarm_by_itself(self) -> None:
+        """The board heard nothing."""
+        self.board.flags &= ~StatusFlag.ARMED
+
+    @invariant()
+    def never_armed_with_an_open_failsafe(self) -> None:
+        """What was not acknowledged bars everything."""
+        assert self.acknowledged or not self.supervisor.armed
+        assert (self.supervisor.armed_since is not None) == self.supervisor.armed
+
+    @invariant()
+    def limits_are_kept(self) -> None:
+        """Nothing steers for longer than allowed without what it steers by."""
+        mode = self.supervisor.mode
+        if mode == "automatic":
+            assert self.without["depth"] <= ALL_STOP
+        if mode in ARMED:
+            assert self.without["imu"] <= 0.3 + LOOK
+            assert self.without["board"] <= 1.0 + LOOK
+            assert self.without["server"] <= 8.0 + 2 * LOOK
+        if mode == "manual":
+            assert self.without["pilot"] <= 3.0 + LOOK
+
+    @invariant()
+    def an_all_stop_is_an_alarm(self) -> None:
+        """Nobody is left to wonder."""
+        if self.supervisor.mode == "failsafe":
+            assert any(alarm.severity == "alarm" for alarm in self.supervisor.alarms)
+
+
+TestArming = Arming.TestCase
+TestArming.settings = settings(
+    max_examples=60, stateful_step_count=40, deadline=None, suppress_health_check=list(HealthCheck)
+)

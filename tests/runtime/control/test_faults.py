@@ -1,0 +1,194 @@
+"""Each limit to the millisecond, and what belongs to a fault: its words, its alarm, its events."""
+
+from collections.abc import Callable
+from math import radians
+
+import pytest
+
+from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
+from robot_runtime.control.faults import BY_NAME, FAULTS
+from robot_runtime.control.watch import REPEATS
+from robot_runtime.packets import SensorFault, StatusFlag
+from robot_runtime.samples import Mode
+from tests.runtime.control.test_supervisor import Rig
+
+MS = 0.001
+
+
+def live(rig: Rig, seconds: float, feel: Callable[[], None]) -> None:
+    """Let time pass in steps of 20 ms, in each of which the board says something."""
+    for _ in range(round(seconds / 0.02)):
+        rig.clock.forward(0.02)
+        feel()
+
+
+def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
+    return set(rig.supervisor.watch.wrong(mode, []))
+
+
+def all_but(rig: Rig, missing: str) -> Callable[[], None]:
+    """What a board says, one of whose sensors is silent."""
+
+    def feel() -> None:
+        rig.report()
+        if missing != "depth":
+            rig.feel_depth()
+        if missing != "imu":
+            rig.feel_attitude()
+
+    return feel
+
+
+@pytest.fixture
+def rig() -> Rig:
+    rig = Rig(heartbeat=4.0)
+    rig.ready()
+    return rig
+
+
+@pytest.mark.parametrize(
+    ("name", "limit", "missing"),
+    [("depth_stale", 0.4, "depth"), ("imu_stale", 0.15, "imu")],
+)
+def test_a_silent_sensor_is_missed_after_its_limit(rig: Rig, name: str, limit: float, missing: str) -> None:
+    feel = all_but(rig, missing)
+    rig.clock.forward(limit - MS)
+    feel()
+    assert name not in wrong(rig)
+    rig.clock.forward(2 * MS)
+    feel()
+    assert name in wrong(rig)
+    rig.feel()
+    assert wrong(rig) == set()
+
+
+def test_a_silent_board_is_no_silent_imu(rig: Rig) -> None:
+    rig.clock.forward(0.39)
+    assert wrong(rig) == set()
+    rig.clock.forward(0.45)
+    assert wrong(rig) == {"depth_stale"}
+    rig.clock.forward(0.02)
+    assert wrong(rig) == {"depth_stale", "board_silent"}
+
+
+def test_a_frozen_pressure_is_one_that_repeats_often_and_long(rig: Rig) -> None:
+    live(rig, 0.38, lambda: rig.feel(frozen=True))
+    assert wrong(rig) == set()
+    live(rig, 0.04, lambda: rig.feel(frozen=True))
+    assert wrong(rig) == {"depth_frozen"}
+    rig.feel()
+    assert wrong(rig) == set()
+
+
+def test_on_a_slow_line_a_few_equal_readings_are_not_frozen() -> None:
+    rig = Rig(1200)
+    rig.ready()
+    for _ in range(REPEATS - 1):
+        rig.clock.forward(0.5)
+        rig.feel(frozen=True)
+    assert wrong(rig) == set()
+    rig.feel(frozen=True)
+    assert wrong(rig) == {"depth_frozen"}
+
+
+@pytest.mark.parametrize("depth", [-1.01, 20.01, 32.767])
+def test_a_depth_that_cannot_be_is_soon_a_fault_and_one_jump_is_not(rig: Rig, depth: float) -> None:
+    live(rig, 0.38, lambda: rig.feel(depth))
+    assert wrong(rig) == set()
+    live(rig, 0.04, lambda: rig.feel(depth))
+    assert wrong(rig) == {"depth_range"}
+    assert f"{depth:.1f} m" in rig.supervisor.watch.depth_refusals()[0]
+    rig.feel(20.0)
+    assert wrong(rig) == set()
+
+
+@pytest.mark.parametrize(("tilt", "faults"), [(74.0, set()), (76.0, {"capsized"}), (180.0, {"capsized"})])
+def test_a_tilt_counts_once_it_lasts(rig: Rig, tilt: float, faults: set[str]) -> None:
+    live(rig, 1.88, lambda: rig.feel(tilt=radians(tilt)))
+    assert wrong(rig) == set()
+    live(rig, 0.04, lambda: rig.feel(tilt=radians(tilt)))
+    assert wrong(rig) == faults
+
+
+def test_a_camera_counts_from_its_first_picture_on(rig: Rig) -> None:
+    watch = rig.supervisor.watch
+    live(rig, 2.0, rig.feel)
+    assert wrong(rig) == set()
+    watch.see_picture(rig.clock.now())
+    live(rig, 0.88, rig.feel)
+    assert wrong(rig) == set()
+    live(rig, 0.04, rig.feel)
+    assert wrong(rig) == {"vision_stale"}
+    assert not BY_NAME["vision_stale"].stops("automatic")
+
+
+def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
+    rig.board.flags = StatusFlag.BATTERY_LOW
+    rig.board.faults = SensorFault.FIN_FRONT_LEFT | SensorFault.FIN_BACK_RIGHT
+    rig.report()
+    found = rig.supervisor.watch.wrong("automatic", [])
+    assert found == {"battery_low": "", "fin_failing": "(back right, front left)"}
+    assert rig.supervisor.watch.wrong("disarmed", []) == {"battery_low": ""}
+    assert set(rig.supervisor.watch.wrong("disarmed", ["fin_failing"])) == {"battery_low", "fin_failing"}
+
+
+def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:
+    live(rig, 4.1, rig.feel)
+    assert wrong(rig) == {"server_silent"}
+    assert wrong(rig, "disarmed") == set()
+    rig.supervisor.watch.see_server()
+    assert wrong(rig) == set()
+
+
+def test_every_fault_says_what_why_and_what_to_do() -> None:
+    assert len(BY_NAME) == len(FAULTS)
+    for fault in FAULTS:
+        assert all(words.endswith(".") for words in (fault.what, fault.cause, fault.remedy)), fault.name
+
+
+def test_by_hand_only_what_the_controller_steers_by_goes_on() -> None:
+    goes_on = {fault.name for fault in FAULTS if fault.stops("automatic") and not fault.stops("manual")}
+    assert goes_on == {"depth_stale", "depth_frozen", "depth_range"}
+
+
+# Alarms
+
+
+@pytest.fixture
+def alarms(rig: Rig) -> Alarms:
+    return Alarms(rig.clock, rig.events.append)
+
+
+def test_what_flickers_is_one_alarm_with_one_beginning_and_one_end(rig: Rig, alarms: Alarms) -> None:
+    began = rig.clock.now()
+    for step in range(20):
+        alarms.update({"fin_failing": "(front left)"} if step % 4 == 0 else {})
+        rig.clock.forward(0.1)
+    (alarm,) = alarms.listed()
+    assert (alarm.since, alarm.active, alarm.acknowledged) == (began, True, False)
+    rig.clock.forward(CLEAR_AFTER)
+    alarms.update({})
+    assert [(event.kind, event.severity) for event in rig.events] == [("alarm", "caution"), ("alarm", "info")]
+    assert not alarms.listed()[0].active
+
+
+def test_an_alarm_goes_once_it_is_over_and_acknowledged_in_either_order(rig: Rig, alarms: Alarms) -> None:
+    alarms.update({"capsized": ""})
+    alarms.acknowledge()
+    assert [alarm.acknowledged for alarm in alarms.listed()] == [True]
+    rig.clock.forward(CLEAR_AFTER)
+    alarms.update({})
+    assert alarms.listed() == []
+    alarms.note("board_restarted")
+    assert [alarm.active for alarm in alarms.listed()] == [False]
+    alarms.acknowledge()
+    assert alarms.listed() == []
+
+
+def test_one_that_comes_again_wants_to_be_acknowledged_again(rig: Rig, alarms: Alarms) -> None:
+    alarms.note("capsized")
+    rig.clock.forward(5.0)
+    alarms.update({"capsized": ""})
+    (alarm,) = alarms.listed()
+    assert (alarm.since, alarm.active, alarm.acknowledged) == (rig.clock.now(), True, False)
+    assert len(rig.events) == 2

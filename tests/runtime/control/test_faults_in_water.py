@@ -1,0 +1,212 @@
+"""Each fault on the whole robot, the compiled firmware included: how soon it is noticed, and what is done."""
+
+from collections.abc import Callable, Iterator
+from math import acos
+
+import pytest
+
+from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.watch import TILT_MAX
+from robot_runtime.errors import Refused
+from tests.runtime.control.flight import Flight
+
+LATE = 0.03
+"""s: up to one step of the test, and what the board takes to say it."""
+Break = Callable[[Flight], None]
+
+
+@pytest.fixture
+def flight() -> Iterator[Flight]:
+    with Flight() as flight:
+        yield flight
+
+
+def absent(device: str) -> Break:
+    return lambda flight: flight.break_(device, "bus")
+
+
+ROWS: list[tuple[str, Break]] = [
+    ("depth_stale", absent("pressure")),
+    ("depth_frozen", lambda flight: flight.break_("pressure", "stuck")),
+    ("depth_range", lambda flight: flight.break_("pressure", "spike", share=1.0, size=300_000.0)),
+    ("imu_stale", absent("gyroscope")),
+    ("board_silent", lambda flight: flight.cut(on=True)),
+    ("server_silent", lambda flight: setattr(flight, "server", False)),
+    ("control_failed", lambda flight: setattr(flight.robot.control.controller, "step", None)),
+]
+
+
+@pytest.mark.parametrize(("name", "break_"), ROWS, ids=[name for name, _ in ROWS])
+def test_it_is_noticed_in_time_and_stops_the_robot(flight: Flight, name: str, break_: Break) -> None:
+    flight.arm()
+    flight.supervisor.watch.server_patience = 4.0
+    flight.run(3.0)
+    assert flight.supervisor.mode == "automatic"
+    break_(flight)
+    took = flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME[name].limit + LATE)
+    assert took > 0.05 or name == "control_failed"
+    flight.run(1.0)
+    assert any(alarm.fault == name for alarm in flight.supervisor.alarms)
+    words = [event.text for event in flight.events if event.kind == "alarm"]
+    assert any(text.startswith(BY_NAME[name].what) for text in words)
+    assert not any(time > flight.now - 0.9 for time, _ in flight.sent)
+    with pytest.raises(Refused, match="Acknowledge the alarms"):
+        flight.supervisor.begin_arming()
+    assert not flight.supervisor.board_armed or not flight.robot.line.connected
+
+
+def test_no_alarm_without_a_fault(flight: Flight) -> None:
+    flight.arm()
+    flight.run(20.0)
+    assert flight.supervisor.alarms == []
+    assert flight.supervisor.mode == "automatic"
+
+
+def test_a_robot_that_turns_over_is_stopped(flight: Flight) -> None:
+    flight.arm()
+    flight.run(2.0)
+    flight.water("trim", buoyancy=1.003, forward=0.0, right=0.0, above=-0.03)
+    flight.until(lambda: tilt(flight) > TILT_MAX, 30.0)
+    took = flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["capsized"].limit + LATE)
+    assert took > 1.8
+    assert flight.alarm("capsized")
+    flight.run(0.5)
+    flight.supervisor.acknowledge()
+    with pytest.raises(Refused, match="on its side or on its back"):
+        flight.supervisor.begin_arming()
+
+
+def tilt(flight: Flight) -> float:
+    """rad, of the simulated hull."""
+    _, x, y, _ = flight.stage.simulator.truth().attitude
+    return acos(max(1 - 2 * (x * x + y * y), -1.0))
+
+
+def test_a_low_battery_turns_the_fins_down_and_is_an_alarm() -> None:
+    with Flight(more="[robot]\nbattery_full = 6.0") as flight:
+        flight.arm()
+        flight.until(lambda: flight.supervisor.mode == "failsafe", 25.0)
+        # It is full enough until time 0.
+        assert 20.0 <= flight.now <= BY_NAME["battery_low"].limit
+        assert flight.alarm("battery_low")
+        flight.supervisor.acknowledge()
+        with pytest.raises(Refused, match="battery is low"):
+            flight.supervisor.begin_arming()
+
+
+def test_a_fin_that_fails_is_an_alarm_and_forbids_the_next_arming(flight: Flight) -> None:
+    flight.arm()
+    flight.run(2.0)
+    flight.break_("encoder2", "bus")
+    flight.until(lambda: flight.alarm("fin_failing"), BY_NAME["fin_failing"].limit + LATE)
+    assert "(back left)" in flight.supervisor.alarms[0].what
+    flight.run(2.0)
+    assert flight.supervisor.mode == "automatic"
+    flight.break_("encoder2", "none")
+    flight.until(lambda: not flight.alarm("fin_failing"), 1.5)
+    assert [alarm.active for alarm in flight.supervisor.alarms] == [False]
+    flight.supervisor.acknowledge()
+    assert flight.supervisor.alarms == []
+    assert flight.supervisor.mode == "automatic"
+
+
+def test_a_board_that_restarts_stops_the_robot(flight: Flight) -> None:
+    flight.arm()
+    flight.run(2.0)
+    flight.board.reset()
+    flight.until(lambda: flight.supervisor.mode == "failsafe", 1.0)
+    flight.run(2.0)
+    assert any("restarted" in alarm.what for alarm in flight.supervisor.alarms)
+    assert not flight.supervisor.board_armed
+
+
+def test_a_robot_held_down_after_a_stop_is_an_alarm_and_one_that_rises_is_not(flight: Flight) -> None:
+    flight.arm()
+    flight.run(10.0)
+    flight.supervisor.stop("Stopped.")
+    flight.run(21.0)
+    assert flight.supervisor.alarms == []
+    flight.arm()
+    flight.run(10.0)
+    flight.water("trim", buoyancy=0.99, forward=0.0, right=0.0, above=0.01)
+    flight.supervisor.stop("Stopped.")
+    took = flight.until(lambda: flight.alarm("not_rising"), 20.0)
+    assert took > 15.0
+    assert flight.supervisor.mode == "disarmed"
+    assert flight.supervisor.refusals() == []
+
+
+# Steering by hand
+
+
+def test_the_pilot_s_sticks_move_the_fins_and_their_silence_ends_it(flight: Flight) -> None:
+    flight.sticks = [1.0, 0.0, 0.0, 0.0, 0.0, 0.5]
+    flight.arm("manual")
+    flight.run(2.0)
+    assert {command.x for _, command in flight.sent[-10:]} == {1.0}
+    assert flight.stage.simulator.truth().position[0] > 0.05
+    last, flight.sticks = flight.now, None
+    flight.until(lambda: flight.sent[-1][1].x == 0.0, BY_NAME["pilot_quiet"].limit + LATE)
+    flight.until(lambda: flight.alarm("pilot_quiet"), 0.2)
+    assert flight.supervisor.mode == "manual"
+    flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["pilot_lost"].limit + LATE)
+    assert 2.8 < flight.now - last <= 3.0 + LATE
+    flight.sticks = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    flight.run(1.0)
+    assert flight.supervisor.mode == "failsafe"
+    flight.supervisor.acknowledge()
+    flight.arm("manual")
+    flight.run(0.5)
+    assert flight.sent[-1][1].x == 1.0
+
+
+def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: Flight) -> None:
+    flight.sticks = [0.0] * 6
+    flight.arm("manual")
+    flight.break_("pressure", "bus")
+    flight.until(lambda: flight.alarm("depth_stale"), BY_NAME["depth_stale"].limit + LATE)
+    flight.run(5.0)
+    assert flight.supervisor.mode == "manual"
+    with pytest.raises(Refused, match="pressure sensor does not answer"):
+        flight.command("mode", mode="automatic")
+    flight.break_("pressure", "none")
+    flight.run(1.0)
+    flight.command("mode", mode="automatic")
+    assert flight.supervisor.mode == "automatic"
+    flight.command("mode", mode="manual")
+    flight.run(0.2)
+    assert flight.sent[-1][1].z == 0.0
+
+
+def test_a_mission_that_may_goes_on_without_the_server_for_so_long(flight: Flight) -> None:
+    flight.supervisor._heartbeat = 4.0
+    flight.arm(alone=10.0)
+    flight.server = False
+    took = flight.until(lambda: flight.supervisor.mode == "failsafe", 10.2)
+    assert took > 9.9
+    flight.server = True
+    flight.run(2.0)
+    flight.supervisor.acknowledge()
+    flight.arm()
+    flight.server = False
+    assert flight.until(lambda: flight.supervisor.mode == "failsafe", 5.0) > 3.9
+
+
+# The fin check
+
+
+@pytest.mark.parametrize(("broken", "failed"), [(None, []), ("encoder1", ["back right"])])
+def test_the_fin_check_finds_the_fin_that_does_not_follow(
+    flight: Flight, broken: str | None, failed: list[str]
+) -> None:
+    flight.arm("test")
+    if broken is not None:
+        flight.break_(broken, "stuck")
+    took = flight.until(lambda: flight.supervisor.mode == "disarmed", 10.0)
+    assert took > 5.0
+    assert list(flight.supervisor.fin_check.failed()) == failed
+    flight.run(0.5)
+    assert not flight.supervisor.board_armed
+    words = next(event for event in flight.events if event.text.startswith("Fin check:"))
+    assert words.severity == ("caution" if failed else "info")
+    assert [alarm.fault for alarm in flight.supervisor.alarms] == ["fin_failing"] * bool(failed)

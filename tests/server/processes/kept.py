@@ -1,0 +1,35 @@
+"""`python -m tests.server.processes.kept FOLDER`: a keeper of small servers.
+
+Each server writes a line to FOLDER/servers: its process and how the one before ended; then it waits for its
+end, and writes "bye". Where FOLDER/broken is, it cannot start.
+"""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+from server.processes.keeper import Keeper
+from server.settings import DataFolder
+
+
+def main() -> int:
+    folder = Path(sys.argv[1])
+
+    def serve(ended: str) -> int:
+        if (folder / "broken").exists():
+            (folder / "broken").open("a").write("x")
+            return 1
+        with (folder / "servers").open("a") as log:
+            log.write(f"{os.getpid()} {ended}\n")
+        ends = (signal.SIGINT, signal.SIGTERM)
+        signal.pthread_sigmask(signal.SIG_BLOCK, ends)
+        signal.sigwait(ends)
+        (folder / "bye").touch()
+        return 0
+
+    return Keeper(serve, DataFolder(folder)).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
