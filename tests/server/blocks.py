@@ -58,6 +58,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "epoch": 1,
         "controller": "pid",
         "controllers": [],
+        "steering": "none",
         "set_point": 0.5,
         "set_point_default": 0.5,
         "set_point_detected": 1.0,
