@@ -153,7 +153,9 @@ class State(Document):
     set_point: float
     set_point_default: float
     set_point_detected: float
-    steering: Steering = field(metadata={"meaning": "where it swims while it holds its depth"})
+    steering: Steering = field(
+        default="none", metadata={"meaning": "where it swims while it holds its depth"}
+    )
     control_rate: float
     vision_rate: float
     vision_colour: str
