@@ -163,5 +163,6 @@ class State(Document):
     card: str | None
     camera: str
     pilot_dropped: int = field(
-        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"}
+        default=0,
+        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
     )

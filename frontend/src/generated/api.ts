@@ -3048,7 +3048,10 @@ export interface components {
             mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
-            /** Pilot Dropped */
+            /**
+             * Pilot Dropped
+             * @default 0
+             */
             pilot_dropped: number;
             /** Port */
             port: string;
@@ -3064,6 +3067,7 @@ export interface components {
             set_point_detected: number;
             /**
              * Steering
+             * @default none
              * @enum {string}
              */
             steering: "none" | "beacons";
