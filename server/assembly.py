@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.errors import Refused
 from robot_runtime.topics import Block
 from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
@@ -110,6 +111,12 @@ class Assembly:
         assembly = connection.app.state.assembly
         assert isinstance(assembly, Assembly)
         return assembly
+
+    def require_disarmed(self, why: str) -> None:
+        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
+        state = self.watch.state()
+        if state is not None and state.get("armed"):
+            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
 
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:

@@ -4824,7 +4824,7 @@ export interface operations {
                     "application/json": components["schemas"]["Session"];
                 };
             };
-            /** @description It is here already, or another is being imported */
+            /** @description It is here already, another is being imported, or the robot is armed */
             409: {
                 headers: {
                     [name: string]: unknown;
