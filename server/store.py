@@ -60,6 +60,8 @@ class Store(Reader):
         # the sector being written spoils nothing that was synced before it.
         self._writer = _engine(database, "psow=0", pool.StaticPool)
         event.listen(self._writer, "connect", _make_durable)
+        # The driver by itself begins a transaction only before a row changes: each PRAGMA would be one alone.
+        event.listen(self._writer, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
 
@@ -130,6 +132,7 @@ def _configure(connection: sqlite3.Connection, _record: object) -> None:
 
 
 def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
+    connection.isolation_level = None
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = FULL")
 
