@@ -3,13 +3,14 @@ PORT ?= 8000
 ONLY ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
+CUTS ?= 10000
 QUESTIONS ?= 300
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills guards interface generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench figures fuzz soak samples kills power guards interface generate firmware host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -60,6 +61,9 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
+
+power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
+	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
 
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
