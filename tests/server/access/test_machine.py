@@ -143,7 +143,7 @@ class SigningIn(RuleBasedStateMachine):
         if browser:
             assert known is not None
             assert secret is None
-            role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
+            role: Role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
             known.identity = Identity(known.identity.device, "tablet", role, "browser")
             assert identity == known.identity
             return known
