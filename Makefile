@@ -3,12 +3,9 @@ PORT ?= 8000
 ONLY ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
-<<<<<<< HEAD
 FAULTS ?= 100
 CHAOS_SECONDS ?= 3600
-=======
 CUTS ?= 10000
->>>>>>> data
 QUESTIONS ?= 300
 WORDS ?= 500
 PYTHON := .venv/bin/python
@@ -16,12 +13,8 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-<<<<<<< HEAD
 .PHONY: help run test check bench figures fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
-=======
-.PHONY: help run test check bench figures fuzz soak samples kills power guards interface generate firmware host-firmware setup setup-test clean
->>>>>>> data
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -76,16 +69,14 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
 
-<<<<<<< HEAD
 faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
 	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
-=======
+
 power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
 	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
->>>>>>> data
 
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
