@@ -15,7 +15,9 @@ import httpx
 from playwright.sync_api import sync_playwright
 
 from bench.hour import record_hour
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from server.settings import DataFolder
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
+from tests.shell import ShellToken
 from tests.stack import ROOT, free_port
 
 SESSIONS = 3
@@ -35,18 +37,18 @@ def measure() -> dict[str, float]:
         (data / "robot.toml").write_text(CONFIG)
         opened, again, zoomed, drawn = [], [], [], []
         for _ in range(TIMES):
-            with _serve(data) as url:
+            with _serve(data) as api:
                 wanted = {
                     "sessions": ids,
                     "signals": ["depth.depth", "control.set_point"],
                     "align": {"by": "start"},
                 }
                 view = {"start": 0.0, "end": 60.0}
-                opened.append(_ask(url, "compare", wanted))
-                again.append(_ask(url, "compare", wanted | {"align": {"by": "armed"}}))
-                zoomed.append(_ask(url, "compare/lines", wanted | {"view": view}))
-            with _serve(data) as url:
-                drawn.append(_draw(url, ids))
+                opened.append(_ask(api, "compare", wanted))
+                again.append(_ask(api, "compare", wanted | {"align": {"by": "armed"}}))
+                zoomed.append(_ask(api, "compare/lines", wanted | {"view": view}))
+            with _serve(data) as api:
+                drawn.append(_draw(api, data, ids))
         return {
             "compare.open_ms": statistics.median(opened),
             "compare.again_ms": statistics.median(again),
@@ -55,16 +57,18 @@ def measure() -> dict[str, float]:
         }
 
 
-def _ask(url: str, path: str, wanted: object) -> float:
+def _ask(api: httpx.Client, path: str, wanted: object) -> float:
     began = time.perf_counter()
-    httpx.post(f"{url}/api/{path}", json=wanted, timeout=60).raise_for_status()
+    api.post(f"/api/{path}", json=wanted).raise_for_status()
     return (time.perf_counter() - began) * 1000
 
 
-def _draw(url: str, ids: list[int]) -> float:
+def _draw(api: httpx.Client, data: Path, ids: list[int]) -> float:
+    url = str(api.base_url).rstrip("/")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1440, "height": 900})
+        sign_in(page.context, url, data)
         began = time.perf_counter()
         page.goto(f"{url}/#/sessions/compare/{','.join(map(str, ids))}")
         page.wait_for_function(
@@ -77,24 +81,25 @@ def _draw(url: str, ids: list[int]) -> float:
 
 
 @contextmanager
-def _serve(data: Path) -> Iterator[str]:
+def _serve(data: Path) -> Iterator[httpx.Client]:
     port = free_port()
     command = [str(Path(sys.executable).parent / "mucat"), "run", "--port", str(port), "--data", str(data)]
     command += ["--config", str(data / "robot.toml")]
     with (data / "server.log").open("ab") as log:
         process = subprocess.Popen(command, cwd=ROOT, env=os.environ, stdout=log, stderr=log)
-    url = f"http://127.0.0.1:{port}"
+    api = httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60, auth=ShellToken(DataFolder(data)))
     try:
         end = time.monotonic() + READY_SECONDS
         while True:
             try:
-                httpx.get(f"{url}/api/health").raise_for_status()
+                api.get("/api/health").raise_for_status()
                 break
             except httpx.TransportError:
                 if process.poll() is not None or time.monotonic() > end:
                     raise
                 time.sleep(0.1)
-        yield url
+        yield api
     finally:
+        api.close()
         process.send_signal(signal.SIGINT)
         process.wait(20)

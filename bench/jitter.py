@@ -14,7 +14,7 @@ from server.sessions.recording import Recording
 from server.sessions.session import find_row
 from server.settings import DataFolder
 from server.store import Reader
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
 _SECONDS = 100.0
@@ -36,6 +36,7 @@ def measure() -> dict[str, float]:
             with sync_playwright() as playwright:
                 browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
                 page = browser.new_page(viewport={"width": 1440, "height": 900})
+                sign_in(page.context, stack.url, stack.data)
                 page.goto(stack.url)
                 page.get_by_role("button", name="bystander").click()
                 for kind in ("mcap", "csv", "jsonl") * _ROUNDS:

@@ -10,7 +10,7 @@ from playwright.sync_api import sync_playwright
 
 from robot_runtime.simulation.board import Board
 from robot_runtime.topics import BY_NAME
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
 _SECONDS = 20
@@ -55,6 +55,7 @@ def measure() -> dict[str, float]:
     ):
         browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1440, "height": 900})
+        sign_in(page.context, stack.url, stack.data)
         page.add_init_script(f"({_WATCH})({topic!r})")
         page.goto(stack.url)
         page.wait_for_function("() => globalThis.seen.length > 100")

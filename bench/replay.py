@@ -10,7 +10,7 @@ import httpx
 from playwright.sync_api import Page, sync_playwright
 
 from bench.hour import SECONDS, record_hour
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
 _SEEKS = 200
@@ -32,6 +32,7 @@ def measure() -> dict[str, float]:
             with sync_playwright() as playwright:
                 browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
                 page = browser.new_page(viewport={"width": 1440, "height": 900})
+                sign_in(page.context, stack.url, stack.data)
                 page.goto(f"{stack.url}/#/replay/{session}/60")
                 in_page = _seek_in(page)
                 browser.close()

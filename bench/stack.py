@@ -9,6 +9,8 @@ import psutil
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from server.settings import DataFolder
+from tests.shell import shell_headers
 from tests.stack import Stack
 
 _SETTLE = 5.0
@@ -18,7 +20,7 @@ _SECONDS = 30.0
 def measure() -> dict[str, float]:
     """CPU in percent of one core over half a minute; resident memory in MB at its end."""
     with tempfile.TemporaryDirectory() as folder, Stack(Path(folder)) as stack:
-        viewer = _Viewer(stack.port)
+        viewer = _Viewer(stack)
         stack.api.post("/robot/arm").raise_for_status()
         stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
         parts = {
@@ -44,10 +46,15 @@ def measure() -> dict[str, float]:
 class _Viewer:
     """A client that reads everything, as a page does."""
 
-    def __init__(self, port: int) -> None:
-        origin = Origin(f"http://127.0.0.1:{port}")
+    def __init__(self, stack: Stack) -> None:
         self.bytes = 0
-        self._socket = connect(f"ws://127.0.0.1:{port}/api/live", origin=origin, max_size=None, proxy=None)
+        self._socket = connect(
+            f"ws://127.0.0.1:{stack.port}/api/live",
+            origin=Origin(stack.url),
+            additional_headers=shell_headers(DataFolder(stack.data)),
+            max_size=None,
+            proxy=None,
+        )
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
 

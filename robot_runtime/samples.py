@@ -153,7 +153,9 @@ class State(Document):
     set_point: float
     set_point_default: float
     set_point_detected: float
-    steering: Steering = field(metadata={"meaning": "where it swims while it holds its depth"})
+    steering: Steering = field(
+        default="none", metadata={"meaning": "where it swims while it holds its depth"}
+    )
     control_rate: float
     vision_rate: float
     vision_colour: str
@@ -161,5 +163,6 @@ class State(Document):
     card: str | None
     camera: str
     pilot_dropped: int = field(
-        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"}
+        default=0,
+        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
     )

@@ -1,22 +1,30 @@
 """The application: routes, guard and page around one assembly."""
 
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 
-from fastapi import FastAPI, Request
+from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 
 from robot_runtime.errors import Refused
 from server import VERSION
+from server.access.access import Access
+from server.access.admit import admit
+from server.access.devices import UnknownDevice
+from server.access.gate import Gate
+from server.access.secret import TOKEN_PREFIX, make_token
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
+from server.control.lease import NotInControl
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.processes.parts import Command
 from server.routes import (
+    access,
     comm_tests,
     compare,
+    control,
     exports,
     health,
     link,
@@ -30,6 +38,7 @@ from server.routes import (
     simulator,
     storage,
 )
+from server.routes.problems import EVERYWHERE
 from server.security import Guard
 from server.sessions.markers import UnknownMark
 from server.sessions.presence import NotNow, UnknownSession
@@ -39,14 +48,24 @@ from server.settings import Settings
 from server.store import StoreError
 
 
-def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
-    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`)."""
+def create_app(
+    settings: Settings, commands: Sequence[Command] = (), started: Callable[[Access], None] | None = None
+) -> FastAPI:
+    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`).
+
+    `started` is called once everything is there, before anybody is served.
+    """
+
+    # One for all servers that a keeper starts one after the other: who asks meanwhile is known to the next.
+    token = make_token(TOKEN_PREFIX)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands)
+        assembly = Assembly(settings, commands, token, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
+            if started is not None:
+                started(assembly.access)
             yield
 
     app = FastAPI(
@@ -59,21 +78,27 @@ def create_app(settings: Settings, commands: Sequence[Command] = ()) -> FastAPI:
         redoc_url=None,
         lifespan=lifespan,
     )
+    app.state.ended = ""
+    # What is added last is asked first.
+    app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(400, _unreadable_body)
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(NotInControl, _not_in_control)
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
+    app.add_exception_handler(UnknownDevice, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live)
+    robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
-    for module in (*robots, *kept, comm_tests, scenarios):
-        app.include_router(module.router)
+    for module in (access, *robots, *kept, comm_tests, scenarios):
+        app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app
 
@@ -86,8 +111,16 @@ async def _invalid(_: Request, problem: Exception) -> JSONResponse:
     return _tell(422, f"The request is not valid. {words}")
 
 
+async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
+    return _tell(422, "The request is not valid. Its body is not JSON in UTF-8.")
+
+
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _not_in_control(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(423, str(problem))
 
 
 async def _absent(_: Request, problem: Exception) -> JSONResponse:

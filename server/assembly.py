@@ -4,22 +4,29 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
+from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.errors import Refused
 from robot_runtime.topics import Block
+from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.control.desk import Desk
+from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
+from server.live.alarms import Alarms
 from server.live.bridge import SENT_BY, Bridge
 from server.live.health import Watch
 from server.live.hub import Hub
+from server.live.inspection import DOWN, Inspection
 from server.live.notices import Notices
 from server.models import SessionRow
 from server.page import Page
@@ -48,21 +55,28 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command]) -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
         self.settings = settings
+        self._ended = ended
+        """How the server before this one has ended unexpectedly, a sentence."""
         self.clock: Clock = SteadyClock()
         self.page = Page(settings.page)
         self.store = Store(settings.data.database)
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.telling = Telling(self.bridge.tell_lease)
+        self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
         self.tidying = Tidying(self.store, settings, self.notices)
         self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
-        self.parts = Parts(commands, settings.data, self.clock, self.notices.tell)
+        self.alarms = Alarms(self.clock, self.notices.tell, self._tell_alarms)
+        self.parts = Parts(commands, settings.data, self.clock, self._see_down)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
+        self.inspection = Inspection(settings, self.clock, self.watch, self.parts, self.store, self.alarms)
         board = Board(settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.jobs = Jobs(settings.data, self.store)
@@ -98,6 +112,12 @@ class Assembly:
         assert isinstance(assembly, Assembly)
         return assembly
 
+    def require_disarmed(self, why: str) -> None:
+        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
+        state = self.watch.state()
+        if state is not None and state.get("armed"):
+            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
+
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:
         """Start everything; end everything. Raises SetupError, StoreError."""
@@ -108,11 +128,15 @@ class Assembly:
             self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await import_samples(self.lab.runs)
+            self.access.open()
             await self.bridge.open()
             tasks.append(asyncio.create_task(self._beat()))
             await self.parts.end_others()
             await self._catch_up(left)
             self._tell_session()
+            self._tell_alarms()
+            if self._ended:
+                self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
             if self.settings.hil.simulator == "elsewhere":
                 for name in SIMULATION:
                     await self.parts.pause(name, SIMULATION_ELSEWHERE)
@@ -126,6 +150,9 @@ class Assembly:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
+                    self.desk.run(),
+                    self.telling.run(),
+                    self.inspection.run(),
                     self._tell_health(),
                 )
             ]
@@ -140,6 +167,7 @@ class Assembly:
             await self.arming.close()
             await self._end_session()
             await self.bridge.close()
+            await self.access.close()
             await asyncio.to_thread(self.store.close)
 
     async def _catch_up(self, left: Left | None) -> None:
@@ -158,8 +186,10 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
-            if block.topic.name == "state" and self.settings.sessions.record_at_arming:
-                self.arming.see(block)
+            if block.topic.name == "state":
+                self.telling.see_run(self.bridge.run)
+                if self.settings.sessions.record_at_arming:
+                    self.arming.see(block)
 
     def _board_occupied(self) -> str | None:
         run, session = self.scenarios.active, self.recorder.session
@@ -176,6 +206,20 @@ class Assembly:
     def _tell_session(self) -> None:
         session = self.recorder.session
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _dismiss(self, device: int, reason: str) -> None:
+        self.desk.dismiss(device)
+        self.hub.dismiss(device, reason)
+
+    def _tell_control(self, message: dict[str, Any]) -> None:
+        self.telling.see_epoch(message["epoch"])
+        self.hub.tell(message)
+
+    def _tell_alarms(self) -> None:
+        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})
+
+    def _see_down(self, part: str, text: str) -> None:
+        self.alarms.begin(DOWN[part], text)
 
     async def _tell_health(self) -> None:
         while True:

@@ -75,7 +75,7 @@ class Chunk(SQLModel, table=True):
 
     __table_args__ = (
         UniqueConstraint("session_id", "topic", "number", name="chunk_place"),
-        Index("chunk_time", "session_id", "topic", "first_time"),
+        Index("chunk_time", "session_id", "topic", "first_time", "last_time", "count"),
     )
 
     id: int | None = Field(default=None, primary_key=True)
@@ -163,3 +163,22 @@ class CommTestCell(SQLModel, table=True):
     seconds: float
     causes: str
     explanation: str
+
+
+class DeviceRow(SQLModel, table=True):
+    """A browser or a program that may come in. Times are UTC (s since 1970); `seen` is kept to the hour.
+
+    `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
+    token). A number is never given again, so that old events do not speak of somebody new.
+    """
+
+    __tablename__ = "device"
+    __table_args__ = (Index("device_secret", "secret", unique=True), {"sqlite_autoincrement": True})
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    role: str
+    kind: str
+    secret: str
+    paired: float
+    seen: float

@@ -4,14 +4,14 @@ Host guards against DNS rebinding, where a foreign name is made to point here; O
 in the operator's browser. Nothing is trusted by its address, and X-Forwarded-* are not looked at.
 """
 
-import json
 from collections.abc import Collection
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+from server.refusing import SAFE_METHODS, refuse
+
 BODY_BYTES_MAX = 65_536
 STREAMED = frozenset({"/api/imports"})
 """Paths that take bodies of any size, piece by piece, and see to their limits themselves."""
@@ -35,7 +35,7 @@ class Guard:
     def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int) -> None:
         self._app = app
         self._hosts = {f"{host}:{port}" for host in allowed_hosts}
-        if port == 80:
+        if port in (80, 443):
             self._hosts.update(allowed_hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -46,16 +46,12 @@ class Guard:
         reason = self._refusal(scope)
         streamed = scope["path"] in STREAMED
         if reason is None and scope["type"] == "http" and not streamed and _has_large_body(scope):
-            await _refuse(
-                send, 413, f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
-            )
+            told = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
+            await refuse(scope, receive, _with_headers(send, scope), 413, told)
         elif reason is None:
             await self._app(scope, receive, _with_headers(send, scope))
-        elif scope["type"] == "websocket":
-            await receive()
-            await send({"type": "websocket.close", "code": 1008, "reason": reason})
         else:
-            await _refuse(send, 403, reason)
+            await refuse(scope, receive, _with_headers(send, scope), 403, reason)
 
     def _refusal(self, scope: Scope) -> str | None:
         """Why this request is refused; None where it is not."""
@@ -101,10 +97,3 @@ def _has_large_body(scope: Scope) -> bool:
     headers = Headers(scope=scope)
     length = headers.get("content-length", "0")
     return "transfer-encoding" in headers or not length.isdecimal() or int(length) > BODY_BYTES_MAX
-
-
-async def _refuse(send: Send, status: int, reason: str) -> None:
-    body = json.dumps({"detail": reason}).encode()
-    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
-    await send({"type": "http.response.start", "status": status, "headers": headers})
-    await send({"type": "http.response.body", "body": body})

@@ -16,6 +16,8 @@ import psutil
 
 from server.processes.keeper import keeper_of
 from server.settings import DataFolder
+from tests.control import Commander
+from tests.shell import ShellToken
 
 ROOT = Path(__file__).resolve().parents[1]
 READY_SECONDS = 40.0
@@ -41,7 +43,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0)
+        self.api = Commander(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()
@@ -61,7 +63,8 @@ class Stack:
     def process(self) -> psutil.Process:
         """The process that was started, or the one that has taken its place: the keeper of the server."""
         pid = keeper_of(DataFolder(self.data))
-        assert pid is not None
+        if pid is None:
+            raise LookupError("no keeper runs")
         return psutil.Process(pid)
 
     @property
@@ -129,12 +132,12 @@ class Stack:
     def stop(self) -> None:
         """Press Ctrl-C and wait for the end."""
         self.api.close()
-        if keeper_of(DataFolder(self.data)) is None:
+        if self._process is None:
             return
-        keeper = self.process
-        keeper.send_signal(signal.SIGINT)
-        try:
-            keeper.wait(_STOP_SECONDS)
-        except psutil.TimeoutExpired:
-            keeper.kill()
-            raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None
+        if keeper_of(DataFolder(self.data)) is not None:
+            keeper = self.process
+            keeper.send_signal(signal.SIGINT)
+            if psutil.wait_procs([keeper], _STOP_SECONDS)[1]:
+                os.killpg(self._process.pid, signal.SIGKILL)
+                raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}")
+        self._process.wait()

@@ -1,5 +1,10 @@
 /** The server's HTTP interface. Every call answers `null` or its result, or what went wrong in words. */
+import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
+import type { State } from './generated/topics';
+import { command, request, send, upload } from './http';
+
+export type { Answer } from './http';
 
 type Schemas = components['schemas'];
 export type Part = Schemas['PartHealth'];
@@ -28,6 +33,8 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
+/** who drives an armed robot: the pilot or the controller */
+export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
 export type Signal = Schemas['Signal'];
 export type Comparison = Schemas['Comparison'];
@@ -48,76 +55,16 @@ export interface Stretch {
   readonly leftOut: number;
 }
 
-export type Answer<T> = { readonly value: T } | { readonly problem: string };
-
-const TIMEOUT = 5000;
 const TIMEOUT_STOP = 2000;
+/** ms; a check takes up to ten seconds */
+const TIMEOUT_CHECK = 15_000;
 /** ms; a board may have to be handed over first, or to get its firmware back */
 const TIMEOUT_COMM_TEST = 120_000;
 /** ms; hours of recordings are read */
 const TIMEOUT_COMPARE = 60_000;
 
-async function send<T>(
-  method: string,
-  path: string,
-  body: object | undefined,
-  timeout: number,
-  read: (response: Response) => Promise<T>,
-): Promise<Answer<T>> {
-  try {
-    const response = await fetch(`/api${path}`, {
-      method,
-      headers: body ? { 'Content-Type': 'application/json' } : {},
-      ...(body ? { body: JSON.stringify(body) } : {}),
-      signal: AbortSignal.timeout(timeout),
-    });
-    if (!response.ok) return { problem: describe(response.status, await response.text()) };
-    return { value: await read(response) };
-  } catch {
-    return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
-  }
-}
-
-function request<T>(method: string, path: string, body?: object, timeout = TIMEOUT): Promise<Answer<T>> {
-  return send(method, path, body, timeout, async (response) => {
-    const text = await response.text();
-    return (text === '' ? null : JSON.parse(text)) as T;
-  });
-}
-
 async function readStretch(response: Response): Promise<Stretch> {
   return { blocks: await response.arrayBuffer(), leftOut: Number(response.headers.get('Left-Out')) };
-}
-
-/** Fetch tells nothing of how far it has sent a body. */
-function upload<T>(path: string, file: File, progress: (share: number) => void): Promise<Answer<T>> {
-  return new Promise((resolve) => {
-    const sending = new XMLHttpRequest();
-    sending.upload.onprogress = (event) => event.lengthComputable && progress(event.loaded / event.total);
-    sending.onload = () => {
-      if (sending.status >= 400) resolve({ problem: describe(sending.status, sending.responseText) });
-      else resolve({ value: JSON.parse(sending.responseText) as T });
-    };
-    sending.onerror = () => resolve({ problem: `${file.name} could not be sent whole. Look whether the server runs, and try again.` });
-    sending.open('POST', `/api${path}`);
-    sending.send(file);
-  });
-}
-
-function describe(status: number, text: string): string {
-  try {
-    const { detail } = JSON.parse(text) as { detail?: unknown };
-    if (typeof detail === 'string') return detail;
-    if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
-  } catch {
-    // Not JSON: something between the page and the server answered in its place.
-  }
-  return `The server refused with status ${status} and gave no reason. Try again, and look into its log.`;
-}
-
-async function command(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
-  const answer = await request<null>(method, path, body, timeout);
-  return 'problem' in answer ? answer.problem : null;
 }
 
 /** why the robot cannot be commanded from this page now; STOP always can */
@@ -128,13 +75,28 @@ export function refuseCommands(reason: string | null): void {
   refusal = reason;
 }
 
-function order(method: string, path: string, body?: object): Promise<string | null> {
-  return refusal === null ? command(method, path, body) : Promise.resolve(refusal);
+function order(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
+  return refusal === null ? command(method, path, body, timeout) : Promise.resolve(refusal);
 }
 
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
-  arm: () => order('POST', '/robot/arm'),
+  arm: (mode: Piloting) => order('POST', '/robot/arm', { mode }),
+  changeMode: (mode: Piloting) => order('PUT', '/robot/mode', { mode }),
+  checkFins: () => order('POST', '/robot/check-fins', undefined, TIMEOUT_CHECK),
+  acknowledge: () => order('POST', '/robot/acknowledge'),
+  takeControl: () => command('POST', '/control/take'),
+  releaseControl: () => command('POST', '/control/release'),
+  refuseControl: () => command('POST', '/control/refuse'),
+  handOver: (seat: number) => command('POST', '/control/hand-over', { seat }),
+  me: () => request<Me>('GET', '/access/me'),
+  pair: (code: string, name: string) => request<Me>('POST', '/access/pair', { code, name }),
+  signOut: () => command('POST', '/access/sign-out'),
+  invite: (role: Role) => request<Invitation>('POST', '/access/codes', { role }),
+  devices: () => request<Device[]>('GET', '/access/devices'),
+  changeDevice: (device: number, said: { role?: Role; name?: string }) => command('PATCH', `/access/devices/${device}`, said),
+  revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
+  makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
   controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
   setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
   steering: (by: Course) => order('PUT', '/robot/steering', { by }),
@@ -170,7 +132,7 @@ export const api = {
       'GET',
       `/sessions/${id}/blocks?start=${start}&end=${end}${history === undefined ? '' : `&history=${history}`}`,
       undefined,
-      TIMEOUT,
+      undefined,
       readStretch,
     ),
   csv: (id: Session['id']) => `/api/sessions/${id}/csv`,

@@ -3,15 +3,23 @@ import './styles/tokens.css';
 import './styles/base.css';
 import './styles/listing.css';
 import { mount } from 'svelte';
-import App from './App.svelte';
-import { LiveFeed } from './live/feed';
+import { Access } from './access/access.svelte';
+import { browserName, takeCode } from './access/code';
+import Root from './Root.svelte';
 import { Router } from './router.svelte';
 import { Theme } from './theme.svelte';
 
 const place = document.getElementById('page');
 if (place === null) throw new Error('index.html has no element "page"');
 const protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
-mount(App, {
+const access = new Access();
+const open = (code: string | null) => void access.open(code, browserName(navigator.userAgent));
+open(takeCode());
+window.addEventListener('hashchange', () => {
+  const code = takeCode();
+  if (code !== null) open(code);
+});
+mount(Root, {
   target: place,
-  props: { feed: new LiveFeed(`${protocol}//${location.host}/api/live`), router: new Router(), theme: new Theme() },
+  props: { access, socket: `${protocol}//${location.host}/api/live`, router: new Router(), theme: new Theme() },
 });

@@ -9,7 +9,7 @@ export const PAGES = [
 ] as const;
 
 /** Pages that are reached from others. */
-const INNER = ['replay'] as const;
+const INNER = ['replay', 'people'] as const;
 
 export type PageName = (typeof PAGES)[number]['name'] | (typeof INNER)[number];
 

@@ -15,7 +15,10 @@ describe('a page that may not command', () => {
     });
     refuseCommands('a replay');
     const orders = [
-      () => api.arm(),
+      () => api.arm('manual'),
+      () => api.changeMode('automatic'),
+      () => api.checkFins(),
+      () => api.acknowledge(),
       () => api.controller('pid', {}),
       () => api.setPoints({ default: 1 }),
       () => api.card(null),
@@ -26,6 +29,6 @@ describe('a page that may not command', () => {
     expect(await api.stop()).toBeNull();
     expect(sent).toEqual(['/api/robot/stop']);
     refuseCommands(null);
-    expect(await api.arm()).toBeNull();
+    expect(await api.arm('manual')).toBeNull();
   });
 });

@@ -11,7 +11,7 @@ class ServerEnd {
   readyState = 0;
   onopen: (() => void) | null = null;
   onmessage: ((event: { data: unknown }) => void) | null = null;
-  onclose: ((event: { reason: string }) => void) | null = null;
+  onclose: ((event: { reason: string; code: number }) => void) | null = null;
   sent: string[] = [];
 
   constructor() {
@@ -22,15 +22,15 @@ class ServerEnd {
     this.sent.push(text);
   }
 
-  close(reason = '') {
+  close(reason = '', code = 1006) {
     this.readyState = 3;
-    this.onclose?.({ reason });
+    this.onclose?.({ reason, code });
   }
 
   greet(hello: object = {}) {
     this.readyState = ServerEnd.OPEN;
     this.onopen?.();
-    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', ...hello });
+    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', you: YOU, seat_key: 'key', ...hello });
   }
 
   tell(message: object) {
@@ -42,6 +42,8 @@ class ServerEnd {
   }
 }
 
+const YOU = { name: 'Firefox on Linux', role: 'operator', seat: 7 };
+const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve()) };
 const server = () => ServerEnd.opened.at(-1) ?? new ServerEnd();
 let live: Live;
 let end: () => void;
@@ -51,8 +53,11 @@ beforeEach(() => {
   ServerEnd.opened = [];
   vi.stubGlobal('WebSocket', ServerEnd);
   vi.stubGlobal('window', new EventTarget());
+  vi.stubGlobal('document', Object.assign(new EventTarget(), { hidden: false, hasFocus: () => true }));
   vi.stubGlobal('requestAnimationFrame', () => 0);
-  const feed = new LiveFeed('ws://robot/api/live');
+  access.know.mockClear();
+  access.check.mockClear();
+  const feed = new LiveFeed('ws://robot/api/live', access);
   live = feed.live;
   end = feed.start();
 });
@@ -176,6 +181,66 @@ describe('Live', () => {
     server().greet();
     server().close('Nothing was read for 5 s.');
     expect(live.farewell).toBe('Nothing was read for 5 s.');
+  });
+});
+
+describe('a page that has a seat', () => {
+  const control = (holder: number | null) =>
+    ({ op: 'control', epoch: 3, holder: holder === null ? null : { seat: holder, name: 'x' }, request: null, refused: null }) as const;
+  const calls: { address: string; headers: Record<string, string> }[] = [];
+  const drives = () => server().sent.map((text) => JSON.parse(text) as { op: string; axes: number[]; lease: number }).filter(({ op }) => op === 'drive');
+
+  beforeEach(() => {
+    calls.length = 0;
+    vi.stubGlobal('fetch', (address: string, init: { headers: Record<string, string> }) => {
+      calls.push({ address, headers: init.headers });
+      return Promise.resolve(new Response('{}'));
+    });
+  });
+
+  it('takes free control once, by its seat', () => {
+    server().greet();
+    expect(access.know).toHaveBeenCalledWith(YOU);
+    server().tell(control(null));
+    server().tell(control(null));
+    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat': 'page', 'X-Mucat-Seat': 'key' } }]);
+    expect(live.barred).not.toBeNull();
+    server().tell(control(7));
+    expect(live.barred).toBeNull();
+  });
+
+  it('drives while it may, and says neutral and then nothing as soon as it may not', () => {
+    server().greet();
+    server().tell(control(7));
+    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, mode: 'manual', armed: true, alarms: [], paces: [] }]));
+    vi.advanceTimersByTime(1000);
+    expect(drives().length).toBeGreaterThanOrEqual(9);
+    expect(drives().every(({ axes, lease }) => lease === 3 && axes.every((value) => value === 0))).toBe(true);
+    server().tell(control(8));
+    const before = drives().length;
+    vi.advanceTimersByTime(1000);
+    expect(drives().length).toBe(before + 1);
+  });
+
+  it('asks whether it is signed in still where the server sends it away or lets it in no more', () => {
+    server().greet();
+    server().close('Nothing was read for 5 s.', 1013);
+    expect(access.check).not.toHaveBeenCalled();
+    vi.advanceTimersByTime(3000);
+    server().greet();
+    server().close('Access was revoked by an operator.', 1008);
+    expect(access.check).toHaveBeenLastCalledWith('Access was revoked by an operator.');
+    vi.advanceTimersByTime(3000);
+    server().close();
+    expect(access.check).toHaveBeenCalledTimes(2);
+  });
+
+  it('shows the alarms of robot and server together', () => {
+    const alarm = { severity: 'alarm', active: true, acknowledged: false, what: '', cause: '', remedy: '' };
+    server().greet();
+    server().give(documentBlock(OTHER_TOPICS.state, [{ time: 100, mode: 'disarmed', alarms: [{ ...alarm, fault: 'a', since: 1 }] }]));
+    server().tell({ op: 'alarms', alarms: [{ ...alarm, fault: 'b', since: 2 }] });
+    expect(live.alarms.map(({ fault }) => fault)).toEqual(['b', 'a']);
   });
 });
 

@@ -3,8 +3,13 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from starlette.requests import HTTPConnection
+
 Role = Literal["viewer", "operator"]
 Kind = Literal["browser", "program", "shell"]
+
+IDENTITY = "identity"
+"""The entry of an ASGI scope that holds who asks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,3 +20,14 @@ class Identity:
     name: str
     role: Role
     kind: Kind
+
+    @staticmethod
+    def of(connection: HTTPConnection) -> "Identity":
+        """Who asks this; of a request that was admitted there is one."""
+        identity = connection.scope[IDENTITY]
+        assert isinstance(identity, Identity)
+        return identity
+
+
+SHELL = Identity(device=0, name="shell", role="operator", kind="shell")
+"""Whoever can read this computer's data folder."""

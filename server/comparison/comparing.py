@@ -43,7 +43,7 @@ from server.comparison.shapes import (
     WantedComparison,
     WantedLines,
 )
-from server.comparison.signals import Signal, list_signals
+from server.comparison.signals import Signal, list_signals, split
 from server.models import SessionRow
 from server.sessions.recording import Recording
 from server.sessions.session import find_row
@@ -203,8 +203,9 @@ def _shift(part: TimeRange, offset: float) -> Span:
 
 def _wanted_signals(names: Sequence[str], laid: Sequence[_Laid]) -> list[Signal]:
     known: dict[str, Signal] = {}
+    topics = {split(name)[0] for name in names}
     for one in laid:
-        for signal in list_signals(one.recording):
+        for signal in list_signals(one.recording, topics):
             known.setdefault(signal.name, signal)
     return [known[name] for name in names if name in known]
 

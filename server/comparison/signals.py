@@ -1,6 +1,6 @@
 """What of a session can be drawn over time: each column of its rows, and numbers of some documents."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,11 +52,11 @@ DOCUMENT_COLUMNS: Mapping[str, Mapping[str, DocumentColumn]] = {
 }
 
 
-def list_signals(recording: Recording) -> list[Signal]:
-    """The signals of the topics that have samples. Raises StoreError."""
+def list_signals(recording: Recording, topics: Container[str] | None = None) -> list[Signal]:
+    """The signals of these topics, as far as they have samples; of all without. Raises StoreError."""
     found: list[Signal] = []
     for topic, described in recording.topics.items():
-        if not recording.has(topic):
+        if (topics is not None and topic not in topics) or not recording.has(topic):
             continue
         if described["kind"] == "rows":
             found += _row_signals(topic, described)

@@ -17,7 +17,10 @@ def count_strokes(angle: NDArray[np.floating[Any]], swing_least: float = SWING_L
     A swing runs from a turning point to the next, where smaller swings within a larger one do not count
     (hysteresis filtering, as before rainflow counting: ASTM E1049-85).
     """
-    return _swings(np.unwrap(angle), swing_least) / 2
+    angles = np.asarray(angle, np.float64)
+    # Unwrapping costs as much as all the rest, and a fin seldom turns right round.
+    turns = np.abs(np.diff(angles)).max(initial=0.0) >= np.pi
+    return _swings(np.unwrap(angles) if turns else angles, swing_least) / 2
 
 
 def _swings(values: Floats, least: float) -> int:

@@ -57,6 +57,8 @@ class Watch:
         self._bytes_received = -1
         self._bytes_grew: float | None = None
         self._unrenderable = missing()
+        self.heard = {"runtime": float("-inf"), "simulator": float("-inf")}
+        """s; when anything came from these processes last."""
         self.firmware_away: str | None = None
         """Why the board does not run the robot's firmware, and what to do; None where it does."""
 
@@ -64,6 +66,8 @@ class Watch:
         """Take note of a block."""
         now = self._clock.now()
         self._newest[block.topic.name] = (now, block)
+        if block.topic.name != "notice":
+            self.heard["simulator" if block.topic.name == "truth" else "runtime"] = now
         if block.topic.name == "link":
             self._see_link(block, now)
 

@@ -29,6 +29,8 @@ STALL_SECONDS = 5.0
 WATCH_SECONDS = 1.0
 TRY_AGAIN_LATER = 1013
 """WebSocket close code for a client that the server cannot go on serving now."""
+POLICY_VIOLATION = 1008
+"""WebSocket close code for a client that may not go on."""
 
 Send = Callable[[bytes | str], Awaitable[None]]
 
@@ -44,9 +46,10 @@ class Evicted(Exception):  # noqa: N818 - it says what happened
 class Client:
     """One open socket: its places in the lanes, and what is for it alone."""
 
-    def __init__(self, hub: "Hub", send: Send, clock: Clock) -> None:
+    def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
+        self.device = device
         self.sending_since: float | None = None
-        self.stalled = False
+        self.dismissal: Evicted | None = None
         self._hub = hub
         self._raw_send = send
         self._clock = clock
@@ -63,7 +66,8 @@ class Client:
         """Send this soon, in order. Raises Evicted where too many answers already wait to be read."""
         if len(self._answers) >= ANSWERS_MAX:
             raise Evicted("Too many answers wait unread.")
-        self._answers.append(json.dumps(message, ensure_ascii=False))
+        # In ASCII: what a client has said may hold halves of characters, which no other text can.
+        self._answers.append(json.dumps(message))
         self._wake.set()
 
     def tell(self, kind: str, text: str) -> None:
@@ -206,13 +210,21 @@ class Hub:
         self._count_audience()
         client.wake()
 
+    def dismiss(self, device: int, reason: str) -> None:
+        """End all connections of this device, and tell it why."""
+        for client in self._clients:
+            if client.device == device:
+                self._end(client, Evicted(reason, POLICY_VIOLATION))
+
     async def serve(
-        self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]]
+        self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]], device: int
     ) -> None:
-        """Serve one socket until `receive` returns. Raises Evicted with the reason where it must go."""
+        """Serve one socket of a device until `receive` returns. Raises Evicted with the reason where it must
+        go.
+        """
         if len(self._clients) >= CLIENTS_MAX:
             raise Evicted(f"{CLIENTS_MAX} pages are open already; close one.")
-        client = Client(self, send, self._clock)
+        client = Client(self, send, self._clock, device)
         client.answer(greeting)
         for kind, text in self._newest.items():
             client.tell(kind, text)
@@ -227,8 +239,8 @@ class Hub:
             sender.cancel()
             receiver.cancel()
             outcomes = await asyncio.gather(sender, receiver, return_exceptions=True)
-        if client.stalled:
-            raise Evicted(f"Nothing was read for {STALL_SECONDS:g} s.")
+        if client.dismissal is not None:
+            raise client.dismissal
         for outcome in outcomes:
             if isinstance(outcome, Exception):
                 raise outcome
@@ -238,10 +250,13 @@ class Hub:
         while True:
             await asyncio.sleep(WATCH_SECONDS)
             limit = self._clock.now() - STALL_SECONDS
-            for client, sender in self._clients.items():
+            for client in self._clients:
                 if client.sending_since is not None and client.sending_since < limit:
-                    client.stalled = True
-                    sender.cancel()
+                    self._end(client, Evicted(f"Nothing was read for {STALL_SECONDS:g} s."))
+
+    def _end(self, client: Client, reason: Evicted) -> None:
+        client.dismissal = reason
+        self._clients[client].cancel()
 
     def _leave(self, client: Client) -> None:
         del self._clients[client]

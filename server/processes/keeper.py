@@ -9,6 +9,7 @@ is, and forks a second of its own. So each of the three may be killed, and the o
 """
 
 import gc
+import importlib
 import mmap
 import os
 import select
@@ -235,6 +236,8 @@ def relieve(folder: DataFolder) -> None:
     left = PidFile(folder.keeper).read()
     if left is None or left.made != _LEFT:
         return
+    # What takes long comes first, so that the robot is without a server for a moment only.
+    importlib.import_module("server.app")
     with suppress(ProcessLookupError):
         os.kill(left.pid, GIVE_WAY)
     end = time.monotonic() + _GIVE_WAY_SECONDS

@@ -43,6 +43,8 @@ SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connec
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
 Tell = Callable[[str, Severity, str], None]
+SeeDown = Callable[[str, str], None]
+"""Told a part's name, and in a sentence how it has ended unexpectedly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +72,16 @@ class Command:
 class Part:
     """One supervised process; `run` is the folder that tells the next server of it."""
 
-    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, tell: Tell) -> None:
+    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, see_down: SeeDown) -> None:
         self.command = command
         self.state: State = "waiting"
         self.since = clock.now()
         self.problem = ""
         self._log = log
+        self._logged_before = 0
         self._pid_file = pid_file(run, command.name)
         self._clock = clock
-        self._tell = tell
+        self._see_down = see_down
         self._process: Process | AdoptedProcess | None = None
         self._backoff = Backoff()
 
@@ -135,10 +138,11 @@ class Part:
         finally:
             trimming.cancel()
         self._let_go()
-        last = self._log.last(LINES_TOLD)
+        last = self._log.last(LINES_TOLD, self._logged_before)
         return describe_status(status) + (f". Its last words: {last}" if last else "")
 
     def _start(self) -> Process:
+        self._logged_before = self._log.size()
         with self._log.open() as output:
             process = Process(self.command.arguments, output)
         try:
@@ -162,7 +166,7 @@ class Part:
         self.problem = problem
         self._set("failed")
         text = f"The {self.command.title} {problem}. It is started again {describe_pause(pause)}."
-        self._tell(self.command.name, "caution", text)
+        self._see_down(self.command.name, text)
 
     async def end(self) -> None:
         """End the process, also one that a killed server has left and that was not taken over yet."""
@@ -191,10 +195,14 @@ class Part:
 class Parts:
     """All parts of this robot, by name."""
 
-    def __init__(self, commands: Sequence[Command], folder: DataFolder, clock: Clock, tell: Tell) -> None:
+    def __init__(
+        self, commands: Sequence[Command], folder: DataFolder, clock: Clock, see_down: SeeDown
+    ) -> None:
         self._run = folder.run
         self._parts = {
-            command.name: Part(command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, tell)
+            command.name: Part(
+                command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
+            )
             for command in commands
         }
         self._tasks: dict[str, asyncio.Task[None]] = {}

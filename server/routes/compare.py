@@ -4,7 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import HTMLResponse
+from fastapi.responses import HTMLResponse, Response
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from server.assembly import Assembly
@@ -56,8 +56,8 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
     "/compare/report",
     summary="A comparison as one HTML file",
     operation_id="getComparisonReport",
-    response_class=HTMLResponse,
-    responses=UNKNOWN,
+    response_class=Response,
+    responses={200: {"content": {"text/html": {}}, "description": "The file"}, **UNKNOWN},
 )
 def get_report(request: Request, query: Annotated[ReportQuery, Query()]) -> HTMLResponse:
     """Charts, figures and differences, with all that they need: it opens without any network."""

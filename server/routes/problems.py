@@ -14,3 +14,13 @@ class Problem(BaseModel):
 def answers(**codes: str) -> dict[int | str, dict[str, Any]]:
     """Descriptions for the interface's document, by status: `answers(_409="...")`."""
     return {int(code[1:]): {"model": Problem, "description": text} for code, text in codes.items()}
+
+
+EVERYWHERE: dict[int | str, dict[str, Any]] = {
+    "4XX": {
+        "model": Problem,
+        "description": "Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), "
+        "not valid (422)",
+    }
+}
+"""What any operation may answer."""

@@ -11,7 +11,12 @@ from server.routes.problems import answers
 from server.sessions.storage import check_room
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
-COMMAND = {**answers(_409="The runtime refuses", _422="The request is not valid"), **SILENT}
+COMMAND = {
+    **answers(
+        _409="The runtime refuses", _422="The request is not valid", _423="Control is with somebody else"
+    ),
+    **SILENT,
+}
 
 router = APIRouter(prefix="/api/robot", tags=["robot"])
 
@@ -116,7 +121,9 @@ async def check_fins(request: Request) -> None:
 )
 async def acknowledge(request: Request) -> None:
     """Say that all alarms were seen; after a failsafe the robot may be armed again from then on."""
-    await Assembly.of(request).bridge.command("acknowledge", {})
+    assembly = Assembly.of(request)
+    assembly.alarms.acknowledge()
+    await assembly.bridge.command("acknowledge", {})
 
 
 @router.put(

@@ -1,4 +1,12 @@
-"""Debian's Chromium, as the tests and the measurements start it."""
+"""Debian's Chromium, as the tests and the measurements start it and sign in with it."""
+
+from pathlib import Path
+
+import httpx
+from playwright.sync_api import BrowserContext
+
+from server.settings import DataFolder
+from tests.shell import ShellToken
 
 EXECUTABLE = "/usr/bin/chromium"
 ARGUMENTS = [
@@ -11,3 +19,13 @@ ARGUMENTS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+
+
+def sign_in(context: BrowserContext, url: str, data: Path) -> None:
+    """Pair this browser with the server of this data folder, as an operator's."""
+    with httpx.Client(base_url=f"{url}/api/access", auth=ShellToken(DataFolder(data))) as shell:
+        made = shell.post("/codes", json={"role": "operator"}).raise_for_status().json()
+    paired = context.request.post(
+        f"{url}/api/access/pair", data={"code": made["code"], "name": "Chromium"}, headers={"Origin": url}
+    )
+    assert paired.ok, paired.text()

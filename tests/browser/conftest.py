@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, StorageState, sync_playwright
 
 from robot_runtime.messages import Messages
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
 DESKTOP = {"width": 1440, "height": 900}
@@ -35,20 +35,35 @@ def stack(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stack]:
         yield stack
 
 
+@pytest.fixture(scope="package")
+def cookies(browser: Browser, stack: Stack) -> StorageState:
+    """What an operator's browser keeps."""
+    context = browser.new_context()
+    sign_in(context, stack.url, stack.data)
+    kept = context.storage_state()
+    context.close()
+    return kept
+
+
 @pytest.fixture(params=[DESKTOP, PHONE], ids=["desktop", "phone"])
-def any_page(request: pytest.FixtureRequest, browser: Browser, stack: Stack) -> Iterator[Page]:
+def any_page(
+    request: pytest.FixtureRequest, browser: Browser, stack: Stack, cookies: StorageState
+) -> Iterator[Page]:
     """The page at both sizes; what its code complains about fails the test."""
-    yield from _open(browser, stack, request.param)
+    yield from _open(browser, stack, cookies, request.param)
 
 
 @pytest.fixture
-def page(browser: Browser, stack: Stack) -> Iterator[Page]:
+def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
     """The page at desktop size; what its code complains about fails the test."""
-    yield from _open(browser, stack, DESKTOP)
+    yield from _open(browser, stack, cookies, DESKTOP)
 
 
-def _open(browser: Browser, stack: Stack, size: dict[str, int]) -> Iterator[Page]:
-    context = browser.new_context(viewport={"width": size["width"], "height": size["height"]})
+def _open(browser: Browser, stack: Stack, cookies: StorageState, size: dict[str, int]) -> Iterator[Page]:
+    context = browser.new_context(
+        viewport={"width": size["width"], "height": size["height"]},
+        storage_state=cookies,
+    )
     page = context.new_page()
     complaints: list[str] = []
     # Every test finds the robot at the surface, wherever the one before has left it.

@@ -132,6 +132,19 @@ def test_fins_flap_only_when_armed(robot: Robot) -> None:
     assert all(packet.drive == (0, 0, 0, 0) for packet in robot.received if isinstance(packet, Motor))
 
 
+def test_a_command_from_before_the_arming_is_not_followed(robot: Robot) -> None:
+    robot.greet()
+    robot.say(FORWARD)
+    robot.run(10)
+    robot.say(Start(epoch=robot.epoch))
+    robot.run(20)
+    robot.received.clear()
+    resting = StatusFlag.ARMED | StatusFlag.NEUTRAL
+    assert robot.status().flags & resting == resting
+    robot.run(200)
+    assert span(robot.received) < RESTING
+
+
 def test_arming_alone_moves_no_fin(robot: Robot) -> None:
     for motor, angle in zip(robot.motors, (0.9, -2.0, 3.0, 0.1), strict=True):
         motor.shaft = angle

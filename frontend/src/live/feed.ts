@@ -1,4 +1,9 @@
+import type { Access } from '../access/access.svelte';
+import { api } from '../api';
+import { Control } from '../control/control.svelte';
+import { Pilot } from '../drive/pilot.svelte';
 import { DEFINITIONS_HASH } from '../generated/topics';
+import { sitOn } from '../http';
 import { readBlocks, type Block } from './blocks';
 import { SteadyClock } from './clock';
 import { Live } from './live.svelte';
@@ -13,20 +18,35 @@ const CLOCK_JUMP = 5;
 /** The robot as it is now: fills a `Live` from the live socket. */
 export class LiveFeed {
   readonly live: Live;
+  readonly pilot: Pilot;
   readonly #progress = new Progress();
   readonly #steady = new SteadyClock(() => performance.now() / 1000);
   readonly #socket: LiveSocket;
+  readonly #control: Control;
 
-  constructor(url: string) {
+  /** @param access whoever uses this page; told where the server does not know them any more */
+  constructor(
+    url: string,
+    private readonly access: Pick<Access, 'know' | 'check'>,
+  ) {
     this.#socket = new LiveSocket(url, {
       opened: () => this.#opened(),
-      closed: (reason) => this.#closed(reason),
+      closed: (reason, refused) => this.#closed(reason, refused),
       text: (text) => this.#read(text),
       bytes: (buffer) => this.#take(buffer),
       roundTrip: (milliseconds) => (this.live.roundTrip = milliseconds),
     });
     const stop = new Stop(() => this.#socket.send({ op: 'stop' }));
-    this.live = new Live(() => this.#steady.now(), stop);
+    this.#control = new Control(
+      { take: api.takeControl, release: api.releaseControl, refuse: api.refuseControl, handOver: api.handOver },
+      () => !document.hidden,
+    );
+    this.live = new Live(() => this.#steady.now(), stop, this.#control);
+    this.pilot = new Pilot({
+      say: (said) => this.#socket.send({ op: 'drive', ...said }),
+      now: () => this.#steady.now(),
+      lease: () => this.#lease(),
+    });
     this.live.onObserve = () => this.#watch();
   }
 
@@ -34,13 +54,26 @@ export class LiveFeed {
   start(): () => void {
     this.#socket.start();
     const rest = this.live.beat();
+    const land = this.pilot.start();
     const wake = () => this.#socket.retryNow();
+    const { consider } = this.#control;
     window.addEventListener('online', wake);
+    document.addEventListener('visibilitychange', consider);
     return () => {
       rest();
+      land();
       window.removeEventListener('online', wake);
+      document.removeEventListener('visibilitychange', consider);
       this.#socket.end();
+      sitOn(null);
     };
+  }
+
+  /** The lease to drive by; null where this page may not drive, or nobody looks at it. */
+  #lease(): number | null {
+    const { connection, state } = this.live;
+    const drives = connection === 'open' && state?.mode === 'manual' && this.#control.mine;
+    return drives && !document.hidden && document.hasFocus() ? (this.#control.now?.epoch ?? null) : null;
   }
 
   #opened(): void {
@@ -58,9 +91,12 @@ export class LiveFeed {
     this.#socket.send({ op: 'watch', pictures: this.live.observed ? ['picture', 'observer'] : ['picture'] });
   }
 
-  #closed(reason: string): void {
+  #closed(reason: string, refused: boolean): void {
     this.live.connection = 'lost';
     this.live.roundTrip = null;
+    this.#control.leave();
+    sitOn(null);
+    if (refused) void this.access.check(reason);
     if (reason !== '') this.live.farewell = reason;
   }
 
@@ -73,6 +109,8 @@ export class LiveFeed {
     else if (message.op === 'session') live.recording = message.recording;
     else if (message.op === 'scenario') live.scenario = message;
     else if (message.op === 'comm_test') live.commTest.take(message.active, message.cell);
+    else if (message.op === 'control') this.#control.hear(message);
+    else if (message.op === 'alarms') live.serverAlarms = message.alarms;
     else if (message.op === 'error') live.serverError = message.text;
     else if (message.op === 'pong') this.#socket.answered(message.id);
     else live.dropped.set(message.topic, (live.dropped.get(message.topic) ?? 0) + message.count);
@@ -89,6 +127,9 @@ export class LiveFeed {
       this.#progress.forget();
       live.clear();
     }
+    sitOn(hello.seat_key);
+    this.access.know(hello.you);
+    this.#control.greet(hello.you);
     this.#steady.observe(hello.steady);
     live.hello = hello;
     live.instant = hello;

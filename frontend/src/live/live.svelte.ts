@@ -2,6 +2,7 @@ import { createContext } from 'svelte';
 import { SvelteMap } from 'svelte/reactivity';
 import {
   OTHER_TOPICS,
+  type Alarm,
   type DebugLine,
   type Detection,
   type RobotEvent,
@@ -10,6 +11,8 @@ import {
 } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
+import { inOrder } from '../alarms/order';
+import type { Control } from '../control/control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
@@ -52,6 +55,8 @@ export class Live {
   /** what a bystander in the simulated water sees; comes only while somebody asked for it with `observe` */
   observer = $state.raw<Picture | null>(null);
   serverError = $state('');
+  /** alarms of the server, which sees what the runtime cannot: that it is silent, for one */
+  serverAlarms = $state.raw<readonly Alarm[]>([]);
   readonly rings = createRings();
   readonly debug = new Lines<DebugLine>(CONSOLE_LINES);
   readonly events = new Lines<RobotEvent>(EVENT_LINES);
@@ -74,13 +79,33 @@ export class Live {
 
   /**
    * @param clock the steady clock of what is shown, s; NaN while unknown
-   * @param replayed whether this shows the past, where nothing can be commanded
+   * @param control null where this shows the past, where nothing can be commanded
    */
   constructor(
     private readonly clock: () => number,
     readonly stop: Stop,
-    readonly replayed = false,
+    readonly control: Control | null,
   ) {}
+
+  /** whether this shows the past */
+  get replayed(): boolean {
+    return this.control === null;
+  }
+
+  /** Why nothing can be changed from here at all, in words; null where it can. */
+  get watching(): string | null {
+    return this.control?.you?.role === 'viewer' ? 'Viewers may watch and STOP. This needs an operator.' : null;
+  }
+
+  /** Why the robot cannot be commanded from here, in words; null where it can. STOP always can. */
+  get barred(): string | null {
+    return this.control === null ? 'This is a replay: nothing can be commanded here.' : this.control.barred;
+  }
+
+  /** What is wrong, or was and nobody has acknowledged it; the most urgent first. */
+  get alarms(): readonly Alarm[] {
+    return inOrder([...(this.state?.alarms ?? []), ...this.serverAlarms]);
+  }
 
   /** Let time pass for what is read at leisure. Returns what ends it. */
   beat(): () => void {

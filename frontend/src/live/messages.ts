@@ -1,5 +1,7 @@
 /** The text messages of the live socket. */
 import type { Cell, Part, ScenarioState, Session } from '../api';
+import type { ControlMessage, You } from '../control/messages';
+import type { Alarm } from '../generated/topics';
 
 export interface Hello {
   op: 'hello';
@@ -10,6 +12,9 @@ export interface Hello {
   /** the same instant, s since 1970 */
   utc: number;
   page_version: string;
+  you: You;
+  /** shows that a command comes from this page */
+  seat_key: string;
 }
 
 /** The communication test that runs. */
@@ -36,11 +41,24 @@ export type ServerMessage =
   | { op: 'session'; recording: Session | null }
   | { op: 'comm_test'; active: CommTestActive | null; cell: (Cell & { run: number }) | null }
   | ({ op: 'scenario' } & ScenarioState)
+  | ControlMessage
+  | { op: 'alarms'; alarms: Alarm[] }
   | { op: 'error'; text: string }
   | { op: 'dropped'; topic: string; count: number }
   | { op: 'pong'; id: number };
 
-const OPERATIONS: ReadonlySet<unknown> = new Set(['hello', 'health', 'session', 'comm_test', 'scenario', 'error', 'dropped', 'pong']);
+const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
+  'hello',
+  'health',
+  'session',
+  'comm_test',
+  'scenario',
+  'control',
+  'alarms',
+  'error',
+  'dropped',
+  'pong',
+]);
 
 /** The message in `text`; null where this page does not know its operation. */
 export function readMessage(text: string): ServerMessage | null {

@@ -4,11 +4,16 @@ const PING_EVERY = 1000;
 const SILENT_AFTER = 4000;
 const RETRY_FIRST = 250;
 const RETRY_MOST = 3000;
+/** close code of a server that will not serve this page (RFC 6455, 7.4.1) */
+const POLICY_VIOLATION = 1008;
 
 export interface SocketEvents {
   opened(): void;
-  /** The connection is gone; the next attempt comes by itself. `reason` is the server's, where it gave one. */
-  closed(reason: string): void;
+  /**
+   * The connection is gone; the next attempt comes by itself. `reason` is the server's, where it gave one; `refused`
+   * says that the server may have meant this page rather than the connection.
+   */
+  closed(reason: string, refused: boolean): void;
   text(text: string): void;
   bytes(buffer: ArrayBuffer): void;
   /** Time from a ping to its answer, ms. */
@@ -70,7 +75,9 @@ export class LiveSocket {
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
     this.#heard = performance.now();
+    let opened = false;
     socket.onopen = () => {
+      opened = true;
       this.#attempt = 0;
       this.#heard = performance.now();
       this.#pinged.clear();
@@ -81,17 +88,17 @@ export class LiveSocket {
       if (typeof message.data === 'string') this.events.text(message.data);
       else this.events.bytes(message.data);
     };
-    socket.onclose = (event) => this.#lost(socket, event.reason);
+    socket.onclose = (event) => this.#lost(socket, event.reason, !opened || event.code === POLICY_VIOLATION);
   }
 
-  #lost(socket: WebSocket, reason = ''): void {
+  #lost(socket: WebSocket, reason = '', refused = false): void {
     if (this.#socket !== socket) return;
     this.#socket = null;
     if (this.#ended) return;
     const retry = Math.min(RETRY_MOST, RETRY_FIRST * 2 ** this.#attempt);
     this.#attempt += 1;
     this.#timer = setTimeout(() => this.#open(), retry);
-    this.events.closed(reason);
+    this.events.closed(reason, refused);
   }
 
   #beat(): void {

@@ -58,7 +58,7 @@ export class Player {
     stop: Stop,
     private readonly clock: () => number = () => performance.now() / 1000,
   ) {
-    this.live = new Live(() => this.#zero + this.#shown, stop, true);
+    this.live = new Live(() => this.#zero + this.#shown, stop, null);
     this.live.connection = 'open';
   }
 

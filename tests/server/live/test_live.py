@@ -17,6 +17,7 @@ from server.web import MESSAGE_BYTES_MAX
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
+from tests.shell import shell_headers
 
 
 def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
@@ -269,7 +270,7 @@ async def stall(served: Served) -> sockets.socket:
         "Connection": "Upgrade",
         "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
         "Sec-WebSocket-Version": "13",
-    }
+    } | shell_headers(served.settings.data)
     lines = "".join(f"{name}: {value}\r\n" for name, value in head.items())
     await loop.sock_sendall(page, f"GET /api/live HTTP/1.1\r\n{lines}\r\n".encode())
     return page

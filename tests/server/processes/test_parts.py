@@ -29,9 +29,7 @@ class Crew:
         self.told: list[tuple[str, str]] = []
         data = DataFolder(folder)
         make_folders(data)
-        self.parts = Parts(
-            commands, data, SteadyClock(), lambda kind, _, text: self.told.append((kind, text))
-        )
+        self.parts = Parts(commands, data, SteadyClock(), lambda name, text: self.told.append((name, text)))
 
     def part(self, name: str) -> Part:
         part = self.parts.get(name)

@@ -1,0 +1,87 @@
+import { createContext } from 'svelte';
+import { api } from '../api';
+import { onSignedOut } from '../http';
+import type { Identity, Me } from './shapes';
+
+/** ms between two looks while the server does not answer */
+const LOOK_AGAIN = 2000;
+
+/** Who uses this page, and whether the robot knows them. */
+export class Access {
+  /** `unknown` until the server has said it, so that nobody sees the sign-in in passing */
+  state = $state<'unknown' | 'out' | 'in'>('unknown');
+  identity = $state.raw<Identity | null>(null);
+  robot = $state('');
+  /** why somebody who was signed in is so no longer, or why a code did not sign in */
+  reason = $state('');
+  /** the server has not answered so far */
+  silent = $state(false);
+
+  constructor() {
+    onSignedOut((why) => this.leave(why));
+  }
+
+  /** Find out who this is, and use the code of a link where there is one and it is of use. */
+  async open(code: string | null, name: string): Promise<void> {
+    let me = await this.#ask();
+    while (me === null) {
+      await new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN));
+      me = await this.#ask();
+    }
+    const needed = code !== null && me.identity?.role !== 'operator';
+    if (needed && (await this.pair(code, name)) === null) return;
+    this.#take(me);
+  }
+
+  /** Find out whether this page is signed in still; `reason` is why it may not be. */
+  async check(reason: string): Promise<void> {
+    const me = await this.#ask();
+    if (me === null) return;
+    if (me.signed_in) this.#take(me);
+    else this.leave(reason === '' ? 'This browser is not signed in any more.' : reason);
+  }
+
+  /** Use a code. Returns what went wrong, or null. */
+  async pair(code: string, name: string): Promise<string | null> {
+    const answer = await api.pair(code, name);
+    this.reason = 'problem' in answer ? answer.problem : '';
+    if ('problem' in answer) return answer.problem;
+    this.#take(answer.value);
+    return null;
+  }
+
+  async signOut(): Promise<string | null> {
+    const problem = await api.signOut();
+    if (problem !== null) return problem;
+    this.leave('');
+    this.reason = 'You have signed out.';
+    return null;
+  }
+
+  /** This page is not signed in any more. */
+  leave(reason: string): void {
+    if (this.state !== 'in') return;
+    this.state = 'out';
+    this.identity = null;
+    this.reason = reason;
+  }
+
+  /** The robot has said anew who this is. */
+  know(identity: Pick<Identity, 'name' | 'role'>): void {
+    if (this.identity !== null) this.identity = { ...this.identity, ...identity };
+  }
+
+  async #ask(): Promise<Me | null> {
+    const answer = await api.me();
+    this.silent = 'problem' in answer;
+    return 'value' in answer ? answer.value : null;
+  }
+
+  #take(me: Me): void {
+    this.robot = me.robot;
+    this.identity = me.identity;
+    this.state = me.signed_in ? 'in' : 'out';
+  }
+}
+
+export const [useAccess, provideAccess] = createContext<Access>();

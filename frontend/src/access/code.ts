@@ -1,0 +1,36 @@
+/** The code that a link carries after its hash, where no server and no log ever sees it; null where there is none. */
+export function codeIn(hash: string): string | null {
+  const code = new URLSearchParams(hash.replace(/^#/, '')).get('pair');
+  return code === null || code === '' ? null : code;
+}
+
+/** Take the code out of the address bar and the history, so that nobody reads it there. Returns it. */
+export function takeCode(): string | null {
+  const code = codeIn(location.hash);
+  if (code !== null) history.replaceState(history.state, '', location.pathname + location.search);
+  return code;
+}
+
+const BROWSERS = [
+  ['Edg/', 'Edge'],
+  ['OPR/', 'Opera'],
+  ['Firefox/', 'Firefox'],
+  ['Chrome/', 'Chrome'],
+  ['Safari/', 'Safari'],
+] as const;
+const SYSTEMS = [
+  ['iPhone', 'iPhone'],
+  ['iPad', 'iPad'],
+  ['Android', 'Android'],
+  ['Windows', 'Windows'],
+  ['Mac OS', 'Mac'],
+  ['Linux', 'Linux'],
+] as const;
+
+/** A name for a browser, by what it says of itself: people tell their devices apart by it. */
+export function browserName(agent: string): string {
+  const found = (all: readonly (readonly [string, string])[]) => all.find(([mark]) => agent.includes(mark))?.[1];
+  const browser = found(BROWSERS) ?? 'Browser';
+  const system = found(SYSTEMS);
+  return system === undefined ? browser : `${browser} on ${system}`;
+}

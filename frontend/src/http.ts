@@ -1,0 +1,93 @@
+/** How the page talks to the server: what every call carries, how long it may take, and what went wrong in words. */
+
+export type Answer<T> = { readonly value: T } | { readonly problem: string };
+
+const TIMEOUT = 5000;
+const SAFE = 'GET';
+const UNAUTHORISED = 401;
+
+/** what names the live socket of this page as the one that asks; null while there is none */
+let seat: string | null = null;
+let signedOut: (why: string) => void = () => undefined;
+
+/** Name this seat's key with every call that changes something; null names none. */
+export function sitOn(key: string | null): void {
+  seat = key;
+}
+
+/** Have this called wherever the server says that nobody is signed in here. */
+export function onSignedOut(call: (why: string) => void): void {
+  signedOut = call;
+}
+
+/** A form of another site cannot set headers: the first shows that this page asks. */
+function headers(method: string): Record<string, string> {
+  if (method === SAFE) return {};
+  return { 'X-Mucat': 'page', ...(seat === null ? {} : { 'X-Mucat-Seat': seat }) };
+}
+
+function refused(status: number, text: string): { problem: string } {
+  const problem = describe(status, text);
+  if (status === UNAUTHORISED) signedOut(problem);
+  return { problem };
+}
+
+export async function send<T>(
+  method: string,
+  path: string,
+  body: object | undefined,
+  timeout: number | undefined,
+  read: (response: Response) => Promise<T>,
+): Promise<Answer<T>> {
+  try {
+    const response = await fetch(`/api${path}`, {
+      method,
+      headers: { ...headers(method), ...(body ? { 'Content-Type': 'application/json' } : {}) },
+      ...(body ? { body: JSON.stringify(body) } : {}),
+      signal: AbortSignal.timeout(timeout ?? TIMEOUT),
+    });
+    if (!response.ok) return refused(response.status, await response.text());
+    return { value: await read(response) };
+  } catch {
+    return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
+  }
+}
+
+export function request<T>(method: string, path: string, body?: object, timeout?: number): Promise<Answer<T>> {
+  return send(method, path, body, timeout, async (response) => {
+    const text = await response.text();
+    return (text === '' ? null : JSON.parse(text)) as T;
+  });
+}
+
+export async function command(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
+  const answer = await request<null>(method, path, body, timeout);
+  return 'problem' in answer ? answer.problem : null;
+}
+
+/** Fetch tells nothing of how far it has sent a body. */
+export function upload<T>(path: string, file: File, progress: (share: number) => void): Promise<Answer<T>> {
+  return new Promise((resolve) => {
+    const sending = new XMLHttpRequest();
+    sending.upload.onprogress = (event) => event.lengthComputable && progress(event.loaded / event.total);
+    sending.onload = () => {
+      if (sending.status >= 400) resolve(refused(sending.status, sending.responseText));
+      else resolve({ value: JSON.parse(sending.responseText) as T });
+    };
+    sending.onerror = () => resolve({ problem: `${file.name} could not be sent whole. Look whether the server runs, and try again.` });
+    sending.open('POST', `/api${path}`);
+    for (const [name, value] of Object.entries(headers('POST'))) sending.setRequestHeader(name, value);
+    sending.send(file);
+  });
+}
+
+function describe(status: number, text: string): string {
+  try {
+    const { detail } = JSON.parse(text) as { detail?: unknown };
+    if (typeof detail === 'string') return detail;
+    if (Array.isArray(detail)) return detail.map((one: { msg?: string }) => one.msg ?? '').join('; ');
+  } catch {
+    // Not JSON: something between the page and the server answered in its place.
+  }
+  return `The server refused with status ${status} and gave no reason. Try again, and look into its log.`;
+}

@@ -1,0 +1,135 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Access } from '../src/access/access.svelte';
+import { browserName, codeIn } from '../src/access/code';
+import { api } from '../src/api';
+import { sitOn } from '../src/http';
+
+interface Sent {
+  readonly address: string;
+  readonly method: string;
+  readonly headers: Record<string, string>;
+}
+
+const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser' } as const;
+const ME = { signed_in: true, robot: 'turtle', identity: PERSON, pairing_open: false };
+const NOBODY = { ...ME, signed_in: false, identity: null };
+let answers: Record<string, () => Response>;
+let sent: Sent[];
+
+beforeEach(() => {
+  sent = [];
+  answers = {};
+  vi.stubGlobal('fetch', (address: string, init: Omit<Sent, 'address'>) => {
+    sent.push({ address, method: init.method, headers: init.headers });
+    const answer = answers[`${init.method} ${address}`];
+    return answer ? Promise.resolve(answer()) : Promise.reject(new TypeError('refused'));
+  });
+});
+
+afterEach(() => {
+  sitOn(null);
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+const json = (body: object, status = 200) => () => new Response(JSON.stringify(body), { status });
+const asked = () => sent.map(({ method, address }) => `${method} ${address}`);
+
+describe('signing in', () => {
+  it('looks once, and shows the page to somebody who is known', async () => {
+    answers['GET /api/access/me'] = json(ME);
+    const access = new Access();
+    expect(access.state).toBe('unknown');
+    await access.open(null, 'x');
+    expect(access.state).toBe('in');
+    expect(asked()).toEqual(['GET /api/access/me']);
+  });
+
+  it('uses the code of a link, and never shows the sign-in meanwhile', async () => {
+    const access = new Access();
+    answers['GET /api/access/me'] = json(NOBODY);
+    answers['POST /api/access/pair'] = () => {
+      expect(access.state).toBe('unknown');
+      return json(ME)();
+    };
+    await access.open('ABC', 'x');
+    expect(access.state).toBe('in');
+  });
+
+  it('keeps a code for others where this is an operator already', async () => {
+    answers['GET /api/access/me'] = json(ME);
+    await new Access().open('ABC', 'x');
+    expect(asked()).toEqual(['GET /api/access/me']);
+  });
+
+  it('says why a code does not work', async () => {
+    answers['GET /api/access/me'] = json(NOBODY);
+    answers['POST /api/access/pair'] = json({ detail: 'This code has expired.' }, 403);
+    const access = new Access();
+    await access.open('ABC', 'x');
+    expect(access.state).toBe('out');
+    expect(access.reason).toBe('This code has expired.');
+  });
+
+  it('waits for a server that does not answer yet', async () => {
+    vi.useFakeTimers();
+    const access = new Access();
+    const opening = access.open(null, 'x');
+    await vi.advanceTimersByTimeAsync(5000);
+    expect(access.silent).toBe(true);
+    expect(access.state).toBe('unknown');
+    answers['GET /api/access/me'] = json(ME);
+    await vi.advanceTimersByTimeAsync(3000);
+    await opening;
+    expect(access.state).toBe('in');
+  });
+
+  it('ends where any call finds that nobody is signed in, with the reason', async () => {
+    answers['GET /api/access/me'] = json(ME);
+    answers['GET /api/storage'] = json({ detail: 'You are not signed in.' }, 401);
+    const access = new Access();
+    await access.open(null, 'x');
+    await api.storage();
+    expect(access.state).toBe('out');
+    expect(access.reason).toBe('You are not signed in.');
+  });
+
+  it('ends with the server’s reason where access was revoked, and only then', async () => {
+    answers['GET /api/access/me'] = json(ME);
+    const access = new Access();
+    await access.open(null, 'x');
+    await access.check('Your role has changed.');
+    expect(access.state).toBe('in');
+    answers['GET /api/access/me'] = json(NOBODY);
+    await access.check('Access was revoked by an operator.');
+    expect(access.state).toBe('out');
+    expect(access.reason).toBe('Access was revoked by an operator.');
+  });
+});
+
+describe('what every call carries', () => {
+  it('shows that the page asks, and from which seat, wherever it changes something', async () => {
+    answers['GET /api/storage'] = json({});
+    answers['DELETE /api/exports/1'] = () => new Response(null, { status: 204 });
+    sitOn('secret');
+    await api.storage();
+    await api.deleteExport('1');
+    expect(sent.map(({ headers }) => headers)).toEqual([{}, { 'X-Mucat': 'page', 'X-Mucat-Seat': 'secret' }]);
+  });
+});
+
+describe('a link', () => {
+  it.each([
+    ['#pair=ABC-123', 'ABC-123'],
+    ['#pair=', null],
+    ['#/system', null],
+    ['', null],
+  ])('%s carries %s', (hash, code) => expect(codeIn(hash)).toBe(code));
+
+  it.each([
+    ['Mozilla/5.0 (X11; Linux x86_64; rv:140.0) Gecko/20100101 Firefox/140.0', 'Firefox on Linux'],
+    ['Mozilla/5.0 (iPhone; CPU iPhone OS 18_5 like Mac OS X) AppleWebKit/605.1.15 Version/18.5 Mobile/15E148 Safari/604.1', 'Safari on iPhone'],
+    ['Mozilla/5.0 (Windows NT 10.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/140.0.0.0 Safari/537.36 Edg/140.0.0.0', 'Edge on Windows'],
+    ['curl', 'Browser'],
+  ])('names a browser', (agent, name) => expect(browserName(agent)).toBe(name));
+});

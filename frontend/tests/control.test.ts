@@ -1,0 +1,86 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { Control } from '../src/control/control.svelte';
+import type { ControlMessage, You } from '../src/control/messages';
+
+let asked: string[];
+let seen: boolean;
+let control: Control;
+
+const OPERATOR: You = { name: 'me', role: 'operator', seat: 1 };
+const other = { seat: 2, name: 'Safari on iPad' };
+const message = (said: Partial<ControlMessage> = {}): ControlMessage => ({
+  op: 'control',
+  epoch: 1,
+  holder: null,
+  request: null,
+  refused: null,
+  ...said,
+});
+
+beforeEach(() => {
+  asked = [];
+  seen = true;
+  const call = (name: string) => () => {
+    asked.push(name);
+    return Promise.resolve(null);
+  };
+  const calls = { take: call('take'), release: call('release'), refuse: call('refuse'), handOver: call('hand over') };
+  control = new Control(calls, () => seen);
+});
+
+describe('a page and the control', () => {
+  it('takes what is free where nobody ever had it', () => {
+    control.greet(OPERATOR);
+    control.hear(message());
+    control.hear(message());
+    expect(asked).toEqual(['take']);
+  });
+
+  it('waits until it is seen', () => {
+    seen = false;
+    control.greet(OPERATOR);
+    control.hear(message());
+    expect(asked).toEqual([]);
+    seen = true;
+    control.consider();
+    expect(asked).toEqual(['take']);
+  });
+
+  it('does not take what somebody else has let go of', () => {
+    control.greet(OPERATOR);
+    control.hear(message({ holder: other }));
+    control.hear(message());
+    expect(asked).toEqual([]);
+  });
+
+  it('does not take back what was given up, not even over another connection', async () => {
+    control.greet(OPERATOR);
+    control.hear(message({ holder: { seat: 1, name: 'me' } }));
+    await control.release();
+    control.hear(message());
+    control.leave();
+    control.greet(OPERATOR);
+    control.hear(message());
+    expect(asked).toEqual(['release']);
+  });
+
+  it('leaves it to others where it is a viewer’s', () => {
+    control.greet({ ...OPERATOR, role: 'viewer' });
+    control.hear(message());
+    expect(asked).toEqual([]);
+    expect(control.barred).toBe('Viewers may watch and STOP.');
+  });
+
+  it('says in words why it cannot command', () => {
+    expect(control.barred).toContain('not known yet');
+    control.greet(OPERATOR);
+    control.hear(message({ holder: other }));
+    expect(control.barred).toContain('Safari on iPad');
+    control.hear(message());
+    expect(control.barred).toContain('take it');
+    control.hear(message({ holder: { seat: 1, name: 'me' } }));
+    expect(control.barred).toBeNull();
+    control.leave();
+    expect(control.barred).not.toBeNull();
+  });
+});

@@ -1,0 +1,32 @@
+"""What proves who somebody is: random, given away once, and kept only as SHA-256."""
+
+import secrets
+from hashlib import sha256
+
+TOKEN_BYTES = 32
+TOKEN_PREFIX = "mucat_"
+CODE_ALPHABET = "23456789ABCDEFGHJKMNPQRSTUVWXYZ"
+"""Without what looks alike: 0 and O, 1, I and L."""
+CODE_LENGTH = 10
+"""49 bits: with ten tries an hour and ten minutes' life, guessing one takes longer than there is."""
+
+
+def make_token(prefix: str = "") -> str:
+    """256 random bits as text."""
+    return prefix + secrets.token_urlsafe(TOKEN_BYTES)
+
+
+def make_code() -> str:
+    """A code that can also be read aloud, such as 7K3PX-Q2M9D."""
+    letters = "".join(secrets.choice(CODE_ALPHABET) for _ in range(CODE_LENGTH))
+    return f"{letters[: CODE_LENGTH // 2]}-{letters[CODE_LENGTH // 2 :]}"
+
+
+def normal_code(typed: str) -> str:
+    """A code as it was made, however it was typed."""
+    return "".join(letter for letter in typed.upper() if letter.isalnum())
+
+
+def digest(secret: str) -> str:
+    """All that is kept of a secret; it is random enough to need no salt."""
+    return sha256(secret.encode()).hexdigest()

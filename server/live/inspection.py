@@ -1,0 +1,66 @@
+"""Looks a few times a second for what is wrong around the robot, and keeps the server's alarms by it."""
+
+import asyncio
+import shutil
+
+from robot_runtime.clock import Clock
+from server.live.alarms import Alarms
+from server.live.health import Watch
+from server.processes.parts import Parts
+from server.settings import Settings
+from server.store import Store
+
+PERIOD = 0.25
+SILENT_SECONDS = 1.5
+"""The runtime sends its state every second, if nothing else; the water sends 20 times as often."""
+STARTING_SECONDS = 10.0
+"""For which a process that has just been started may be silent; a Raspberry Pi Zero takes its time."""
+DISK_LOW_BYTES = 500_000_000
+"""An hour of recording with everything that it may come with."""
+DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
+"""The alarms of parts that have ended."""
+
+
+class Inspection:
+    """Looks by `look`, and for ever by `run`."""
+
+    def __init__(
+        self, settings: Settings, clock: Clock, watch: Watch, parts: Parts, store: Store, alarms: Alarms
+    ) -> None:
+        self._settings = settings
+        self._clock = clock
+        self._watch = watch
+        self._parts = parts
+        self._store = store
+        self._alarms = alarms
+        self._looked = clock.now()
+
+    async def run(self) -> None:
+        """Look for ever."""
+        while True:
+            self.look()
+            await asyncio.sleep(PERIOD)
+
+    def look(self) -> None:
+        """Once, now."""
+        before, self._looked = self._looked, self._clock.now()
+        if self._looked - before > SILENT_SECONDS / 2:
+            # Whoever was held up has not listened either.
+            return
+        see = self._alarms.see
+        for name, fault in DOWN.items():
+            part = self._parts.get(name)
+            see(fault, part is not None and part.state == "failed")
+        see("runtime_silent", self._is_silent("runtime"))
+        see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
+        see("disk_low", shutil.disk_usage(self._settings.data.path).free < DISK_LOW_BYTES)
+        see("store_failing", self._store.failing is not None)
+        see("server_restarted", wrong=False)
+
+    def _is_silent(self, name: str) -> bool:
+        part, heard = self._parts.get(name), self._watch.heard[name]
+        if part is None or part.state != "running":
+            return False
+        if heard <= part.since:
+            return self._looked - part.since > STARTING_SECONDS
+        return self._looked - heard > SILENT_SECONDS

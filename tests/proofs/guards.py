@@ -1,0 +1,159 @@
+"""Each guard taken away in turn, in a copy of the tree: does a test notice?
+
+`python -m tests.proofs.guards` does so for all of `guards.toml`, or for those whose names hold one of the
+words given, and prints a table; status 1 where a guard is not missed by any of its tests.
+"""
+
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from os import environ
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
+
+from tests.board.rig import ROOT, build
+
+LIST = Path(__file__).with_name("guards.toml")
+TEST_SECONDS = 240
+"""After which a test that hangs without its guard has failed."""
+
+
+class GuardError(Exception):
+    """The proof cannot be made; the text says why."""
+
+
+@dataclass(frozen=True)
+class Guard:
+    """A text that guards, what stands there `without` it, and the tests that must see it."""
+
+    name: str
+    file: str
+    guard: str
+    without: str
+    tests: tuple[str, ...]
+
+    def problem(self, root: Path) -> str:
+        """Why it cannot be taken away there; empty where it can."""
+        path = root / self.file
+        found = path.read_text(encoding="utf-8").count(self.guard) if path.is_file() else 0
+        if found != 1:
+            return f"{self.name}: its text is in {self.file} {found} times, not once"
+        for test in self.tests:
+            file, _, function = test.partition("::")
+            if not (root / file).is_file() or f"def {function}(" not in (root / file).read_text():
+                return f"{self.name}: there is no test {test}"
+        return ""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How the tests went: those that failed, and those that could not even begin."""
+
+    failed: tuple[str, ...]
+    broken: tuple[str, ...]
+    seconds: float
+    words: str
+
+
+class Tree:
+    """A copy of the source tree, whose guards can be taken away."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def run(self, tests: Iterable[str]) -> Outcome:
+        """Run these tests there, up to the first that fails."""
+        report, started = self.root / "report.xml", time.monotonic()
+        options = ["-q", "-x", "-p", "no:cacheprovider", f"--timeout={TEST_SECONDS}", f"--junitxml={report}"]
+        report.unlink(missing_ok=True)
+        done = subprocess.run(
+            [sys.executable, "-m", "pytest", *options, *tests],
+            cwd=self.root,
+            env=environ | {"PYTHONPATH": str(self.root), "PYTHONDONTWRITEBYTECODE": "1"},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
+        if not report.is_file() or done.returncode not in (0, 1):
+            raise GuardError(f"the tests could not be run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        found: Mapping[str, list[str]] = {"failure": [], "error": []}
+        for case in ElementTree.parse(report).iter("testcase"):
+            for kind, names in found.items():
+                if case.find(kind) is not None:
+                    names.append(case.attrib["name"])
+        seconds = time.monotonic() - started
+        return Outcome(tuple(found["failure"]), tuple(found["error"]), seconds, done.stdout[-2000:])
+
+    def run_without(self, guard: Guard) -> Outcome:
+        """Run a guard's tests without it. Raises GuardError where it is not there."""
+        if problem := guard.problem(self.root):
+            raise GuardError(problem)
+        path = self.root / guard.file
+        whole = path.read_text(encoding="utf-8")
+        path.write_text(whole.replace(guard.guard, guard.without), encoding="utf-8")
+        try:
+            return self.run(guard.tests)
+        finally:
+            path.write_text(whole, encoding="utf-8")
+
+
+def read_guards(path: Path = LIST) -> list[Guard]:
+    """The guards of the list."""
+    entries = tomllib.loads(path.read_text(encoding="utf-8"))["guards"]
+    return [Guard(**entry | {"tests": tuple(entry["tests"])}) for entry in entries]
+
+
+@contextmanager
+def copy_tree() -> Iterator[Tree]:
+    """A copy of what is under version control, or would be, as it lies there now."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
+    with TemporaryDirectory(prefix="mucat-guards-") as folder:
+        for name in names:
+            source, target = ROOT / name, Path(folder) / name
+            if source.is_file():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(source, target)
+        yield Tree(Path(folder))
+
+
+def prove(guards: list[Guard]) -> int:
+    """Print how each guard is missed; the number of those that are not. Raises GuardError."""
+    with copy_tree() as tree:
+        build(tree.root / "firmware/emulator")
+        whole = tree.run(sorted({test for guard in guards for test in guard.tests}))
+        if whole.failed or whole.broken:
+            raise GuardError(
+                f"with every guard in place these fail: {whole.failed + whole.broken}\n{whole.words}"
+            )
+        unnoticed = 0
+        for guard in guards:
+            outcome = tree.run_without(guard)
+            noticed = bool(outcome.failed) and not outcome.broken
+            unnoticed += not noticed
+            words = outcome.failed[0] if noticed else f"NOT NOTICED {' '.join(outcome.broken)}"
+            print(f"{guard.name:<58}{outcome.seconds:>6.1f} s  {words}", flush=True)
+    print(f"\n{len(guards)} guards, {unnoticed} of which nobody would miss")
+    return unnoticed
+
+
+def main() -> int:
+    """Exit status."""
+    words = sys.argv[1:]
+    guards = [one for one in read_guards() if not words or any(word in one.name for word in words)]
+    if problems := [problem for one in guards if (problem := one.problem(ROOT))]:
+        sys.exit("\n".join(problems))
+    try:
+        return 1 if prove(guards) else 0
+    except GuardError as problem:
+        sys.exit(f"guards: {problem}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,238 @@
+"""Processes killed or stopped under a robot that swims or waits: do the fins stop, and is all well again?
+
+The whole robot as a person starts it, in real time; the fins are watched from outside, at the board.
+"""
+
+import os
+import random
+import signal
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Literal
+
+import httpx
+import psutil
+
+from server.processes.pidfile import running_parts
+from server.settings import DataFolder
+from tests.proofs.watching import Fins, Viewer, wait
+from tests.stack import Stack
+
+Blow = Literal["kill", "stop"]
+
+NEUTRAL, DISARMED = 0.5, 1.0
+"""s after which the chip alone has brought silent fins to rest, and taken their power."""
+HEARTBEAT = 5.0
+"""s after which a robot whose server is silent is stopped."""
+AGAIN = 2.0
+"""s within which all is well again after something was killed."""
+ALWAYS = ("state", "depth", "truth")
+STEADY = 1.0
+"""s for which at most the next blow is waited for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outage:
+    """Who is hit and how, what the page must say, and the s within which the fins rest and lose their power.
+
+    Where these are None the robot goes on, armed if it was.
+    """
+
+    victim: str
+    blow: Blow
+    alarm: str | None
+    rest: float | None = None
+    off: float | None = None
+    lasts: float = 0.0
+    """s for which it is stopped before it goes on."""
+
+    @property
+    def name(self) -> str:
+        """One word."""
+        return f"{self.victim}_{'killed' if self.blow == 'kill' else 'hung'}"
+
+
+OUTAGES = (
+    Outage("runtime", "kill", "runtime_down", NEUTRAL, DISARMED),
+    Outage("runtime", "stop", "runtime_silent", NEUTRAL, DISARMED, lasts=3.0),
+    Outage("server", "kill", "server_restarted"),
+    Outage("server", "stop", "server_silent", HEARTBEAT, HEARTBEAT, lasts=5.5),
+    Outage("keeper", "kill", None),
+    Outage("second", "kill", None),
+    Outage("simulator", "kill", "simulator_down", 1.0, 1.0),
+    Outage("simulator", "stop", "simulator_silent", 1.0, 1.0, lasts=3.0),
+    Outage("scene", "kill", "scene_down"),
+    Outage("board", "kill", "board_down", 0.1, 0.1),
+)
+
+
+@dataclass
+class Outcome:
+    """What came of one outage: s after the blow, and what must not be."""
+
+    outage: Outage
+    armed: bool
+    told: float = 0.0
+    """Until the page showed the alarm."""
+    rest: float = 0.0
+    off: float = 0.0
+    again: float = 0.0
+    """Until everything was well again; after what was stopped went on, from then."""
+    problems: list[str] = field(default_factory=list)
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether it took too long until all was well; that depends on what else the computer does."""
+        return self.again > AGAIN
+
+
+class World:
+    """A running robot, and those who watch it."""
+
+    def __init__(self, data: Path, chance: random.Random) -> None:
+        self.stack = Stack(data)
+        self.folder = DataFolder(data)
+        self._chance = chance
+        self.stack.start()
+        try:
+            self.stack.wait_ready()
+        except BaseException:
+            self.stack.stop()
+            raise
+        self.fins = Fins(self.folder.board_socket)
+        self.viewer = Viewer(self.stack)
+
+    def close(self) -> None:
+        """End everything."""
+        self.viewer.close()
+        self.fins.close()
+        self.stack.stop()
+
+    def inject(self, outage: Outage, armed: bool) -> Outcome:
+        """Wait until all is well, arm where wanted, hit, and see what comes of it."""
+        self.calm()
+        if armed:
+            self.arm()
+        time.sleep(self._chance.uniform(0, STEADY))
+        outcome = Outcome(outage, armed)
+        victim = self.find(outage.victim)
+        since = time.monotonic()
+        if outage.blow == "kill":
+            victim.kill()
+            self._see(outcome, since)
+            since_up = wait(lambda: self._replaced(outage.victim, victim.pid), f"a new {outage.victim}")
+        else:
+            victim.suspend()
+            self._see(outcome, since)
+            while time.monotonic() < since + outage.lasts:
+                time.sleep(0.01)
+            since_up = since = time.monotonic()
+            os.kill(victim.pid, signal.SIGCONT)
+        outcome.again = wait(lambda: self.well(since_up), f"all to be well after {outage.name}") - since
+        self._judge(outcome)
+        return outcome
+
+    def _see(self, outcome: Outcome, since: float) -> None:
+        outage = outcome.outage
+        alarm = outage.alarm
+        if alarm is not None and not (outage.victim == "server" and outage.blow == "stop"):
+            outcome.told = wait(lambda: self.viewer.tells(alarm), f"the alarm {alarm}") - since
+        if outcome.armed and outage.off is not None:
+            wait(lambda: self.fins.seen[-1].time > since and not self.fins.seen[-1].powered, "no power")
+            outcome.rest, outcome.off = self.fins.moved_for(since), self.fins.powered_for(since)
+
+    def _judge(self, outcome: Outcome) -> None:
+        outage, problems = outcome.outage, outcome.problems
+        armed = bool(self.viewer.state["armed"])
+        if armed and not (outcome.armed and outage.off is None):
+            problems.append("it came up armed")
+        if not armed and outcome.armed and outage.off is None:
+            problems.append("it was stopped")
+        if outage.rest is not None and outcome.rest > outage.rest:
+            problems.append(f"the fins moved for {outcome.rest:.2f} s")
+        if outage.off is not None and outcome.off > outage.off:
+            problems.append(f"the motors had power for {outcome.off:.2f} s")
+
+    def calm(self) -> None:
+        """Disarmed, nothing to acknowledge, everything well."""
+        since = time.monotonic()
+        wait(lambda: self.well(since), "all to be well")
+        self.stack.api.post("/robot/stop").raise_for_status()
+        self.stack.api.post("/robot/acknowledge").raise_for_status()
+        wait(lambda: not self.viewer.alarms and not self.viewer.state["armed"], "no alarm")
+
+    def arm(self) -> None:
+        """Swim: with power, and fins that move."""
+        wait(lambda: self.stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+        wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
+
+    def find(self, name: str) -> psutil.Process:
+        """The process that is called so here."""
+        if name == "server":
+            return self.stack.server
+        if name == "keeper":
+            return self.stack.process
+        if name == "second":
+            found = [one for one in self.stack.process.children() if one.name() == "mucat-second"]
+            return found[0]
+        return psutil.Process(running_parts(self.folder.run)[name].pid)
+
+    def _replaced(self, name: str, pid: int) -> bool:
+        try:
+            return self.find(name).pid != pid
+        except (LookupError, psutil.Error):
+            return False
+
+    def well(self, since: float) -> bool:
+        """Whether all parts are well, by what has come since then."""
+        if not self.viewer.fresh(ALWAYS, since) or not self.viewer.state["connected"]:
+            return False
+        try:
+            health = self.stack.api.get("/health", timeout=1.0).json()
+        except (httpx.TransportError, ValueError):
+            return False
+        return bool(health["status"] == "ok")
+
+
+def measure(
+    times: int, seed: int, tell: Callable[[str], None] = lambda _: None, outages: tuple[Outage, ...] = OUTAGES
+) -> list[Outcome]:
+    """Each outage so many times, in any order, every other one while the robot swims."""
+    chance = random.Random(seed)
+    plan = [(outage, number % 2 == 0) for outage in outages for number in range(times)]
+    chance.shuffle(plan)
+    outcomes = []
+    with TemporaryDirectory(prefix="mucat-") as name:
+        world = World(Path(name) / "data", chance)
+        try:
+            for outage, armed in plan:
+                outcome = world.inject(outage, armed)
+                outcomes.append(outcome)
+                tell(
+                    f"{len(outcomes):>5} of {len(plan)}: {outage.name:<18} {'armed' if armed else '':<6}"
+                    f"told {outcome.told:5.2f}  rest {outcome.rest:5.2f}  off {outcome.off:5.2f}  "
+                    f"again {outcome.again:5.2f}  {'; '.join(outcome.problems)}"
+                )
+        finally:
+            world.close()
+    return outcomes
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """For a person: the longest of each, in s."""
+    lines = [
+        f"{'outage':<18}{'n':>5}{'told':>7}{'at rest':>9}{'no power':>10}{'again':>7}{'median':>8}{'slow':>6}"
+    ]
+    for outage in dict.fromkeys(one.outage for one in outcomes):
+        mine = [one for one in outcomes if one.outage == outage]
+        again = sorted(one.again for one in mine)
+        stopped = f"{max(one.rest for one in mine):>9.2f}{max(one.off for one in mine):>10.2f}"
+        lines.append(
+            f"{outage.name:<18}{len(mine):>5}{max(one.told for one in mine):>7.2f}"
+            f"{'' if outage.off is None else stopped:>19}{again[-1]:>7.2f}{again[len(again) // 2]:>8.2f}"
+            f"{sum(one.is_slow for one in mine):>6}"
+        )
+    return "\n".join([*lines, *(f"{one.outage.name}: {text}" for one in outcomes for text in one.problems)])

@@ -1,0 +1,36 @@
+"""A short look with schemathesis at every operation; `make interface` looks longer."""
+
+import warnings
+from collections.abc import Iterator
+
+import pytest
+
+from server.app import create_app
+from server.settings import DataFolder, Settings
+from tests.board.rig import ROOT
+from tests.proofs.interface import Surface, run_surface
+
+EXAMPLES = 12
+
+
+def operations() -> list[str]:
+    app = create_app(Settings(data=DataFolder(ROOT), config=ROOT / "robot.toml"))
+    paths = app.openapi()["paths"].values()
+    return [operation["operationId"] for path in paths for operation in path.values()]
+
+
+@pytest.fixture(scope="module")
+def surface() -> Iterator[Surface]:
+    with run_surface() as surface:
+        yield surface
+
+
+@pytest.mark.parametrize("name", operations())
+def test_an_operation_answers_as_it_is_described_and_never_fails(surface: Surface, name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        surface.prove(name, EXAMPLES)
+
+
+def test_every_operation_is_asked(surface: Surface) -> None:
+    assert sorted(surface.operations) == sorted(operations())

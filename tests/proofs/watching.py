@@ -1,0 +1,157 @@
+"""What injected faults are measured by: the fins, as the emulated board has them, and what a page is told."""
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from robot_runtime.simulation.board import Board, BoardError
+from robot_runtime.simulation.simulator import FinMotion
+from robot_runtime.topics import Kind, read_blocks
+from server.settings import DataFolder
+from tests.shell import shell_headers
+from tests.stack import Stack
+
+MOVING = 0.5
+"""rad/s. A stroke reaches 7; below this a fin only coasts to its rest, without a drive."""
+_LOOK = 0.004
+_AGAIN = 0.01
+
+
+class Seen(NamedTuple):
+    """The fins at a time (s, steady clock).
+
+    `board` is the board's own time: on a busy computer the emulated one falls behind.
+    """
+
+    time: float
+    board: float
+    moving: bool
+    powered: bool
+
+
+def is_moving(fins: FinMotion) -> bool:
+    """Whether any fin moves."""
+    return any(abs(speed) > MOVING for speed in fins.speeds)
+
+
+class Fins:
+    """Looks at the fins all the time, whatever becomes of the other processes; no board, no motion."""
+
+    def __init__(self, socket: Path) -> None:
+        self.seen: list[Seen] = []
+        self._socket = socket
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._look, name="fins")
+        self._thread.start()
+
+    def close(self) -> None:
+        """Look no more."""
+        self._ending.set()
+        self._thread.join()
+
+    def moved_for(self, since: float) -> float:
+        """How long they have moved since then, in the board's time (s)."""
+        return self._last(since, lambda one: one.moving)
+
+    def powered_for(self, since: float) -> float:
+        """How long their motors had power since then, in the board's time (s)."""
+        return self._last(since, lambda one: one.powered)
+
+    def _last(self, since: float, wanted: Callable[[Seen], bool]) -> float:
+        seen = [one for one in self.seen if one.time >= since]
+        return max((one.board for one in seen if wanted(one)), default=seen[0].board) - seen[0].board
+
+    def _look(self) -> None:
+        while not self._ending.is_set():
+            with suppress(BoardError), Board(self._socket) as board:
+                while not self._ending.wait(_LOOK):
+                    now, fins = time.monotonic(), board.fins()
+                    self.seen.append(Seen(now, board.stats()["time"], is_moving(fins), fins.powered))
+            self.seen.append(Seen(time.monotonic(), 0.0, moving=False, powered=False))
+            self._ending.wait(_AGAIN)
+
+
+class Viewer:
+    """A page that only looks, and comes back whenever its connection ends."""
+
+    def __init__(self, stack: Stack) -> None:
+        self.newest: dict[str, float] = {}
+        """When the newest sample of each topic was taken, s."""
+        self.state: dict[str, Any] = {}
+        self.alarms: list[dict[str, Any]] = []
+        """The robot's and the server's."""
+        self.health: dict[str, str] = {}
+        self.bytes = 0
+        self._servers: list[dict[str, Any]] = []
+        self._stack = stack
+        self._ending = False
+        self._thread = threading.Thread(target=self._watch, name="viewer")
+        self._thread.start()
+
+    def close(self) -> None:
+        """Go away."""
+        self._ending = True
+        self._thread.join()
+
+    def fresh(self, topics: tuple[str, ...], since: float) -> bool:
+        """Whether something taken later than that has come of all of them."""
+        return all(self.newest.get(topic, 0.0) > since for topic in topics)
+
+    def tells(self, fault: str) -> bool:
+        """Whether this alarm is shown, and wrong still or not acknowledged."""
+        return any(alarm["fault"] == fault for alarm in self.alarms)
+
+    def _watch(self) -> None:
+        while not self._ending:
+            with suppress(OSError, WebSocketException, TimeoutError):
+                self._look_on()
+            time.sleep(_AGAIN)
+
+    def _look_on(self) -> None:
+        address = f"ws://127.0.0.1:{self._stack.port}/api/live"
+        origin = Origin(self._stack.url)
+        signed = shell_headers(DataFolder(self._stack.data))
+        with connect(address, origin=origin, max_size=None, proxy=None, additional_headers=signed) as socket:
+            while not self._ending:
+                with suppress(TimeoutError):
+                    self._take(socket.recv(timeout=0.1))
+
+    def _take(self, message: str | bytes) -> None:
+        self.bytes += len(message)
+        if isinstance(message, str):
+            self._hear(json.loads(message))
+            return
+        for block in read_blocks(message):
+            if block.topic.kind is not Kind.PICTURE and block.count:
+                taken = block.time_of(block.following - 1)
+                self.newest[block.topic.name] = max(taken, self.newest.get(block.topic.name, 0.0))
+            if block.topic.name == "state":
+                self.state = json.loads(block.payload)[-1]
+                self._join()
+
+    def _hear(self, news: dict[str, Any]) -> None:
+        if news["op"] == "alarms":
+            self._servers = news["alarms"]
+            self._join()
+        elif news["op"] == "health":
+            self.health = {part["name"]: part["state"] for part in news["parts"]}
+
+    def _join(self) -> None:
+        self.alarms = self._servers + self.state.get("alarms", [])
+
+
+def wait(condition: Callable[[], object], what: str, patience: float = 30.0) -> float:
+    """Wait until that holds; the time then. Fails where it never does."""
+    end = time.monotonic() + patience
+    while not condition():
+        assert time.monotonic() < end, f"waited {patience:g} s in vain for {what}"
+        time.sleep(_LOOK)
+    return time.monotonic()

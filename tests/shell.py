@@ -1,0 +1,26 @@
+"""How tests and measurements sign in as programs of this computer do."""
+
+from collections.abc import Generator
+
+import httpx
+
+from server.settings import DataFolder
+
+
+class ShellToken(httpx.Auth):
+    """The token of the server that works on this folder; each start of it makes another."""
+
+    def __init__(self, folder: DataFolder) -> None:
+        self._folder = folder
+
+    def auth_flow(self, request: httpx.Request) -> Generator[httpx.Request, httpx.Response, None]:
+        request.headers.update(shell_headers(self._folder))
+        yield request
+
+
+def shell_headers(folder: DataFolder) -> dict[str, str]:
+    """The headers that prove it; none before a first server was there."""
+    try:
+        return {"authorization": f"Bearer {folder.token.read_text().strip()}"}
+    except FileNotFoundError:
+        return {}
