@@ -1,6 +1,7 @@
 import asyncio
 import hashlib
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -59,12 +60,12 @@ def test_beside_a_running_server_the_server_imports(
             import fcntl
 
             fcntl.flock(lock, fcntl.LOCK_EX)
-            announce(settings.data, "127.0.0.1", served.settings.port)
+            announce(served.settings)
             assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
             assert "is here already, as number 1" in capsys.readouterr().err
-            announce(settings.data, "127.0.0.1", 1)
+            announce(replace(settings, port=1))
             assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
-            assert "does not answer at 127.0.0.1:1" in capsys.readouterr().err
+            assert "does not answer at http://127.0.0.1:1" in capsys.readouterr().err
             lock.close()
 
     asyncio.run(scenario())
