@@ -5,13 +5,15 @@ FUZZ_SECONDS ?= 600
 KILLS ?= 100
 FAULTS ?= 100
 CHAOS_SECONDS ?= 3600
+CUTS ?= 10000
 QUESTIONS ?= 300
+WORDS ?= 500
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills faults chaos guards interface generate firmware \
+.PHONY: help run test check bench figures fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -36,6 +38,9 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 
 guards: setup-test ## take away every guard in turn: a test must miss it (some with ONLY=words of their names)
 	@nice $(PYTHON) -m tests.proofs.guards $(ONLY)
+
+hostile: setup ## hostile words through every entrance to a build, a file name or a path (WORDS=500 each)
+	@nice $(PYTHON) -W ignore -m tests.proofs.hostile $(WORDS)
 
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
@@ -69,6 +74,9 @@ faults: setup-test host-firmware ## inject every fault a hundred times, and meas
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
+
+power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
+	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
 
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."

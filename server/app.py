@@ -13,8 +13,10 @@ from server.access.access import Access
 from server.access.admit import admit
 from server.access.devices import UnknownDevice
 from server.access.gate import Gate
+from server.access.secret import TOKEN_PREFIX, make_token
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
+from server.control.lease import NotInControl
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.processes.parts import Command
@@ -22,6 +24,7 @@ from server.routes import (
     access,
     comm_tests,
     compare,
+    control,
     exports,
     health,
     link,
@@ -53,9 +56,12 @@ def create_app(
     `started` is called once everything is there, before anybody is served.
     """
 
+    # One for all servers that a keeper starts one after the other: who asks meanwhile is known to the next.
+    token = make_token(TOKEN_PREFIX)
+
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands, app.state.ended)
+        assembly = Assembly(settings, commands, token, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
             if started is not None:
@@ -81,6 +87,7 @@ def create_app(
     app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(RecordingRefused, _refused)
     app.add_exception_handler(NotNow, _refused)
+    app.add_exception_handler(NotInControl, _not_in_control)
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(UnknownDevice, _absent)
@@ -88,7 +95,7 @@ def create_app(
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _not_there)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live)
+    robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
@@ -110,6 +117,10 @@ async def _unreadable_body(_: Request, __: Exception) -> JSONResponse:
 
 async def _refused(_: Request, problem: Exception) -> JSONResponse:
     return _tell(409, str(problem))
+
+
+async def _not_in_control(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(423, str(problem))
 
 
 async def _absent(_: Request, problem: Exception) -> JSONResponse:

@@ -6,17 +6,20 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.errors import Refused
 from robot_runtime.topics import Block
 from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
 from server.comm_tests.lab import Lab
 from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
+from server.control.desk import Desk
+from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
 from server.live.alarms import Alarms
@@ -52,7 +55,7 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command], ended: str = "") -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
         self.settings = settings
         self._ended = ended
         """How the server before this one has ended unexpectedly, a sentence."""
@@ -62,7 +65,9 @@ class Assembly:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self.hub.dismiss)
+        self.telling = Telling(self.bridge.tell_lease)
+        self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -107,6 +112,12 @@ class Assembly:
         assert isinstance(assembly, Assembly)
         return assembly
 
+    def require_disarmed(self, why: str) -> None:
+        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
+        state = self.watch.state()
+        if state is not None and state.get("armed"):
+            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
+
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:
         """Start everything; end everything. Raises SetupError, StoreError."""
@@ -139,6 +150,8 @@ class Assembly:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
+                    self.desk.run(),
+                    self.telling.run(),
                     self.inspection.run(),
                     self._tell_health(),
                 )
@@ -173,8 +186,10 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
-            if block.topic.name == "state" and self.settings.sessions.record_at_arming:
-                self.arming.see(block)
+            if block.topic.name == "state":
+                self.telling.see_run(self.bridge.run)
+                if self.settings.sessions.record_at_arming:
+                    self.arming.see(block)
 
     def _board_occupied(self) -> str | None:
         run, session = self.scenarios.active, self.recorder.session
@@ -191,6 +206,14 @@ class Assembly:
     def _tell_session(self) -> None:
         session = self.recorder.session
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _dismiss(self, device: int, reason: str) -> None:
+        self.desk.dismiss(device)
+        self.hub.dismiss(device, reason)
+
+    def _tell_control(self, message: dict[str, Any]) -> None:
+        self.telling.see_epoch(message["epoch"])
+        self.hub.tell(message)
 
     def _tell_alarms(self) -> None:
         self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})

@@ -16,6 +16,7 @@ import psutil
 
 from server.processes.keeper import keeper_of
 from server.settings import DataFolder
+from tests.control import Commander
 from tests.shell import ShellToken
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -42,7 +43,7 @@ class Stack:
         self.log = data / "stack.log"
         self._options = options
         self._process: subprocess.Popen[bytes] | None = None
-        self.api = httpx.Client(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
+        self.api = Commander(base_url=f"{self.url}/api", timeout=5.0, auth=ShellToken(DataFolder(data)))
 
     def __enter__(self) -> Self:
         self.start()

@@ -5,10 +5,12 @@ from starlette.requests import HTTPConnection
 
 from server.access.identity import IDENTITY, Identity
 from server.access.policy import MESSAGES, OPERATIONS, Need
+from server.control.admission import require_control
 
 
 async def admit(connection: HTTPConnection) -> None:
-    """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for.
+    """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
+    NotInControl where it needs the control, and another seat has it.
 
     The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
     """
@@ -19,6 +21,8 @@ async def admit(connection: HTTPConnection) -> None:
     reason = refusal(connection.scope.get(IDENTITY), need)
     if reason is not None:
         raise HTTPException(403, reason)
+    if need == Need.CONTROL:
+        require_control(connection)
 
 
 def may_say(identity: Identity, op: str) -> str | None:

@@ -38,6 +38,13 @@ OPERATIONS: dict[str, Need] = {
     "putVision": Need.CONTROL,
     "putSimulator": Need.CONTROL,
     "putView": Need.OPERATOR,
+    "getControl": Need.VIEWER,
+    "openSeat": Need.OPERATOR,
+    "takeControl": Need.OPERATOR,
+    "releaseControl": Need.OPERATOR,
+    "renewSeat": Need.OPERATOR,
+    "refuseControl": Need.CONTROL,
+    "handOverControl": Need.CONTROL,
     "getLinkFrames": Need.VIEWER,
     "listSessions": Need.VIEWER,
     "getSession": Need.VIEWER,
@@ -87,5 +94,6 @@ MESSAGES: dict[str, Need] = {
     "ping": Need.VIEWER,
     "stop": Need.VIEWER,
     "watch": Need.VIEWER,
+    "drive": Need.CONTROL,
 }
 """By `op`, on the live socket."""

@@ -15,6 +15,7 @@ from functools import partial
 from typing import Any
 
 from robot_runtime.cache import Kept, write_question
+from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
 from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages, NoAnswer, Subscription
@@ -94,6 +95,7 @@ class Bridge:
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
         self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
+        self._leases = ThreadPoolExecutor(1, "lease")
         self._asking = 0
 
     async def open(self) -> None:
@@ -125,6 +127,24 @@ class Bridge:
     def beat(self) -> None:
         """Let the runtime know that the server lives."""
         self._messages.publish(HEARTBEAT, b"")
+
+    @property
+    def run(self) -> str:
+        """Of the runtime's process, as it was last heard; empty before."""
+        return self._sources["runtime"].run
+
+    def drive(self, command: bytes) -> None:
+        """Send the runtime what the driver does; where nobody listens it is lost."""
+        self._messages.publish(PILOT, command)
+
+    async def tell_lease(self, epoch: int) -> None:
+        """Have the runtime drop driving commands of earlier epochs. Raises Refused, or RuntimeSilent."""
+        try:
+            await self._loop.run_in_executor(
+                self._leases, lambda: self._messages.ask("command/lease", {"epoch": epoch}, ANSWER_SECONDS)
+            )
+        except NoAnswer as problem:
+            raise RuntimeSilent(str(problem), waited=False) from problem
 
     def watch_pictures(self, wanted: frozenset[str]) -> None:
         """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
@@ -166,6 +186,7 @@ class Bridge:
             await source.close()
         self._stops.shutdown(wait=False, cancel_futures=True)
         self._commands.shutdown(wait=False, cancel_futures=True)
+        self._leases.shutdown(wait=False, cancel_futures=True)
         await asyncio.to_thread(self._messages.close)
 
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:

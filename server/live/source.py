@@ -24,7 +24,8 @@ class Source:
         self.topics = topics
         self._ask = ask
         self._deliver = deliver
-        self._run = ""
+        self.run = ""
+        """Of the process, as it was last heard; empty before."""
         self._over: set[str] = set()
         self._expected: dict[int, int] = {}
         self._asked: dict[str, int] = {}
@@ -47,7 +48,7 @@ class Source:
             self._waiting.append((run, blocks))
         elif not run or run in self._over:
             self._deliver(blocks)
-        elif run != self._run:
+        elif run != self.run:
             self._catch_up(run, blocks, self.everything())
         elif self._follow(blocks) or self._follow(blocks := self._fresh(blocks)):
             self._pass_on(blocks)
@@ -83,14 +84,14 @@ class Source:
         first = waiting[0][0] if waiting else ""
         if kept is None:
             # Whatever is missing stays so.
-            self._begin(first or self._run)
-        elif kept.run != self._run:
+            self._begin(first or self.run)
+        elif kept.run != self.run:
             if first != kept.run:
                 self._over.add(first)
             for run, blocks in waiting:
-                if run == self._run:
+                if run == self.run:
                     self._pass_on(self._fresh(blocks))
-            waiting = [(run, blocks) for run, blocks in waiting if run != self._run]
+            waiting = [(run, blocks) for run, blocks in waiting if run != self.run]
             self._begin(kept.run)
         if kept is not None:
             self._pass_on(self._fresh(kept.blocks))
@@ -99,9 +100,9 @@ class Source:
             self.take(run, blocks)
 
     def _begin(self, run: str) -> None:
-        if run != self._run:
-            self._over.add(self._run)
-        self._run, self._expected, self._asked = run, {}, {}
+        if run != self.run:
+            self._over.add(self.run)
+        self.run, self._expected, self._asked = run, {}, {}
 
     def _follow(self, blocks: list[Block]) -> bool:
         expected = dict(self._expected)

@@ -5,10 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, HTTPException, Path, Request
 from fastapi.responses import Response
 
-from robot_runtime.comm_test.document import CommTest, DocumentError, read_document
+from robot_runtime.comm_test.document import CommTest, DocumentError
 from robot_runtime.comm_test.runner import estimate_seconds
 from server.assembly import Assembly
 from server.comm_tests import tables
+from server.comm_tests.lab import read_limited
 from server.comm_tests.reference import TABLES, TITLES, read_table
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import (
@@ -24,6 +25,7 @@ from server.comm_tests.shapes import (
     ThesisTable,
 )
 from server.comm_tests.shipped import shipped_documents
+from server.control.admission import require_control
 from server.models import CommTestRun
 from server.routes.problems import answers
 from server.sessions.session import IDENTIFIER_MAX
@@ -47,7 +49,7 @@ def get_documents() -> list[TestDocument]:
 def check(document: DocumentText) -> Check:
     """Its problems, field by field; or its tests, with about how long they take."""
     try:
-        return Check(problems=[], tests=[_describe(test) for test in read_document(document.text)])
+        return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
     except DocumentError as problem:
         return Check(problems=problem.problems, tests=[])
 
@@ -58,11 +60,17 @@ def check(document: DocumentText) -> Check:
     summary="Run a document",
     operation_id="startTestRun",
     responses=answers(
-        _409="Refused now", _422="The document cannot be run", _503="The database does not work"
+        _409="Refused now",
+        _422="The document cannot be run",
+        _423="On the robot's board: control is with somebody else",
+        _503="The database does not work",
     ),
 )
 async def start(request: Request, wanted: Start) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
+    if wanted.place == "robot":
+        require_control(request)
+    Assembly.of(request).require_disarmed("A communication test builds and uploads programs.")
     try:
         return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
     except DocumentError as problem:

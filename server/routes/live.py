@@ -6,6 +6,7 @@ from time import time
 from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from pydantic import ValidationError
 
 from robot_runtime.messages import Refused
 from robot_runtime.packets import DEFINITIONS_HASH
@@ -13,6 +14,8 @@ from server.access.admit import may_say
 from server.access.identity import Identity
 from server.access.policy import MESSAGES
 from server.assembly import Assembly
+from server.control.driving import Drive
+from server.control.seats import Seat
 from server.live.bridge import RuntimeSilent
 from server.live.hub import POLICY_VIOLATION, Client, Evicted
 
@@ -32,10 +35,10 @@ class Nonsense(ValueError):  # noqa: N818 - it says what happened
 class _Conversation:
     """What one page says, and what is done about it."""
 
-    def __init__(self, assembly: Assembly, socket: WebSocket) -> None:
+    def __init__(self, assembly: Assembly, socket: WebSocket, seat: Seat) -> None:
         self._assembly = assembly
+        self._seat = seat
         self._socket = socket
-        self._identity = Identity.of(socket)
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -61,7 +64,7 @@ class _Conversation:
         op = message.get("op")
         if not isinstance(op, str) or op not in MESSAGES:
             raise Nonsense(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
-        reason = may_say(self._identity, op)
+        reason = may_say(self._seat.identity, op)
         if reason is not None:
             client.answer({"op": "error", "text": reason})
             return
@@ -75,6 +78,8 @@ class _Conversation:
                 self._stop(client)
             case "watch":
                 self._assembly.hub.show(client, _topics(message.get("pictures")))
+            case "drive":
+                self._assembly.desk.drive(self._seat, _drive(message))
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -108,8 +113,9 @@ async def live(socket: WebSocket) -> None:
         # It may have been revoked while the socket opened; from here on the hub knows it.
         if not assembly.access.still(identity):
             raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
-        listen = _Conversation(assembly, socket).listen
-        await assembly.hub.serve(send, _greeting(assembly, identity), listen, identity.device)
+        with assembly.desk.page(identity) as seat:
+            listen = _Conversation(assembly, socket, seat).listen
+            await assembly.hub.serve(send, _greeting(assembly, seat), listen, identity.device)
     except WebSocketDisconnect:
         return
     except Evicted as reason:
@@ -121,7 +127,7 @@ async def live(socket: WebSocket) -> None:
             return
 
 
-def _greeting(assembly: Assembly, identity: Identity) -> dict[str, Any]:
+def _greeting(assembly: Assembly, seat: Seat) -> dict[str, Any]:
     return {
         "op": "hello",
         "definitions": f"{DEFINITIONS_HASH:08x}",
@@ -129,7 +135,8 @@ def _greeting(assembly: Assembly, identity: Identity) -> dict[str, Any]:
         "steady": assembly.clock.now(),
         "utc": time(),
         "page_version": assembly.page.version,
-        "you": {"name": identity.name, "role": identity.role},
+        "you": {"name": seat.identity.name, "role": seat.identity.role, "seat": seat.number},
+        "seat_key": seat.key,
     }
 
 
@@ -149,6 +156,15 @@ def _topics(value: object) -> frozenset[str]:
     if not isinstance(value, list) or not all(isinstance(one, str) and one in WATCHABLE for one in value):
         raise Nonsense(f"A watch needs pictures, a list of any of {', '.join(sorted(WATCHABLE))}.")
     return frozenset(value)
+
+
+def _drive(message: dict[str, Any]) -> Drive:
+    try:
+        return Drive.model_validate(message)
+    except ValidationError as problem:
+        raise Nonsense(
+            "A drive needs lease and sequence, whole numbers from 0 on, taken (s), and six axes from -1 to 1."
+        ) from problem
 
 
 def _refuse_constant(name: str) -> None:

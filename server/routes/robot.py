@@ -8,9 +8,15 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from robot_runtime.samples import State, Steering
 from server.assembly import Assembly
 from server.routes.problems import answers
+from server.sessions.storage import check_room
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
-COMMAND = {**answers(_409="The runtime refuses", _422="The request is not valid"), **SILENT}
+COMMAND = {
+    **answers(
+        _409="The runtime refuses", _422="The request is not valid", _423="Control is with somebody else"
+    ),
+    **SILENT,
+}
 
 router = APIRouter(prefix="/api/robot", tags=["robot"])
 
@@ -87,7 +93,9 @@ async def stop(request: Request) -> None:
 @router.post("/arm", status_code=204, summary="Arm", operation_id="armRobot", responses=COMMAND)
 async def arm(request: Request, driver: Driver | None = None) -> None:
     """Refused with every reason that stands against it; without a body the depth controller steers."""
-    await Assembly.of(request).bridge.command("arm", driver.model_dump() if driver else {})
+    assembly = Assembly.of(request)
+    check_room(assembly.settings.data)
+    await assembly.bridge.command("arm", driver.model_dump() if driver else {})
 
 
 @router.put("/mode", status_code=204, summary="Hand over", operation_id="putMode", responses=COMMAND)

@@ -5,6 +5,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.scenario.document import ScenarioError, read_scenario
 from server.assembly import Assembly
+from server.control.admission import require_control
 from server.routes.problems import answers
 from server.scenarios.library import keep_scenario, list_scenarios
 from server.scenarios.shapes import (
@@ -19,6 +20,7 @@ from server.scenarios.shapes import (
 )
 
 REFUSED = answers(_409="Refused now", _422="The scenario cannot be run")
+START = {**REFUSED, **answers(_423="On the robot: control is with somebody else")}
 
 router = APIRouter(prefix="/api/scenarios", tags=["scenarios"])
 
@@ -55,10 +57,12 @@ async def get_state(request: Request) -> ScenarioState:
 
 
 @router.post(
-    "/runs", status_code=201, summary="Run a scenario", operation_id="startScenario", responses=REFUSED
+    "/runs", status_code=201, summary="Run a scenario", operation_id="startScenario", responses=START
 )
 async def start(request: Request, wanted: ScenarioStart) -> ScenarioStarted:
     """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
+    if wanted.place == "live":
+        require_control(request)
     try:
         run = Assembly.of(request).scenarios.start(wanted.text, wanted.place, wanted.board)
     except ScenarioError as problem:

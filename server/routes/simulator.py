@@ -23,7 +23,7 @@ class Place(BaseModel):
     status_code=204,
     summary="Start or end the simulator on this computer",
     operation_id="putSimulator",
-    responses=answers(_409="The robot is not in the loop"),
+    responses=answers(_409="The robot is not in the loop", _423="Control is with somebody else"),
 )
 async def put_simulator(request: Request, wanted: Place) -> None:
     """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""

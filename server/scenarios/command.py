@@ -9,6 +9,7 @@ import asyncio
 import math
 import signal
 import sys
+from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack, closing
 from pathlib import Path
 from time import sleep
@@ -16,6 +17,7 @@ from time import sleep
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario, ScenarioError, read_scenario
+from server.control.command import in_control
 from server.live.notices import Notices
 from server.running import Claim, ask
 from server.scenarios.library import list_scenarios
@@ -103,10 +105,19 @@ async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> 
 
 def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
     """Ask the server that runs; Ctrl-C cancels the run there."""
+    if wanted.place == "simulated":
+        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
+        return _follow(number, folder, lambda: None)
+    with in_control(folder, _say) as seat:
+        number = seat.ask("POST", "/scenarios/runs", wanted.model_dump())["run"]
+        return _follow(number, folder, seat.renew)
+
+
+def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
     told = _Progress()
-    number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
     try:
         while True:
+            keep()
             state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
             told.tell(state)
             if state.last is not None and state.last.run >= number:

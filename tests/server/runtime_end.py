@@ -1,5 +1,6 @@
 """The runtime's end of Zenoh, for tests: publishes what it is told to, and answers every command."""
 
+import json
 import threading
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,17 +13,23 @@ from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
 from robot_runtime.topics import Block, Kind
 
-COMMANDS = ("stop", "arm", "controller", "set_points", "card", "vision")
+COMMANDS = (
+    *("stop", "arm", "mode", "check_fins", "acknowledge"),
+    *("controller", "set_points", "steering", "card", "vision"),
+)
 
 
 class RuntimeEnd:
     """Joins the server's conversation as the runtime does.
 
-    `asked` holds every command that came; each is answered once its gate is open.
+    `asked` holds every command that came, but for the control's epochs, which are in `epochs`; each is
+    answered once its gate is open. `driven` holds what the driver sends.
     """
 
     def __init__(self, socket: Path, robot: str) -> None:
         self.asked: list[tuple[str, dict[str, Any]]] = []
+        self.epochs: list[int] = []
+        self.driven: list[dict[str, Any]] = []
         self.refusal: str | None = None
         self.gates = {name: threading.Event() for name in COMMANDS}
         self._messages = Messages(robot, listen=[f"unixsock-stream/{socket}"])
@@ -34,6 +41,8 @@ class RuntimeEnd:
         self._cache = Cache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
             self._messages.answer_bytes(name, self._cache.answer)
+        self._messages.answer("command/lease", lambda question: self.epochs.append(question["epoch"]))
+        self._messages.subscribe("pilot", lambda _, command: self.driven.append(json.loads(command)))
         # The last of all: who reaches this one reaches every other.
         self._messages.answer("command/there", lambda _: None)
 

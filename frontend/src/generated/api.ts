@@ -372,6 +372,146 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/control": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Who has control
+         * @description And who asks for it, and what has come of the driving commands.
+         */
+        get: operations["getControl"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/hand-over": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Give control to somebody
+         * @description At once, also where somebody else has asked for it.
+         */
+        post: operations["handOverControl"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/refuse": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Keep control
+         * @description Whoever was refused may ask again after 10 s.
+         */
+        post: operations["refuseControl"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/release": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Give control back
+         * @description Or ask for it no longer. Whoever has asked for it has it at once.
+         */
+        post: operations["releaseControl"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/renew": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Keep a program's seat
+         * @description Any request that needs control or a seat does that too.
+         */
+        post: operations["renewSeat"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/seat": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * A seat for a program
+         * @description Its key goes into the header X-Mucat-Seat of what follows; 10 s without such a request end it.
+         */
+        post: operations["openSeat"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/control/take": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take control, or ask for it
+         * @description Free control is taken at once. Where it is held, the holder has 10 s to refuse; then it passes.
+         */
+        post: operations["takeControl"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/exports": {
         parameters: {
             query?: never;
@@ -1234,6 +1374,21 @@ export interface components {
             number: number;
         };
         /**
+         * Asking
+         * @description Who asks for control; granted at `until` unless the holder refuses.
+         */
+        Asking: {
+            /** Name */
+            name: string;
+            /** Seat */
+            seat: number;
+            /**
+             * Until
+             * @description s, steady clock
+             */
+            until: number;
+        };
+        /**
          * Card
          * @description The card before the simulated camera; null takes it away.
          */
@@ -1421,6 +1576,35 @@ export interface components {
             signals: components["schemas"]["Signal"][];
         };
         /**
+         * Control
+         * @description The same, and what has come of the driving commands.
+         */
+        Control: {
+            driven: components["schemas"]["Driven"];
+            /**
+             * Epoch
+             * @description grows with every change of the holder
+             */
+            epoch: number;
+            holder: components["schemas"]["Holder"] | null;
+            refused: components["schemas"]["RefusedSeat"] | null;
+            request: components["schemas"]["Asking"] | null;
+        };
+        /**
+         * ControlState
+         * @description Who has control and who asks for it, as on the live socket.
+         */
+        ControlState: {
+            /**
+             * Epoch
+             * @description grows with every change of the holder
+             */
+            epoch: number;
+            holder: components["schemas"]["Holder"] | null;
+            refused: components["schemas"]["RefusedSeat"] | null;
+            request: components["schemas"]["Asking"] | null;
+        };
+        /**
          * Controller
          * @description A controller, and the gains that are to change.
          */
@@ -1550,6 +1734,47 @@ export interface components {
             };
         };
         /**
+         * Driven
+         * @description Driving commands since the server started: how many reached the robot, and how many were dropped.
+         */
+        Driven: {
+            /**
+             * From The Future
+             * @description more than 0.3 s ahead of the robot's clock
+             * @default 0
+             */
+            from_the_future: number;
+            /**
+             * Not In Control
+             * @description from a seat without control
+             * @default 0
+             */
+            not_in_control: number;
+            /**
+             * Not Newer
+             * @description not after the last one that was passed on
+             * @default 0
+             */
+            not_newer: number;
+            /**
+             * Other Lease
+             * @description of an earlier change of control
+             * @default 0
+             */
+            other_lease: number;
+            /**
+             * Passed
+             * @default 0
+             */
+            passed: number;
+            /**
+             * Too Old
+             * @description more than 0.3 s old when it came
+             * @default 0
+             */
+            too_old: number;
+        };
+        /**
          * Driver
          * @description Who steers: the depth controller, or the pilot by hand.
          */
@@ -1667,6 +1892,14 @@ export interface components {
             value: number;
         };
         /**
+         * HandOver
+         * @description To which seat.
+         */
+        HandOver: {
+            /** Seat */
+            seat: number;
+        };
+        /**
          * Health
          * @description Everything together: "failed" where a part has failed, else "starting" where one starts, else "ok".
          */
@@ -1685,6 +1918,16 @@ export interface components {
             status: "ok" | "starting" | "failed";
             /** Version */
             version: string;
+        };
+        /**
+         * Holder
+         * @description Who has control.
+         */
+        Holder: {
+            /** Name */
+            name: string;
+            /** Seat */
+            seat: number;
         };
         /**
          * Hole
@@ -2176,6 +2419,19 @@ export interface components {
             name: string;
         };
         /**
+         * RefusedSeat
+         * @description Whose request was refused last; that seat may ask again after `until`.
+         */
+        RefusedSeat: {
+            /** Seat */
+            seat: number;
+            /**
+             * Until
+             * @description s, steady clock
+             */
+            until: number;
+        };
+        /**
          * Run
          * @description A run with its configuration and its cells.
          */
@@ -2427,6 +2683,21 @@ export interface components {
             text: string;
             /** Title */
             title: string;
+        };
+        /**
+         * SeatGiven
+         * @description A program's seat. `key` is told only here; it goes into the header X-Mucat-Seat.
+         */
+        SeatGiven: {
+            /** Key */
+            key: string;
+            /**
+             * Lasts
+             * @description s after its last use
+             */
+            lasts: number;
+            /** Seat */
+            seat: number;
         };
         /**
          * Session
@@ -2777,6 +3048,11 @@ export interface components {
             mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
+            /**
+             * Pilot Dropped
+             * @default 0
+             */
+            pilot_dropped: number;
             /** Port */
             port: string;
             /** Refusals */
@@ -2791,6 +3067,7 @@ export interface components {
             set_point_detected: number;
             /**
              * Steering
+             * @default none
              * @enum {string}
              */
             steering: "none" | "beacons";
@@ -3646,6 +3923,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description On the robot's board: control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description The database does not work */
             503: {
                 headers: {
@@ -3976,6 +4262,285 @@ export interface operations {
             };
         };
     };
+    getControl: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Control"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    handOverControl: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HandOver"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ControlState"];
+                };
+            };
+            /** @description There is no such seat, or it is a viewer's */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    refuseControl: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ControlState"];
+                };
+            };
+            /** @description Nobody asks for it */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    releaseControl: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ControlState"];
+                };
+            };
+            /** @description The request names no seat */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    renewSeat: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ControlState"];
+                };
+            };
+            /** @description The request names no seat */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    openSeat: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SeatGiven"];
+                };
+            };
+            /** @description Too many programs of this device have one */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    takeControl: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ControlState"];
+                };
+            };
+            /** @description The request names no seat; somebody else has asked; it was refused a moment ago */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     listExports: {
         parameters: {
             query?: never;
@@ -4259,7 +4824,7 @@ export interface operations {
                     "application/json": components["schemas"]["Session"];
                 };
             };
-            /** @description It is here already, or another is being imported */
+            /** @description It is here already, another is being imported, or the robot is armed */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4425,6 +4990,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description The runtime is not running */
             503: {
                 headers: {
@@ -4485,6 +5059,15 @@ export interface operations {
             };
             /** @description The request is not valid */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4559,6 +5142,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description The runtime is not running */
             503: {
                 headers: {
@@ -4615,6 +5207,15 @@ export interface operations {
             };
             /** @description The request is not valid */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4689,6 +5290,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description The runtime is not running */
             503: {
                 headers: {
@@ -4749,6 +5359,15 @@ export interface operations {
             };
             /** @description The request is not valid */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4823,6 +5442,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description The runtime is not running */
             503: {
                 headers: {
@@ -4883,6 +5511,15 @@ export interface operations {
             };
             /** @description The request is not valid */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4995,6 +5632,15 @@ export interface operations {
             };
             /** @description The request is not valid */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5204,6 +5850,15 @@ export interface operations {
             };
             /** @description The scenario cannot be run */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description On the robot: control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6158,6 +6813,15 @@ export interface operations {
             };
             /** @description The robot is not in the loop */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
                 headers: {
                     [name: string]: unknown;
                 };
