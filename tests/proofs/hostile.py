@@ -17,7 +17,6 @@ from pathlib import Path
 from urllib.parse import quote, urlsplit
 
 import requests
-from websockets.sync.client import ClientConnection
 
 from robot_runtime.comm_test.builder import _macros
 from robot_runtime.comm_test.document import NEEDED, OPTIONAL, SKETCH, DocumentError, read_document
@@ -45,14 +44,13 @@ ENTRANCES: dict[str, Callable[["Field"], object]] = {}
 class Field:
     """What the words are let loose on: a server, in whose folder lie a secret and no canary."""
 
-    def __init__(self, surface: Surface, live: ClientConnection, seed: int) -> None:
+    def __init__(self, surface: Surface, seed: int) -> None:
         self.surface = surface
         self.data = surface.served.settings.data
         self.folder = self.data.path.parent
         self.canary, self.secret = self.folder / "canary", self.folder / "secret.txt"
         self.secret.write_text(SECRET, encoding="utf-8")
         self.page = Page(surface.served.settings.page)
-        self.live = live
         self.words = Words(self.canary, self.secret, seed)
 
     def ask(self, method: str, path: str, body: object = None) -> requests.Response:
@@ -339,10 +337,11 @@ def live_words(field: Field) -> None:
     words = field.words
     message = {"op": words.choose(("ping", "watch", words.word())), "id": words.value()}
     text = json.dumps(message | {"pictures": [words.value()]})
-    field.live.send(text[:MESSAGE_BYTES_MAX])
-    field.live.send('{"op": "ping", "id": "the last"}')
-    while (said := field.live.recv(60)) != '{"op": "pong", "id": "the last"}':
-        assert isinstance(said, bytes | str)
+    with field.surface.connect() as live:
+        live.send(text[:MESSAGE_BYTES_MAX])
+        live.send('{"op": "ping", "id": "the last"}')
+        while (said := live.recv(60)) != '{"op": "pong", "id": "the last"}':
+            assert isinstance(said, bytes | str)
 
 
 def escape(word: str) -> str:
@@ -353,8 +352,8 @@ def escape(word: str) -> str:
 @contextmanager
 def open_field(seed: int = SEED) -> Iterator[Field]:
     """A field, until the context is left."""
-    with run_surface() as surface, surface.connect() as live:
-        yield Field(surface, live, seed)
+    with run_surface() as surface:
+        yield Field(surface, seed)
 
 
 def main() -> int:
