@@ -3,13 +3,18 @@ PORT ?= 8000
 ONLY ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
+FAULTS ?= 100
+CHAOS_SECONDS ?= 3600
+CUTS ?= 10000
 QUESTIONS ?= 300
+WORDS ?= 500
 PYTHON := .venv/bin/python
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills guards interface generate firmware host-firmware setup setup-test clean
+.PHONY: help run test check bench figures fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+	host-firmware setup setup-test clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -33,6 +38,9 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 
 guards: setup-test ## take away every guard in turn: a test must miss it (some with ONLY=words of their names)
 	@nice $(PYTHON) -m tests.proofs.guards $(ONLY)
+
+hostile: setup ## hostile words through every entrance to a build, a file name or a path (WORDS=500 each)
+	@nice $(PYTHON) -W ignore -m tests.proofs.hostile $(WORDS)
 
 interface: setup ## ask every operation what its description lets one think of (QUESTIONS=300 of each)
 	@nice $(PYTHON) -W ignore -m tests.proofs.interface $(QUESTIONS)
@@ -60,6 +68,15 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
+
+faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
+	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)
+
+chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
+	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
+
+power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
+	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
 
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."

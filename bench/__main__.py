@@ -19,6 +19,7 @@ PARTS = (
     "link",
     "corruption",
     "chip",
+    "fault",
     "comm_test",
     "store",
     "export",

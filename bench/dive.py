@@ -278,6 +278,7 @@ def _state(start: float, since: float) -> State:
         armed=armed,
         armed_since=start + ARMED_AT if armed else None,
         alarms=[],
+        pilot_dropped=0,
         refusals=[],
         connected=True,
         connection="The Arduino answers.",

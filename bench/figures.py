@@ -16,7 +16,7 @@ import numpy as np
 from bench.svg import Axis, Line, Panel, draw
 from server.sessions.recording import Recording
 from server.sessions.session import find_row
-from server.store import Store
+from server.store import Reader
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,7 +51,7 @@ def main() -> int:
     parser.add_argument("--data", type=Path, default=Path("data"))
     parser.add_argument("--out", type=Path, default=Path("docs"))
     options = parser.parse_args()
-    with closing(Store(options.data / "mucat.db")) as store:
+    with closing(Reader(options.data / "mucat.db")) as store:
         row = find_row(store, options.session)
         if row is None:
             print(f"there is no session {options.session}")

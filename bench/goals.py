@@ -32,6 +32,21 @@ def _goodput(name: str) -> dict[str, Goal]:
     return small | large | {f"{name}_ber_1e-4": _least(0.70), f"{name}_ber_1e-3": _least(0.40)}
 
 
+def _fault(name: str, told: float, off: float | None = None, rest: float | None = None) -> dict[str, Goal]:
+    """s until a fault is noticed, the motors have no power, and the fins rest."""
+    limits = {
+        f"fault.{name}_ms_max": told,
+        f"fault.{name}_off_ms_max": off,
+        f"fault.{name}_rest_ms_max": rest,
+    }
+    return {figure: _most(1000 * limit) for figure, limit in limits.items() if limit is not None}
+
+
+_CHIP = {"off": 1.015, "rest": 0.5}
+"""It disarms 1 s after the last valid frame, at its next tick of 10 ms."""
+_AGAIN = 2.0
+
+
 GOALS = {
     "camera.fps": _least(25),
     "codec.ratio_to_cobs_zlib": _most(1.3),
@@ -39,6 +54,28 @@ GOALS = {
     "compare.open_ms": _most(1500),
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
+    **_fault("pilot_quiet", 0.5),
+    **_fault("pilot_lost", 3, 3),
+    **_fault("server_silent", 5, 5),
+    **_fault("pi_silent", 1.2, **_CHIP),
+    **_fault("line_cut", 1, **_CHIP),
+    **_fault("board_silent", 1, 1),
+    **_fault("loop_hung", 1, 0.5),
+    **_fault("board_restarted", 1),
+    **_fault("depth_stale", 0.5, 0.5),
+    **_fault("depth_frozen", 0.5, 0.5),
+    **_fault("depth_range", 0.5, 0.5),
+    **_fault("imu_stale", 0.2, 0.2),
+    **_fault("capsized", 2, 2),
+    **_fault("vision_stale", 1),
+    **_fault("not_rising", 20),
+    **_fault("battery_low", 20.5, 20.5),
+    **_fault("runtime_killed", _AGAIN, 1.1),
+    **_fault("server_killed", _AGAIN),
+    **_fault("server_hung", _AGAIN, 5),
+    **_fault("keeper_killed", _AGAIN),
+    **_fault("simulator_killed", _AGAIN, 1),
+    **_fault("board_killed", _AGAIN),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
     "link.table6_min_success": _least(1.0),

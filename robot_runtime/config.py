@@ -116,11 +116,12 @@ class ZenohConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerConfig:
-    """The web server; the names by which browsers may call it."""
+    """The web server; the names by which browsers may call it, and whether it speaks TLS."""
 
     host: str = "127.0.0.1"
     port: Annotated[int, Range(1, 65535)] = 8000
     allowed_hosts: list[str] = field(default_factory=lambda: ["localhost", "127.0.0.1", "[::1]"])
+    tls: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -153,10 +153,16 @@ class State(Document):
     set_point: float
     set_point_default: float
     set_point_detected: float
-    steering: Steering = field(metadata={"meaning": "where it swims while it holds its depth"})
+    steering: Steering = field(
+        default="none", metadata={"meaning": "where it swims while it holds its depth"}
+    )
     control_rate: float
     vision_rate: float
     vision_colour: str
     colours: list[str]
     card: str | None
     camera: str
+    pilot_dropped: int = field(
+        default=0,
+        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
+    )

@@ -13,6 +13,7 @@ from server.access.access import Access
 from server.access.admit import admit
 from server.access.devices import UnknownDevice
 from server.access.gate import Gate
+from server.access.secret import TOKEN_PREFIX, make_token
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
 from server.control.lease import NotInControl
@@ -55,9 +56,12 @@ def create_app(
     `started` is called once everything is there, before anybody is served.
     """
 
+    # One for all servers that a keeper starts one after the other: who asks meanwhile is known to the next.
+    token = make_token(TOKEN_PREFIX)
+
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands, app.state.ended)
+        assembly = Assembly(settings, commands, token, app.state.ended)
         app.state.assembly = assembly
         async with assembly.run():
             if started is not None:

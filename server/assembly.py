@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.errors import Refused
 from robot_runtime.topics import Block
 from server.access.access import Access
 from server.comm_tests.handover import Board, Handover
@@ -54,7 +55,7 @@ BEAT_SECONDS = 1.0
 class Assembly:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command], ended: str = "") -> None:
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
         self.settings = settings
         self._ended = ended
         """How the server before this one has ended unexpectedly, a sentence."""
@@ -66,7 +67,7 @@ class Assembly:
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.telling = Telling(self.bridge.tell_lease)
         self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
@@ -110,6 +111,12 @@ class Assembly:
         assembly = connection.app.state.assembly
         assert isinstance(assembly, Assembly)
         return assembly
+
+    def require_disarmed(self, why: str) -> None:
+        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
+        state = self.watch.state()
+        if state is not None and state.get("armed"):
+            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
 
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:

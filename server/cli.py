@@ -12,7 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from server import VERSION, simulator_command
+from server import VERSION, backup_command, simulator_command
+from server.access.options import add_access, add_pair
+from server.durable import make_folder
 from server.exports.options import add_export, add_import
 from server.processes.keeper import Keeper, keeper_of, relieve
 from server.sessions.options import add_record, add_sessions
@@ -20,6 +22,7 @@ from server.settings import DataFolder, Settings, SetupError, make_folders, read
 
 if TYPE_CHECKING:
     from server.access.access import Access
+    from server.access.certificate import Certificate
 
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -45,6 +48,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _carry(options, settings)
         if options.command in ("sessions", "record"):
             return _sessions(options, settings)
+        if options.command in ("pair", "access"):
+            return _access(options, settings)
+        if options.command in ("backup", "restore"):
+            return backup_command.perform(options, settings, _claim)
         relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
@@ -82,7 +89,11 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     sessions = commands.add_parser("sessions", help="find sessions, write about them, delete them")
     add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
     record = commands.add_parser("record", help="record with the running server")
+    backup_command.add_arguments(commands, kept)
     add_record(record.add_subparsers(dest="action", required=True), kept)
+    add_pair(commands, kept)
+    access = commands.add_parser("access", help="who may come in, in which role, and who no longer")
+    add_access(access.add_subparsers(dest="action", required=True), kept)
     return parser.parse_args(arguments)
 
 
@@ -143,7 +154,7 @@ def _claim(folder: DataFolder) -> Iterator[None]:
     Parts of a killed server look now and then whether the lock is held, and then have it for a moment.
     """
     try:
-        folder.path.mkdir(parents=True, exist_ok=True)
+        make_folder(folder.path)
         handle = folder.lock.open("w")
     except OSError as problem:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
@@ -188,6 +199,12 @@ def _sessions(options: argparse.Namespace, settings: Settings) -> int:
     return perform(options, settings, _claim)
 
 
+def _access(options: argparse.Namespace, settings: Settings) -> int:
+    from server.access.command import perform
+
+    return perform(options, settings)
+
+
 def _report(options: argparse.Namespace, settings: Settings) -> int:
     from server.comparison.command import perform
 
@@ -204,6 +221,7 @@ def _carry(options: argparse.Namespace, settings: Settings) -> int:
 def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
     from robot_runtime.firmware import BuildError, build_firmware
+    from server.access.certificate import prepare_certificate
     from server.app import create_app
     from server.processes.parts import plan
     from server.running import announce
@@ -216,13 +234,14 @@ def _run(settings: Settings) -> int:
         except BuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
+        certificate = prepare_certificate(settings) if settings.tls else None
 
         def greet(access: "Access") -> None:
             if not app.state.ended:
-                _greet(settings, access)
+                _greet(settings, access, certificate)
 
         app = create_app(settings, plan(settings), greet)
-        server = make_server(app)
+        server = make_server(app, certificate)
         server.config.load()
 
         def serve(ended: str) -> int:
@@ -231,7 +250,7 @@ def _run(settings: Settings) -> int:
                 prepare(settings.data)
             except SetupError as problem:
                 return _complain(problem)
-            announce(settings.data, settings.host, settings.port)
+            announce(settings)
             # The server ends in order at these, and then sends them to itself once more; once is enough.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: None)
@@ -242,10 +261,10 @@ def _run(settings: Settings) -> int:
         return Keeper(serve, settings.data).run()
 
 
-def _greet(settings: Settings, access: "Access") -> None:
+def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:
     from server.access.welcome import welcome
 
-    lines = welcome(settings, access, picture=sys.stdout.isatty())
+    lines = welcome(settings, access, certificate, picture=sys.stdout.isatty())
     print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 

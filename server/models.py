@@ -75,7 +75,7 @@ class Chunk(SQLModel, table=True):
 
     __table_args__ = (
         UniqueConstraint("session_id", "topic", "number", name="chunk_place"),
-        Index("chunk_time", "session_id", "topic", "first_time"),
+        Index("chunk_time", "session_id", "topic", "first_time", "last_time", "count"),
     )
 
     id: int | None = Field(default=None, primary_key=True)

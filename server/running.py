@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import IO, Any
 
 from migrations import HEAD
+from server.access.certificate import trust_only
+from server.durable import write_whole
 from server.schema import prepare, read_revision
-from server.settings import DataFolder, SetupError
+from server.settings import DataFolder, Settings, SetupError
 from server.store import Reader
 
 Claim = Callable[[DataFolder], AbstractContextManager[None]]
@@ -20,10 +22,11 @@ Claim = Callable[[DataFolder], AbstractContextManager[None]]
 ASK_SECONDS = 10.0
 
 
-def announce(folder: DataFolder, host: str, port: int) -> None:
+def announce(settings: Settings) -> None:
     """Write down where the server of this folder is to be asked."""
-    host = "127.0.0.1" if host in ("0.0.0.0", "::") else host
-    folder.address.write_text(f"{f'[{host}]' if ':' in host else host}:{port}\n", encoding="ascii")
+    host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
+    host = f"[{host}]" if ":" in host else host
+    write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
 
 
 def server_runs(folder: DataFolder, claim: Claim) -> bool:
@@ -92,9 +95,12 @@ def _send(
         headers["authorization"] = f"Bearer {folder.token.read_text(encoding='ascii').strip()}"
     except OSError as problem:
         raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
-    request = urllib.request.Request(f"http://{address}/api{path}", body, headers, method=method)
+    request = urllib.request.Request(f"{address}/api{path}", body, headers, method=method)
     # What is on this computer is not to be asked through a proxy.
-    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    handlers: list[urllib.request.BaseHandler] = [urllib.request.ProxyHandler({})]
+    if address.startswith("https:"):
+        handlers.append(urllib.request.HTTPSHandler(context=trust_only(folder)))
+    opener = urllib.request.build_opener(*handlers)
     try:
         with opener.open(request, timeout=seconds) as answer:
             text = answer.read()

@@ -1,13 +1,14 @@
 """Brings the database to this version's tables before anything else opens it."""
 
-import os
+import errno
 import sqlite3
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import Literal
 
 from migrations import HEAD
+from server.backup import copy_database, open_database, place, thin_out
 from server.settings import DataFolder, SetupError
 
 INCREMENTAL = 2
@@ -20,26 +21,37 @@ def prepare(folder: DataFolder) -> None:
     Raises SetupError where the database is of a newer version, damaged, or cannot be written.
     """
     try:
-        revision = read_revision(folder.database)
+        # For writing: what a killed upgrade has left is rolled back by this.
+        revision = read_revision(folder.database, "rw")
         if revision == HEAD:
             return
         if revision is not None:
-            _refuse_unknown(revision, folder.database)
-            _back_up(folder, revision)
+            refuse_unknown(revision, folder.database)
+            copy_database(folder.database, place(folder, "before", revision))
+            thin_out(folder, "before")
             _make_shrinkable(folder.database)
         _upgrade(folder.database)
-    except sqlite3.DatabaseError as problem:
+    except (sqlite3.DatabaseError, OSError) as problem:
         raise SetupError(
-            f"The database {folder.database} cannot be used: {problem}. "
-            "Move it away to start with an empty one, or put back a copy."
+            f"The database {folder.database} cannot be used: {explain(problem, folder.path)}"
         ) from problem
 
 
-def read_revision(database: Path) -> str | None:
+def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
+    """What is wrong, and what to do."""
+    words = str(problem)
+    if "disk is full" in words or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
+        return f"the disk that holds {folder} is full. Free some space, and try again."
+    if isinstance(problem, OSError) or "readonly" in words or "unable to open" in words:
+        return f"{words}. Check the permissions of {folder}, and whether its disk is read-only."
+    return f"{words}. Put back a copy (`mucat restore`), or move it away to start with an empty one."
+
+
+def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | None:
     """The revision that a database is at; None where there is none yet. Raises sqlite3.DatabaseError."""
     if not database.exists():
         return None
-    with closing(sqlite3.connect(database)) as connection:
+    with closing(open_database(database, mode)) as connection:
         tables = {
             name for (name,) in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
         }
@@ -51,7 +63,8 @@ def read_revision(database: Path) -> str | None:
     return None if row is None else str(row[0])
 
 
-def _refuse_unknown(revision: str, database: Path) -> None:
+def refuse_unknown(revision: str, database: Path) -> None:
+    """Raises SetupError where this version does not know the revision."""
     from alembic.script import ScriptDirectory
 
     known = {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
@@ -60,18 +73,6 @@ def _refuse_unknown(revision: str, database: Path) -> None:
             f"The database {database} was written by a newer version (its revision is {revision}, this "
             f"version's is {HEAD}). Install that version, or choose another data folder with --data."
         )
-
-
-def _back_up(folder: DataFolder, revision: str) -> None:
-    folder.backups.mkdir(exist_ok=True)
-    moment = time.strftime("%Y-%m-%d_%H-%M-%S", time.gmtime())
-    copy = folder.backups / f"mucat-{revision}-{moment}.db"
-    unfinished = copy.with_suffix(".part")
-    with closing(sqlite3.connect(folder.database)) as source, closing(sqlite3.connect(unfinished)) as target:
-        source.backup(target)
-    _sync(unfinished)
-    unfinished.rename(copy)
-    _sync(folder.backups)
 
 
 def _make_shrinkable(database: Path) -> None:
@@ -87,15 +88,22 @@ def _upgrade(database: Path) -> None:
     # Alembic is loaded only where there is something to do: it costs a Raspberry Pi time and memory.
     from alembic import command
     from alembic.config import Config
-    from sqlalchemy import create_engine, pool
+    from sqlalchemy import create_engine, event, pool
 
-    engine = create_engine(f"sqlite:///{database}", poolclass=pool.NullPool)
+    def connect() -> sqlite3.Connection:
+        connection = sqlite3.connect(database, isolation_level=None)
+        # Of a database that has tables already this changes nothing.
+        connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
+        connection.execute("PRAGMA synchronous = FULL")
+        return connection
+
+    engine = create_engine("sqlite://", poolclass=pool.NullPool, creator=connect)
+    # The driver by itself begins no transaction before it changes tables; half an upgrade must not stay.
+    event.listen(engine, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
     config = Config()
     config.set_main_option("script_location", str(_scripts()))
     config.set_main_option("path_separator", "os")
     with _driver_errors(), engine.connect() as connection:
-        # Of a database that has tables already this changes nothing.
-        connection.exec_driver_sql(f"PRAGMA auto_vacuum = {INCREMENTAL}")
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
         connection.commit()
@@ -113,11 +121,3 @@ def _driver_errors() -> Iterator[None]:
 
 def _scripts() -> Path:
     return Path(__file__).parent.parent / "migrations"
-
-
-def _sync(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

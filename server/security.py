@@ -35,7 +35,7 @@ class Guard:
     def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int) -> None:
         self._app = app
         self._hosts = {f"{host}:{port}" for host in allowed_hosts}
-        if port == 80:
+        if port in (80, 443):
             self._hosts.update(allowed_hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

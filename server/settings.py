@@ -2,6 +2,7 @@
 
 import os
 import re
+import socket
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from ipaddress import ip_address
@@ -9,10 +10,14 @@ from pathlib import Path
 from typing import Literal
 
 from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
+from server.durable import make_folder
 from server.processes.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
+
+NOWHERE = "192.0.2.1"
+"""An address of documentation's own network (RFC 5737)."""
 
 ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
 
@@ -80,6 +85,11 @@ class DataFolder:
         return self.path / "server.token"
 
     @property
+    def tls(self) -> Path:
+        """The robot's certificate and its key."""
+        return self.path / "tls"
+
+    @property
     def runtime_socket(self) -> Path:
         """Where the runtime listens for Zenoh."""
         return self.run / "runtime.sock"
@@ -138,9 +148,15 @@ class Settings:
     sessions: SessionsConfig = field(default_factory=SessionsConfig)
     host: str = "127.0.0.1"
     port: int = 8000
+    tls: bool = False
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
     build: Path = Path(__file__).parent.parent / "build"
     page: Path = Path(__file__).parent / "page"
+
+    @property
+    def scheme(self) -> str:
+        """What its addresses begin with."""
+        return "https" if self.tls else "http"
 
     @property
     def only_here(self) -> bool:
@@ -154,7 +170,7 @@ class Settings:
         """
         names = [name for name in self.allowed_hosts if self.only_here or not _is_loopback(name)]
         name = called if called in names else (names or [self.host])[0]
-        return f"http://{name}:{self.port}"
+        return f"{self.scheme}://{name}:{self.port}"
 
     @property
     def emulated_board(self) -> bool:
@@ -193,6 +209,7 @@ def read_settings(
         sessions=loaded.sessions,
         host=chosen_host,
         port=chosen_port,
+        tls=loaded.server.tls,
         allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),
     )
 
@@ -201,7 +218,7 @@ def make_folders(folder: DataFolder) -> None:
     """Create the data folder, and empty its `run` where nothing runs. Raises SetupError where it cannot."""
     try:
         for path in (folder.path, folder.logs, folder.run):
-            path.mkdir(parents=True, exist_ok=True)
+            make_folder(path)
         folder.run.chmod(0o700)
         # What lives there belongs to parts of a killed server, as long as one of them runs.
         if not running_parts(folder.run):
@@ -215,8 +232,22 @@ def make_folders(folder: DataFolder) -> None:
 
 def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
     everywhere = host in ("0.0.0.0", "::")
-    own = [] if everywhere else [f"[{host}]" if ":" in host else host]
+    own = _own_names() if everywhere else [f"[{host}]" if ":" in host else host]
     return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+
+
+def _own_names() -> list[str]:
+    """How other computers may call this one: its address in the network that its packets leave by, and its
+    names. No foreign page can make a browser take such an address for the page's own.
+    """
+    name = socket.gethostname().lower()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((NOWHERE, 9))  # which sends nothing
+            address = [probe.getsockname()[0]]
+        except OSError:
+            address = []
+    return [*address, f"{name}.local", name]
 
 
 def _is_loopback(name: str) -> bool:

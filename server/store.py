@@ -1,15 +1,17 @@
 """The database: one writing connection in a thread of its own, and connections that only read.
 
-SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so nothing else may write.
-What `write` has returned from survives a power cut (WAL with synchronous=FULL).
+SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so nothing else may write: who
+does holds the database's folder. What `write` has returned from survives a power cut (docs/durability.md).
 """
 
 import asyncio
+import fcntl
+import os
+import sqlite3
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
-from sqlite3 import Connection as DriverConnection
 from typing import TypeVar
 
 from sqlalchemy import Connection, Engine, create_engine, event, pool
@@ -28,7 +30,7 @@ class Reader:
     """A database that `schema.prepare` has made ready, open only for reading; also beside a server."""
 
     def __init__(self, database: Path) -> None:
-        self._reader = _engine(f"sqlite:///file:{database}?mode=ro&uri=true", pool.QueuePool)
+        self._reader = _engine(database, "mode=ro", pool.QueuePool)
 
     @contextmanager
     def read(self) -> Iterator[Session]:
@@ -45,12 +47,21 @@ class Reader:
 
 
 class Store(Reader):
-    """An open database that is also written; `failing` says why the last write failed."""
+    """An open database that is also written; `failing` says why the last write failed.
+
+    Raises StoreError where another one is open for writing.
+    """
 
     def __init__(self, database: Path) -> None:
+        self._folder = _hold(database.parent)
         super().__init__(database)
         self.failing: str | None = None
-        self._writer = _engine(f"sqlite:///{database}", pool.StaticPool)
+        # Without a power-safe overwrite SQLite lets no two commits share a sector, so that a cut that spoils
+        # the sector being written spoils nothing that was synced before it.
+        self._writer = _engine(database, "psow=0", pool.StaticPool)
+        event.listen(self._writer, "connect", _make_durable)
+        # The driver by itself begins a transaction only before a row changes: each PRAGMA would be one alone.
+        event.listen(self._writer, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
         self._thread = ThreadPoolExecutor(1, "writer")
         self._thread.submit(self._open).result()
 
@@ -71,6 +82,7 @@ class Store(Reader):
         self._thread.shutdown()
         super().close()
         self._writer.dispose()
+        os.close(self._folder)
 
     def _open(self) -> None:
         self._connection = self._writer.connect()
@@ -91,18 +103,38 @@ def _touch(connection: Connection) -> None:
     connection.exec_driver_sql(f"PRAGMA user_version = {(version + 1) % 1000}")
 
 
-def _engine(url: str, pool_class: type[pool.Pool]) -> Engine:
-    engine = create_engine(url, poolclass=pool_class, connect_args={"check_same_thread": False})
+def _hold(folder: Path) -> int:
+    """Take the right to write. A folder's lock does not touch those that SQLite has on its files."""
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as problem:
+        os.close(handle)
+        raise StoreError(f"another program writes the database in {folder}: end it first") from problem
+    return handle
+
+
+def _engine(database: Path, options: str, pool_class: type[pool.Pool]) -> Engine:
+    uri = f"{database.absolute().as_uri()}?{options}"
+
+    def connect() -> sqlite3.Connection:
+        return sqlite3.connect(uri, uri=True, check_same_thread=False)
+
+    engine = create_engine("sqlite://", poolclass=pool_class, creator=connect)
     event.listen(engine, "connect", _configure)
     return engine
 
 
-def _configure(connection: DriverConnection, _record: object) -> None:
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = FULL")
+def _configure(connection: sqlite3.Connection, _record: object) -> None:
     connection.execute("PRAGMA foreign_keys = ON")
     connection.execute("PRAGMA busy_timeout = 2000")
     connection.execute(f"PRAGMA cache_size = -{PAGE_CACHE_KIB}")
+
+
+def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
+    connection.isolation_level = None
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
 
 
 def _explain(problem: DBAPIError) -> str:

@@ -5,6 +5,7 @@ import socket
 import uvicorn
 from fastapi import FastAPI
 
+from server.access.certificate import Certificate
 from server.settings import SetupError
 
 SEND_BUFFER_BYTES = 65_536
@@ -42,10 +43,14 @@ def open_socket(host: str, port: int) -> socket.socket:
     return listener
 
 
-def make_server(app: FastAPI) -> uvicorn.Server:
-    """A server for the application; it takes nothing from X-Forwarded-*, and compresses no messages."""
+def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn.Server:
+    """A server for the application, with TLS where it has a certificate; it takes nothing from
+    X-Forwarded-*, and compresses no messages.
+    """
     config = uvicorn.Config(
         app,
+        ssl_certfile=None if certificate is None else certificate.file,
+        ssl_keyfile=None if certificate is None else certificate.key,
         http="h11",
         ws="websockets-sansio",
         loop="asyncio",

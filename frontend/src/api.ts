@@ -33,8 +33,8 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
-/** who steers an armed robot: the pilot or the controller */
-export type Steering = Extract<State['mode'], 'manual' | 'automatic'>;
+/** who drives an armed robot: the pilot or the controller */
+export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
 export type Signal = Schemas['Signal'];
 export type Comparison = Schemas['Comparison'];
@@ -81,8 +81,8 @@ function order(method: string, path: string, body?: object, timeout?: number): P
 
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
-  arm: (mode: Steering) => order('POST', '/robot/arm', { mode }),
-  steer: (mode: Steering) => order('PUT', '/robot/mode', { mode }),
+  arm: (mode: Piloting) => order('POST', '/robot/arm', { mode }),
+  changeMode: (mode: Piloting) => order('PUT', '/robot/mode', { mode }),
   checkFins: () => order('POST', '/robot/check-fins', undefined, TIMEOUT_CHECK),
   acknowledge: () => order('POST', '/robot/acknowledge'),
   takeControl: () => command('POST', '/control/take'),

@@ -16,7 +16,7 @@ describe('a page that may not command', () => {
     refuseCommands('a replay');
     const orders = [
       () => api.arm('manual'),
-      () => api.steer('automatic'),
+      () => api.changeMode('automatic'),
       () => api.checkFins(),
       () => api.acknowledge(),
       () => api.controller('pid', {}),

@@ -78,6 +78,8 @@ def read_document(text: str) -> list[CommTest]:
         raise DocumentError([f"the document is larger than {DOCUMENT_BYTES_MAX} bytes"])
     try:
         entries = json.loads(text)
+        # JSON can name halves of characters, which no text can hold.
+        json.dumps(entries, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as problem:
         raise DocumentError([f"the document is not JSON: {problem}"]) from problem
     if not isinstance(entries, list) or not entries:

@@ -110,6 +110,7 @@ def _shorten(said: str) -> str:
 
 def _run_briefly(command: list[str]) -> str:
     try:
-        return subprocess.run(command, capture_output=True, text=True, check=False).stderr
-    except OSError as problem:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
+        return done.stderr
+    except (OSError, subprocess.TimeoutExpired) as problem:
         raise UploadError(f"avrdude cannot be started: {problem}; install the package avrdude") from problem

@@ -79,7 +79,7 @@ class Watch:
         self._pressure: int | None = None
         self._moved, self._repeats = _NEVER, 0
         self._server = clock.now()
-        self._vision: float | None = None
+        self._vision = float("inf")
         self._ascent: tuple[float, float] | None = None
         self._sinks = False
 
@@ -180,7 +180,7 @@ class Watch:
 
     def _conditions(self, mode: Mode) -> dict[str, bool]:
         pilot = self._age(self._pilot.taken) if mode == "manual" else 0.0
-        patience, vision = self.server_patience, self._vision
+        patience = self.server_patience
         depth_age = self._age(self._depth_time)
         low = self.status is not None and bool(self.status.flags & StatusFlag.BATTERY_LOW)
         return {
@@ -193,7 +193,7 @@ class Watch:
             "depth_range": depth_age <= self._depth_stale < self._age(self._depth_sane),
             "imu_stale": self._imu_is_stale(),
             "capsized": self._capsized(),
-            "vision_stale": vision is not None and self._age(vision) > _limit("vision_stale"),
+            "vision_stale": mode == "automatic" and self._age(self._vision) > _limit("vision_stale"),
             "not_rising": self._does_not_rise(),
             "battery_low": low,
             "fin_failing": bool(self._fins()),

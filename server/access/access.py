@@ -13,7 +13,7 @@ from robot_runtime.errors import Refused
 from server.access.codes import Codes, TooManyTries
 from server.access.devices import Device, Devices
 from server.access.identity import SHELL, Identity, Role
-from server.access.secret import TOKEN_PREFIX, digest, make_token
+from server.access.secret import digest
 from server.settings import Settings
 from server.store import Store
 
@@ -25,17 +25,25 @@ BEARER = "bearer "
 
 
 class Access:
-    """One for the server; `tell` writes notices, which also get into what is being recorded."""
+    """One for the server; `tell` writes notices, which also get into what is being recorded, and `token` is
+    what the shell of this computer is given to prove itself with.
+    """
 
     def __init__(
-        self, settings: Settings, store: Store, clock: Clock, tell: Tell, close_sockets: CloseSockets
+        self,
+        settings: Settings,
+        store: Store,
+        clock: Clock,
+        tell: Tell,
+        close_sockets: CloseSockets,
+        token: str,
     ) -> None:
         self.cookie = f"mucat_{settings.port}"
         """Its name: browsers keep the cookies of all ports of a computer together."""
         self.codes = Codes(clock)
         self.devices = Devices(store)
         self._token_file = settings.data.token
-        self._token = make_token(TOKEN_PREFIX)
+        self._token = token
         self._tell = tell
         self._close_sockets = close_sockets
         self._limit_told = False

@@ -2,11 +2,14 @@
 
 from server import VERSION
 from server.access.access import Access
+from server.access.certificate import Certificate
 from server.access.links import pairing_link, qr_text
 from server.settings import Settings
 
 
-def welcome(settings: Settings, access: Access, *, picture: bool) -> list[str]:
+def welcome(
+    settings: Settings, access: Access, certificate: Certificate | None, *, picture: bool
+) -> list[str]:
     """Lines for the terminal; `picture` says whether it can show one.
 
     Who holds the terminal of a server that only this computer reaches is its operator anyway, so each start
@@ -14,14 +17,12 @@ def welcome(settings: Settings, access: Access, *, picture: bool) -> list[str]:
     operator: its output may be kept in a log, and its reader is not always at the robot.
     """
     base = settings.base_url()
-    reach = (
-        "only this computer reaches it"
-        if settings.only_here
-        else f"listening on {settings.host}: whoever is in its network reaches it"
-    )
-    lines = [
-        f"µ-CAT {VERSION} ({settings.mode}): {base}/ ({reach}; data in {settings.data.path})",
-    ]
+    lines = [f"µ-CAT {VERSION} ({settings.mode}): {base}/ (data in {settings.data.path})", _reach(settings)]
+    if certificate is not None:
+        lines += [
+            "Browsers will not know its certificate. Compare the SHA-256 fingerprint before you trust it:",
+            f"  {certificate.fingerprint}",
+        ]
     if settings.only_here or not access.devices.operators:
         lines += invitation(pairing_link(base, access.codes.make("operator")), picture, settings.only_here)
     return lines
@@ -29,7 +30,15 @@ def welcome(settings: Settings, access: Access, *, picture: bool) -> list[str]:
 
 def invitation(link: str, picture: bool, only_here: bool) -> list[str]:
     """A pairing link for a person; as a picture too, where a telephone could follow it."""
-    lines = ["To sign a browser in, open this link; it works once, for ten minutes:", f"  {link}"]
+    lines = ["To sign a browser in, open this link. It works once, for ten minutes:", f"  {link}"]
     if picture and not only_here:
         lines.append(qr_text(link))
     return lines
+
+
+def _reach(settings: Settings) -> str:
+    if settings.only_here:
+        return f"It listens on {settings.host}: only this computer reaches it."
+    where = "all networks" if settings.host in ("0.0.0.0", "::") else "its network"
+    read = "" if settings.tls else ", and read along what others ask: server.tls in robot.toml hides it"
+    return f"It listens on {settings.host}: every computer in {where} can ask for a sign-in{read}."

@@ -3,14 +3,12 @@
 import argparse
 import asyncio
 import signal
-import sqlite3
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
-from migrations import HEAD
 from robot_runtime.clock import SteadyClock
 from robot_runtime.comm_test.document import CommTest, DocumentError, read_document
 from robot_runtime.errors import Refused
@@ -19,13 +17,13 @@ from server.comm_tests.handover import Board
 from server.comm_tests.lab import Lab
 from server.comm_tests.reference import TABLES, read_table
 from server.comm_tests.reference import Place as Cell
-from server.comm_tests.runs import Runs
+from server.comm_tests.runs import KeptRuns, Runs
 from server.comm_tests.shapes import Place
 from server.models import CommTestRun
 from server.processes.pidfile import end_parts
-from server.running import Claim
-from server.schema import prepare, read_revision
-from server.settings import DataFolder, Settings, SetupError
+from server.running import Claim, open_reader
+from server.schema import prepare
+from server.settings import Settings, SetupError
 from server.store import Store, StoreError
 
 
@@ -42,14 +40,14 @@ def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> in
                 settings,
                 claim,
             )
-        with _open(settings.data, claim) as runs:
-            print(_look(options, runs), end="")  # noqa: T201 - a command line speaks
+        with open_reader(settings.data, claim) as store:
+            print(_look(options, KeptRuns(store)), end="")  # noqa: T201 - a command line speaks
     except StoreError as problem:
         raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
     return 0
 
 
-def _look(options: argparse.Namespace, runs: Runs) -> str:
+def _look(options: argparse.Namespace, runs: KeptRuns) -> str:
     if options.action == "list":
         return tables.show_list(runs.list()) + "\n"
     if options.action == "compare":
@@ -60,7 +58,7 @@ def _look(options: argparse.Namespace, runs: Runs) -> str:
     return (tables.write_csv if options.format == "csv" else tables.write_json)(run, cells)
 
 
-def _rates(runs: Runs, name: str) -> dict[Cell, float]:
+def _rates(runs: KeptRuns, name: str) -> dict[Cell, float]:
     if name in TABLES:
         return read_table(name)
     if not name.isdecimal():
@@ -69,28 +67,11 @@ def _rates(runs: Runs, name: str) -> dict[Cell, float]:
     return tables.places(runs.cells(int(name)))
 
 
-def _find(runs: Runs, number: int) -> CommTestRun:
+def _find(runs: KeptRuns, number: int) -> CommTestRun:
     run = runs.find(number)
     if run is None:
         raise SetupError(f"There is no run {number}; `mucat commtest list` shows those that there are.")
     return run
-
-
-@contextmanager
-def _open(folder: DataFolder, claim: Claim) -> Iterator[Runs]:
-    # Only reads, so it may be done beside a running server; making or upgrading a database may not.
-    if not _is_current(folder):
-        with claim(folder):
-            prepare(folder)
-    with closing(Store(folder.database)) as store:
-        yield Runs(store)
-
-
-def _is_current(folder: DataFolder) -> bool:
-    try:
-        return read_revision(folder.database) == HEAD
-    except sqlite3.DatabaseError:
-        return False  # `prepare` says what is the matter
 
 
 def _run(file: Path, place: Place, settings: Settings, claim: Claim) -> int:

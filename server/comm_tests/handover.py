@@ -6,7 +6,6 @@ it back at its next start.
 """
 
 import asyncio
-import os
 import sys
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
@@ -15,6 +14,7 @@ from pathlib import Path
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from robot_runtime.firmware import firmware_path
+from server.durable import sync, write_whole
 from server.live.bridge import Bridge, RuntimeSilent
 from server.live.health import Watch
 from server.processes.logs import PartLog
@@ -210,21 +210,9 @@ class Handover:
 
 
 def _mark(path: Path, name: str) -> None:
-    with path.open("w", encoding="utf-8") as file:
-        file.write(f"{name}\n")
-        file.flush()
-        os.fsync(file.fileno())
-    _sync_folder(path.parent)
+    write_whole(path, f"{name}\n".encode())
 
 
 def _unmark(path: Path) -> None:
     path.unlink(missing_ok=True)
-    _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    sync(path.parent)

@@ -17,7 +17,7 @@ from signal import SIGKILL, SIGTERM
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.comm_test.document import CommTest, read_document
+from robot_runtime.comm_test.document import CommTest, DocumentError, read_document
 from robot_runtime.comm_test.runner import estimate_seconds
 from robot_runtime.errors import Refused
 from server.comm_tests.runs import End, Runs
@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 LINE_BYTES_MAX = 100_000
 WORDS_KEPT = 5
 """Lines that are no JSON are the last words of a process that fails."""
+TEST_SECONDS_MAX = 86_400.0
+"""s of the tests' own time, all cells together: a board that is lent is to come back within a day."""
 CANCEL_SECONDS = 45.0
 """After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
 
@@ -100,7 +102,7 @@ class Lab:
 
         Raises DocumentError, Refused where it cannot be run now, StoreError.
         """
-        tests = read_document(text)
+        tests = read_limited(text)
         if self.busy:
             raise Refused("A communication test is running. Wait for its end, or cancel it.")
         began: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -232,6 +234,20 @@ class Lab:
         await self.runs.end(progress.run, state, problem)
         progress.run = None
         progress.done_weight = sum(sum(one) for one in progress.weights[: progress.test + 1])
+
+
+def read_limited(text: str) -> list[CommTest]:
+    """The tests of a document that may be run here. Raises DocumentError."""
+    tests = read_document(text)
+    seconds = sum(estimate_seconds(test, cell) for test in tests for cell in test.cells)
+    if seconds > TEST_SECONDS_MAX:
+        raise DocumentError(
+            [
+                f"the document's cells take about {seconds / 3600:.0f} hours; at most "
+                f"{TEST_SECONDS_MAX / 3600:g} can be run at once. Take fewer numbers, or shorter delays"
+            ]
+        )
+    return tests
 
 
 class _Lines:

@@ -15,15 +15,66 @@ from robot_runtime.comm_test.document import CommTest
 from server import VERSION
 from server.comm_tests.shapes import Cell, Place, Run, RunSummary
 from server.models import CommTestCell, CommTestRun
-from server.store import Store
+from server.store import Reader, Store
 
 End = Literal["complete", "cancelled", "failed"]
 
 
-class Runs:
-    """The runs in `store`. All methods raise StoreError; what is awaited is on the disk when it returns."""
+class KeptRuns:
+    """The runs of a database, to be looked at. All methods raise StoreError."""
+
+    def __init__(self, store: Reader) -> None:
+        self._reader = store
+
+    def list(self) -> Sequence[CommTestRun]:
+        """All runs, newest first."""
+        with self._reader.read() as database:
+            return database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+
+    def find(self, run: int) -> CommTestRun | None:
+        """A run; None where there is none of this number."""
+        with self._reader.read() as database:
+            return database.get(CommTestRun, run)
+
+    def cells(self, run: int) -> Sequence[CommTestCell]:
+        """The cells of a run, in the order in which they were run."""
+        with self._reader.read() as database:
+            wanted = select(CommTestCell).where(col(CommTestCell.run_id) == run)
+            return database.exec(wanted.order_by(col(CommTestCell.number))).all()
+
+    def summaries(self) -> Sequence[RunSummary]:
+        """All runs with their figures, newest first."""
+        figures = select(
+            col(CommTestCell.run_id),
+            func.count(),
+            func.avg(col(CommTestCell.rate)),
+            func.min(col(CommTestCell.rate)),
+        ).group_by(col(CommTestCell.run_id))
+        with self._reader.read() as database:
+            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures)}
+            runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+            return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
+
+    def whole(self, run: CommTestRun) -> Run:
+        """A run with everything that is known of it."""
+        cells = [_cell(cell) for cell in self.cells(run.id or 0)]
+        rates = [cell.rate for cell in cells]
+        mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
+        return Run(
+            **_summary(run, len(cells), mean, low),
+            document=json.loads(run.document),
+            firmware=run.firmware,
+            tools=json.loads(run.tools),
+            host=run.host,
+            results=cells,
+        )
+
+
+class Runs(KeptRuns):
+    """The same, to be added to. What is awaited is on the disk when it returns."""
 
     def __init__(self, store: Store) -> None:
+        super().__init__(store)
         self._store = store
 
     async def start(
@@ -77,49 +128,6 @@ class Runs:
                 connection.execute(insert(CommTestCell).values({**cell, "run_id": number}))
 
         await self._store.write(change)
-
-    def list(self) -> Sequence[CommTestRun]:
-        """All runs, newest first."""
-        with self._store.read() as database:
-            return database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
-
-    def find(self, run: int) -> CommTestRun | None:
-        """A run; None where there is none of this number."""
-        with self._store.read() as database:
-            return database.get(CommTestRun, run)
-
-    def cells(self, run: int) -> Sequence[CommTestCell]:
-        """The cells of a run, in the order in which they were run."""
-        with self._store.read() as database:
-            wanted = select(CommTestCell).where(col(CommTestCell.run_id) == run)
-            return database.exec(wanted.order_by(col(CommTestCell.number))).all()
-
-    def summaries(self) -> Sequence[RunSummary]:
-        """All runs with their figures, newest first."""
-        figures = select(
-            col(CommTestCell.run_id),
-            func.count(),
-            func.avg(col(CommTestCell.rate)),
-            func.min(col(CommTestCell.rate)),
-        ).group_by(col(CommTestCell.run_id))
-        with self._store.read() as database:
-            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures)}
-            runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
-            return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
-
-    def whole(self, run: CommTestRun) -> Run:
-        """A run with everything that is known of it."""
-        cells = [_cell(cell) for cell in self.cells(run.id or 0)]
-        rates = [cell.rate for cell in cells]
-        mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
-        return Run(
-            **_summary(run, len(cells), mean, low),
-            document=json.loads(run.document),
-            firmware=run.firmware,
-            tools=json.loads(run.tools),
-            host=run.host,
-            results=cells,
-        )
 
 
 def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None) -> dict[str, Any]:

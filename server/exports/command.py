@@ -10,8 +10,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from robot_runtime.errors import Refused
+from server.durable import PART
 from server.exports.describe import file_name
-from server.exports.files import PART, FileFailed, put_in_place, write_part
+from server.exports.files import FileFailed, put_in_place, write_part
 from server.exports.formats import check
 from server.exports.imports import Imports
 from server.exports.reading import ArchiveRefused

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, cast
 
+from server.durable import sync
+
 BUFFER_BYTES = 1 << 18
-PART = ".part"
 
 
 class Written(NamedTuple):
@@ -46,18 +47,9 @@ def put_in_place(part: Path, path: Path) -> None:
     """Give a finished file its name, for good. Raises FileFailed."""
     try:
         part.replace(path)
-        sync_folder(path.parent)
+        sync(path.parent)
     except OSError as problem:
         raise FileFailed(explain(problem, path)) from problem
-
-
-def sync_folder(folder: Path) -> None:
-    """Have the folder's names on the disk. Raises OSError."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def explain(problem: OSError, path: Path) -> str:

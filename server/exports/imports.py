@@ -18,8 +18,9 @@ from sqlalchemy import Connection, Update, insert, update
 from sqlmodel import SQLModel, col, select
 
 from robot_runtime.errors import Refused
+from server.durable import PART
 from server.exports.child import Child, ChildFailed
-from server.exports.files import PART, FileFailed, explain
+from server.exports.files import FileFailed, explain
 from server.exports.reading import Archive, ArchiveRefused, open_archive
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.sessions.session import IMPORTING, REMOVING

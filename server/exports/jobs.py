@@ -14,9 +14,10 @@ from secrets import token_hex
 from pydantic import ValidationError
 
 from robot_runtime.errors import Refused
+from server.durable import PART, make_folder, write_whole
 from server.exports.child import Child, ChildFailed
 from server.exports.describe import file_name
-from server.exports.files import PART, FileFailed, explain, put_in_place, write_part
+from server.exports.files import FileFailed, explain, put_in_place
 from server.exports.formats import check
 from server.exports.shapes import Job, NewExport, Wanted
 from server.exports.source import Source
@@ -47,7 +48,7 @@ class Jobs:
     def open(self) -> None:
         """Find what earlier servers have made, and clear away what they did not finish."""
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            make_folder(self._folder)
             for path in self._folder.iterdir():
                 if path.suffix == DESCRIBED:
                     self._find(path)
@@ -144,9 +145,10 @@ class Jobs:
 
     def _keep(self, done: Job, part: Path) -> None:
         described = self._description(done)
-        unfinished = described.with_name(described.name + PART)
-        write_part(unfinished, lambda output: output.write(done.model_dump_json().encode()))
-        put_in_place(unfinished, described)
+        try:
+            write_whole(described, done.model_dump_json().encode())
+        except OSError as problem:
+            raise FileFailed(explain(problem, described)) from problem
         put_in_place(part, self.path(done))
 
     def _unlink(self, job: Job) -> None:

@@ -66,7 +66,8 @@ class Client:
         """Send this soon, in order. Raises Evicted where too many answers already wait to be read."""
         if len(self._answers) >= ANSWERS_MAX:
             raise Evicted("Too many answers wait unread.")
-        self._answers.append(json.dumps(message, ensure_ascii=False))
+        # In ASCII: what a client has said may hold halves of characters, which no other text can.
+        self._answers.append(json.dumps(message))
         self._wake.set()
 
     def tell(self, kind: str, text: str) -> None:

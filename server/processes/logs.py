@@ -34,11 +34,19 @@ class PartLog:
         except OSError:
             return
 
-    def last(self, count: int) -> str:
-        """The last lines, one after the other; empty where nothing was printed."""
+    def size(self) -> int:
+        """Bytes that there are."""
+        try:
+            return self._path.stat().st_size
+        except OSError:
+            return 0
+
+    def last(self, count: int, since: int = 0) -> str:
+        """The last lines after so many bytes, one after the other; empty where nothing was printed."""
         try:
             with self._path.open("rb") as file:
-                file.seek(max(0, file.seek(0, os.SEEK_END) - LAST_BYTES))
+                size = file.seek(0, os.SEEK_END)
+                file.seek(max(since if since <= size else 0, size - LAST_BYTES))
                 lines = [line.strip() for line in file.read().splitlines()]
         except OSError:
             return ""

@@ -78,6 +78,7 @@ class Part:
         self.since = clock.now()
         self.problem = ""
         self._log = log
+        self._logged_before = 0
         self._pid_file = pid_file(run, command.name)
         self._clock = clock
         self._see_down = see_down
@@ -137,10 +138,11 @@ class Part:
         finally:
             trimming.cancel()
         self._let_go()
-        last = self._log.last(LINES_TOLD)
+        last = self._log.last(LINES_TOLD, self._logged_before)
         return describe_status(status) + (f". Its last words: {last}" if last else "")
 
     def _start(self) -> Process:
+        self._logged_before = self._log.size()
         with self._log.open() as output:
             process = Process(self.command.arguments, output)
         try:

@@ -5,10 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, HTTPException, Path, Request
 from fastapi.responses import Response
 
-from robot_runtime.comm_test.document import CommTest, DocumentError, read_document
+from robot_runtime.comm_test.document import CommTest, DocumentError
 from robot_runtime.comm_test.runner import estimate_seconds
 from server.assembly import Assembly
 from server.comm_tests import tables
+from server.comm_tests.lab import read_limited
 from server.comm_tests.reference import TABLES, TITLES, read_table
 from server.comm_tests.runs import Runs
 from server.comm_tests.shapes import (
@@ -48,7 +49,7 @@ def get_documents() -> list[TestDocument]:
 def check(document: DocumentText) -> Check:
     """Its problems, field by field; or its tests, with about how long they take."""
     try:
-        return Check(problems=[], tests=[_describe(test) for test in read_document(document.text)])
+        return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
     except DocumentError as problem:
         return Check(problems=problem.problems, tests=[])
 
@@ -69,6 +70,7 @@ async def start(request: Request, wanted: Start) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
     if wanted.place == "robot":
         require_control(request)
+    Assembly.of(request).require_disarmed("A communication test builds and uploads programs.")
     try:
         return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
     except DocumentError as problem:

@@ -106,7 +106,7 @@ async def get_file(request: Request, export: Identifier) -> FileResponse:
         "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}}
     },
     responses=answers(
-        _409="It is here already, or another is being imported",
+        _409="It is here already, another is being imported, or the robot is armed",
         _422="It is no archive that can be imported",
         _503="The database does not work",
         _507="The disk is full",
@@ -115,6 +115,7 @@ async def get_file(request: Request, export: Identifier) -> FileResponse:
 async def import_session(request: Request) -> Session:
     """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
     assembly = Assembly.of(request)
+    assembly.require_disarmed("An upload takes time and disk from what is recorded.")
     length = request.headers.get("content-length")
     try:
         number = await _imports(request).receive(request.stream(), int(length) if length else None)

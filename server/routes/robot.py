@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from robot_runtime.samples import State, Steering
 from server.assembly import Assembly
 from server.routes.problems import answers
+from server.sessions.storage import check_room
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
 COMMAND = {
@@ -92,7 +93,9 @@ async def stop(request: Request) -> None:
 @router.post("/arm", status_code=204, summary="Arm", operation_id="armRobot", responses=COMMAND)
 async def arm(request: Request, driver: Driver | None = None) -> None:
     """Refused with every reason that stands against it; without a body the depth controller steers."""
-    await Assembly.of(request).bridge.command("arm", driver.model_dump() if driver else {})
+    assembly = Assembly.of(request)
+    check_room(assembly.settings.data)
+    await assembly.bridge.command("arm", driver.model_dump() if driver else {})
 
 
 @router.put("/mode", status_code=204, summary="Hand over", operation_id="putMode", responses=COMMAND)
@@ -118,7 +121,9 @@ async def check_fins(request: Request) -> None:
 )
 async def acknowledge(request: Request) -> None:
     """Say that all alarms were seen; after a failsafe the robot may be armed again from then on."""
-    await Assembly.of(request).bridge.command("acknowledge", {})
+    assembly = Assembly.of(request)
+    assembly.alarms.acknowledge()
+    await assembly.bridge.command("acknowledge", {})
 
 
 @router.put(

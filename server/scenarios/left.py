@@ -1,10 +1,10 @@
 """How everything was before a live scenario: on the disk until it is put back, perhaps by the next server."""
 
 import json
-import os
 from dataclasses import asdict
 from pathlib import Path
 
+from server.durable import write_whole
 from server.scenarios.surroundings import Before
 
 
@@ -16,12 +16,7 @@ class Left:
 
     def keep(self, before: Before) -> None:
         """Write it down, so that not even a power cut loses it. Raises OSError."""
-        half = self._path.with_suffix(".part")
-        with half.open("w", encoding="utf-8") as file:
-            json.dump(asdict(before), file)
-            file.flush()
-            os.fsync(file.fileno())
-        half.rename(self._path)
+        write_whole(self._path, json.dumps(asdict(before)).encode())
 
     def read(self) -> Before | None:
         """What a server that was killed has left; None where nothing is left, or it cannot be read."""

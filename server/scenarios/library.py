@@ -6,6 +6,7 @@ from pathlib import Path
 
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import TEXT_BYTES_MAX, Scenario, ScenarioError, read_scenario
+from server.durable import make_folder, write_whole
 from server.scenarios.shapes import ScenarioText, summarize
 
 log = logging.getLogger(__name__)
@@ -30,8 +31,8 @@ def keep_scenario(own: Path, text: str) -> Scenario:
     if scenario.name in SHIPPED:
         raise Refused(f"{scenario.name} comes with the program. Give yours another name.")
     try:
-        own.mkdir(parents=True, exist_ok=True)
-        (own / f"{scenario.name}.toml").write_text(text, encoding="utf-8")
+        make_folder(own)
+        write_whole(own / f"{scenario.name}.toml", text.encode())
     except OSError as problem:
         raise Refused(f"{own} cannot be written: {problem.strerror}.") from problem
     return scenario

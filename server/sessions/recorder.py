@@ -17,7 +17,7 @@ from time import time
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection, insert, update
-from sqlmodel import col
+from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
 from robot_runtime.topics import BY_NAME, NUMBERS, Block, Topic
@@ -102,7 +102,13 @@ class Recorder:
         """
         left = await asyncio.to_thread(find_left, self._store)
         kept = -1 if left is None else left.row.id
-        await self._store.write(lambda connection: _mark_interrupted(connection, kept))
+        for name, duration in await self._store.write(lambda found: _mark_interrupted(found, kept)):
+            self._notices.tell(
+                "recording",
+                "caution",
+                f"“{name}” was cut off after {duration:.1f} s. What was stored is kept; at most the last "
+                "second before the end is missing.",
+            )
         return left
 
     async def resume(self, left: Left, missing: Mapping[str, Missing]) -> None:
@@ -114,9 +120,21 @@ class Recorder:
         runtime = missing.get("runtime")
         row = left.row
         if runtime is None or not (runtime.same_run and runtime.whole):
-            await self._store.write(lambda connection: _mark_interrupted(connection, -1))
-            text = f"The server was killed while “{row.name}” was recorded. What was stored is kept"
-            self._notices.tell("recording", "caution", f"{text}; the rest is not to be had any more.")
+            sent = {name: count for one in missing.values() for name, count in one.sent.items() if count}
+            gaps = [
+                {"session_id": row.id, "topic": name, "kind": "missed", "missed": count}
+                | {"time": left.last[name].time}
+                for name, count in sent.items()
+            ]
+            await self._store.write(lambda connection: _interrupt(connection, gaps))
+            lost = sum(sent.values())
+            self._notices.tell(
+                "recording",
+                "caution",
+                f"The server was killed while “{row.name}” was recorded. What was stored is kept; "
+                + (f"{lost} samples sent since are" if lost else "what was sent since is")
+                + " not to be had any more.",
+            )
             return
         self._reset()
         self._started_steady = row.started_steady
@@ -334,9 +352,20 @@ def _insert(connection: Connection, session: int, batch: _Batch, changes: dict[s
     connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(changes))
 
 
-def _mark_interrupted(connection: Connection, but: int | None) -> None:
+def _interrupt(connection: Connection, gaps: list[dict[str, Any]]) -> None:
+    _mark_interrupted(connection, -1)
+    if gaps:
+        connection.execute(insert(Gap), gaps)
+
+
+def _mark_interrupted(connection: Connection, but: int | None) -> list[tuple[str, float]]:
+    """Names and durations (s) of the sessions that were marked."""
+    left = col(SessionRow.state) == "recording", col(SessionRow.id) != but
+    found = connection.execute(select(SessionRow.name, SessionRow.duration).where(*left))
+    marked = [(name, duration) for name, duration in found]
     connection.execute(
         update(SessionRow)
-        .where(col(SessionRow.state) == "recording", col(SessionRow.id) != but)
+        .where(*left)
         .values(state="interrupted", ended=col(SessionRow.started) + col(SessionRow.duration))
     )
+    return marked

@@ -40,12 +40,14 @@ class Missing:
     """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
 
     `same_run`: the sender is the one that was recorded, as a stored sample shows that it still has, or its
-    name where none is stored yet. `whole`: it has kept all that is missing.
+    name where none is stored yet. `whole`: it has kept all that is missing. `sent`: how many samples of each
+    topic (by name) it has sent since what is stored; empty where it may be another one.
     """
 
     first: Mapping[int, int]
     same_run: bool
     whole: bool
+    sent: Mapping[str, int]
 
 
 def find_left(store: Store) -> Left | None:
@@ -78,6 +80,7 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
     for block in kept.blocks:
         blocks[block.topic.id].append(block)
     first: dict[int, int] = {}
+    sent: dict[str, int] = {}
     proofs: set[bool] = set()
     whole = True
     for topic in topics:
@@ -88,9 +91,13 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
             continue
         first[topic.id] = last.following
         ahead = (following - last.following) % NUMBERS
+        sent[topic.name] = ahead
         proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
         whole = whole and (ahead == 0 or _holds(there, last.following))
-    return Missing(first, proofs == {True} or _new(left, topics, kept), whole)
+    # Where the last stored sample is not kept any more, its name shows that it is the same.
+    known = proofs == {True} or (not proofs and _began(left, topics, kept))
+    same_run = proofs == {True} or _new(left, topics, kept)
+    return Missing(first, same_run, whole, sent if known else {})
 
 
 def _new(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
@@ -101,8 +108,13 @@ def _new(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
     """
     if any(topic.name in left.last for topic in topics):
         return False
+    return _STATE not in topics or _began(left, topics, kept)
+
+
+def _began(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
+    """Whether this is the runtime whose `state` was written down when the session began."""
     state = json.loads(left.row.robot_state)
-    return _STATE not in topics or (isinstance(state, dict) and state.get("run") == kept.run)
+    return _STATE in topics and isinstance(state, dict) and state.get("run") == kept.run
 
 
 def _prove(last: Last, blocks: Sequence[Block]) -> set[bool]:

@@ -63,7 +63,6 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: dict[str,
     context = browser.new_context(
         viewport={"width": size["width"], "height": size["height"]},
         storage_state=cookies,
-        extra_http_headers={"X-Mucat": "page"},
     )
     page = context.new_page()
     complaints: list[str] = []

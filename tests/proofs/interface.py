@@ -28,11 +28,14 @@ from schemathesis.specs.openapi.checks import (
     response_schema_conformance,
     status_code_conformance,
 )
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
 
 from server.settings import DataFolder, Settings, make_folders
 from tests.server.blocks import depth_block, state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
+from tests.shell import shell_headers
 
 AnyCase = Case[Any]
 SILENT = {"putView": {503, 504}}
@@ -48,14 +51,22 @@ class Surface:
     """A server that is asked; `operations` are those of its own description, by operation_id."""
 
     def __init__(self, served: Served) -> None:
+        self.served = served
         self.url = str(served.api.base_url).removesuffix("/api/").removesuffix("/api")
         self.session = requests.Session()
-        self.session.headers.update(dict(served.api.headers))
-        document = self.session.get(f"{self.url}/api/openapi.json").json()
-        found = schemathesis.openapi.from_dict(document).get_all_operations()
+        self.session.headers.update(shell_headers(served.settings.data))
+        answer = self.session.get(f"{self.url}/api/openapi.json")
+        answer.raise_for_status()
+        found = schemathesis.openapi.from_dict(answer.json()).get_all_operations()
         self.operations = {
             one.ok().definition.raw["operationId"]: one.ok() for one in found if isinstance(one, Ok)
         }
+
+    def connect(self) -> ClientConnection:
+        """A WebSocket to /api/live."""
+        headers = {name: value for name, value in self.session.headers.items() if name == "authorization"}
+        address = f"{self.url.replace('http', 'ws')}/api/live"
+        return connect(address, origin=Origin(self.url), additional_headers=headers, max_size=None)
 
     def prove(self, name: str, examples: int) -> None:
         """Ask one operation so often. Raises what schemathesis finds."""
@@ -120,7 +131,10 @@ def run_surface() -> Iterator[Surface]:
         make_folders(folder)
         config = Path(name) / "robot.toml"
         config.write_text('[robot]\nname = "tested"\n', encoding="utf-8")
-        settings = Settings(data=folder, config=config, robot="tested", page=Path(name) / "page")
+        page = Path(name) / "page"
+        page.mkdir()
+        (page / "index.html").write_text("the page", encoding="utf-8")
+        settings = Settings(data=folder, config=config, robot="tested", page=page)
         thread = threading.Thread(target=lambda: asyncio.run(run(settings)))
         thread.start()
         try:

@@ -7,7 +7,7 @@ import os
 import random
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -83,6 +83,11 @@ class Outcome:
     """Until everything was well again; after what was stopped went on, from then."""
     problems: list[str] = field(default_factory=list)
 
+    @property
+    def is_slow(self) -> bool:
+        """Whether it took too long until all was well; that depends on what else the computer does."""
+        return self.again > AGAIN
+
 
 class World:
     """A running robot, and those who watch it."""
@@ -150,12 +155,11 @@ class World:
             problems.append(f"the fins moved for {outcome.rest:.2f} s")
         if outage.off is not None and outcome.off > outage.off:
             problems.append(f"the motors had power for {outcome.off:.2f} s")
-        if outcome.again > AGAIN:
-            problems.append(f"it took {outcome.again:.2f} s until all was well")
 
     def calm(self) -> None:
         """Disarmed, nothing to acknowledge, everything well."""
-        wait(lambda: self.well(time.monotonic() - 1.0), "all to be well")
+        since = time.monotonic()
+        wait(lambda: self.well(since), "all to be well")
         self.stack.api.post("/robot/stop").raise_for_status()
         self.stack.api.post("/robot/acknowledge").raise_for_status()
         wait(lambda: not self.viewer.alarms and not self.viewer.state["armed"], "no alarm")
@@ -215,3 +219,20 @@ def measure(
         finally:
             world.close()
     return outcomes
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """For a person: the longest of each, in s."""
+    lines = [
+        f"{'outage':<18}{'n':>5}{'told':>7}{'at rest':>9}{'no power':>10}{'again':>7}{'median':>8}{'slow':>6}"
+    ]
+    for outage in dict.fromkeys(one.outage for one in outcomes):
+        mine = [one for one in outcomes if one.outage == outage]
+        again = sorted(one.again for one in mine)
+        stopped = f"{max(one.rest for one in mine):>9.2f}{max(one.off for one in mine):>10.2f}"
+        lines.append(
+            f"{outage.name:<18}{len(mine):>5}{max(one.told for one in mine):>7.2f}"
+            f"{'' if outage.off is None else stopped:>19}{again[-1]:>7.2f}{again[len(again) // 2]:>8.2f}"
+            f"{sum(one.is_slow for one in mine):>6}"
+        )
+    return "\n".join([*lines, *(f"{one.outage.name}: {text}" for one in outcomes for text in one.problems)])

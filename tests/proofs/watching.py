@@ -15,10 +15,12 @@ from websockets.typing import Origin
 from robot_runtime.simulation.board import Board, BoardError
 from robot_runtime.simulation.simulator import FinMotion
 from robot_runtime.topics import Kind, read_blocks
+from server.settings import DataFolder
+from tests.shell import shell_headers
 from tests.stack import Stack
 
-MOVING = 0.1
-"""rad/s; the shafts of fins that are told to rest are below this, noise of the encoders included."""
+MOVING = 0.5
+"""rad/s. A stroke reaches 7; below this a fin only coasts to its rest, without a drive."""
 _LOOK = 0.004
 _AGAIN = 0.01
 
@@ -116,7 +118,8 @@ class Viewer:
     def _look_on(self) -> None:
         address = f"ws://127.0.0.1:{self._stack.port}/api/live"
         origin = Origin(self._stack.url)
-        with connect(address, origin=origin, max_size=None, proxy=None) as socket:
+        signed = shell_headers(DataFolder(self._stack.data))
+        with connect(address, origin=origin, max_size=None, proxy=None, additional_headers=signed) as socket:
             while not self._ending:
                 with suppress(TimeoutError):
                     self._take(socket.recv(timeout=0.1))

@@ -9,12 +9,15 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
+from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets import (
@@ -142,11 +145,11 @@ class Listener:
 class Rig:
     """A runtime process, its board, and another process's view of it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
         tty = folder / "board.tty"
         self.board = Board(tty)
         command = [sys.executable, "-m", "robot_runtime", "--config", str(ROOT / "robot.toml")]
-        command += ["--data", str(folder), "--port", str(tty), "--with-parent"]
+        command += ["--data", str(folder), "--port", str(tty), "--with-parent", *options]
         self.process = subprocess.Popen(command, cwd=ROOT)
         run = folder / "run"
         run.mkdir(exist_ok=True)
@@ -160,6 +163,26 @@ class Rig:
             self.process.wait(DEADLINE)
         self.messages.close()
         self.board.close()
+
+    @contextmanager
+    def saying(self, name: str, axes: list[float] | None = None) -> Iterator[None]:
+        """Meanwhile say this ten times a second, as a server does; to steer, with axes."""
+        ending = threading.Event()
+
+        def say() -> None:
+            sequence = 0
+            while not ending.wait(0.1):
+                sequence += 1
+                words = {"lease": 0, "sequence": sequence, "taken": time.monotonic(), "axes": axes}
+                self.messages.publish(name, json.dumps(words).encode())
+
+        thread = threading.Thread(target=say)
+        thread.start()
+        try:
+            yield
+        finally:
+            ending.set()
+            thread.join()
 
     def ready(self) -> None:
         self.listener.wait(lambda: self.listener.newest_state().get("refusals") == [])
@@ -301,6 +324,44 @@ def test_a_silent_board_is_noticed_within_a_second(rig: Rig) -> None:
     began = time.monotonic()
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
     assert time.monotonic() - began < 1.0
+
+
+def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, "--heartbeat", "1.5")
+
+    def armed_for() -> float:
+        state = rig.listener.newest_state()
+        return float(state["time"] - state["armed_since"])
+
+    try:
+        rig.ready()
+        with rig.saying(HEARTBEAT):
+            rig.arm()
+            rig.listener.wait(lambda: armed_for() > 2.5)
+        rig.listener.wait(lambda: rig.listener.newest_state()["mode"] == "failsafe")
+        assert [alarm["fault"] for alarm in rig.listener.newest_state()["alarms"]] == ["server_silent"]
+        rig.board.wait(lambda: rig.board.count(Stop.type) >= 1)
+    finally:
+        rig.close()
+
+
+def test_the_pilot_s_input_reaches_the_board_and_its_end_stops_the_robot(rig: Rig) -> None:
+    def newest_yaw() -> float:
+        payloads = [payload for _, kind, payload in rig.board.heard if kind == Navigation.type]
+        return Navigation.from_bytes(payloads[-1]).yaw if payloads else 0.0
+
+    rig.ready()
+    rig.ask("lease", epoch=0)
+    rig.ask("arm", mode="manual")
+    with rig.saying(PILOT, axes=[0.0, 0.0, 0.0, 0.0, 0.0, -1.0]):
+        rig.board.wait(lambda: newest_yaw() == -1.0)
+    rig.listener.wait(lambda: rig.listener.newest_state()["mode"] == "failsafe")
+    kinds = {alarm["fault"] for alarm in rig.listener.newest_state()["alarms"]}
+    assert {"pilot_quiet", "pilot_lost"} <= kinds
+    assert newest_yaw() == 0.0
+    dropped = rig.listener.newest_state()["pilot_dropped"]
+    rig.messages.publish(PILOT, b"{}")
+    rig.listener.wait(lambda: rig.listener.newest_state()["pilot_dropped"] == dropped + 1)
 
 
 def test_ending_the_runtime_stops_the_board(rig: Rig) -> None:

@@ -13,7 +13,10 @@ from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
 from robot_runtime.topics import Block, Kind
 
-COMMANDS = ("stop", "arm", "controller", "set_points", "card", "vision")
+COMMANDS = (
+    *("stop", "arm", "mode", "check_fins", "acknowledge"),
+    *("controller", "set_points", "steering", "card", "vision"),
+)
 
 
 class RuntimeEnd:

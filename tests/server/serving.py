@@ -14,6 +14,7 @@ import httpx
 from websockets.asyncio.client import ClientConnection, connect
 
 from robot_runtime.errors import Refused
+from server.access.certificate import prepare_certificate, trust_only
 from server.app import create_app
 from server.assembly import Assembly
 from server.live.bridge import RuntimeSilent
@@ -37,15 +38,16 @@ class Served:
 
     def connect(self, **options: Any) -> connect:
         """A WebSocket to /api/live, with the shell's token and as from the server's own page."""
-        own = f"http://127.0.0.1:{self.settings.port}"
+        own = f"{self.settings.scheme}://127.0.0.1:{self.settings.port}"
         token = shell_headers(self.settings.data)
         defaults: dict[str, Any] = {
             "origin": own,
             "max_size": None,
             "compression": None,
             "additional_headers": token,
+            "ssl": trust_only(self.settings.data) if self.settings.tls else None,
         }
-        return connect(f"ws://127.0.0.1:{self.settings.port}/api/live", **(defaults | options))
+        return connect(f"{own.replace('http', 'ws', 1)}/api/live", **(defaults | options))
 
     async def heard(self, topic: str) -> None:
         """Wait until the server listens to a topic."""
@@ -71,18 +73,21 @@ class Served:
 @asynccontextmanager
 async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIterator[Served]:
     """Run the server of these settings, on a port of the system's choice."""
+    certificate = prepare_certificate(settings) if settings.tls else None
     with open_socket("127.0.0.1", 0) as listener:
         settings = replace(settings, port=listener.getsockname()[1])
         prepare(settings.data)
         app = create_app(settings, commands)
-        server = make_server(app)
+        server = make_server(app, certificate)
         # The runtime listens before the server comes, which then need not try again.
         with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
             running = asyncio.create_task(server.serve(sockets=[listener]))
             try:
                 await until(lambda: server.started or running.done(), "the server to start")
-                url = f"http://127.0.0.1:{settings.port}/api"
-                async with httpx.AsyncClient(base_url=url, timeout=10, auth=ShellToken(settings.data)) as api:
+                url = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
+                shell = ShellToken(settings.data)
+                verify = trust_only(settings.data) if settings.tls else True
+                async with httpx.AsyncClient(base_url=url, timeout=10, auth=shell, verify=verify) as api:
                     served = Served(settings, app.state.assembly, api, runtime)
                     await served.heard("stream")
                     await served.reached()

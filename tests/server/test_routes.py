@@ -2,9 +2,11 @@ import asyncio
 import csv
 import io
 import json
+import shutil
 import sys
 import zipfile
 from collections.abc import Awaitable, Callable
+from typing import Any
 
 import pytest
 
@@ -153,6 +155,52 @@ def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
         served.runtime.refusal = "There is no fresh depth. Check the pressure sensor."
         answer = await served.api.post("/robot/arm")
         assert (answer.status_code, answer.json()) == (409, {"detail": served.runtime.refusal})
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "asked"),
+    [
+        ("POST", "/robot/arm", None, ("arm", {})),
+        ("POST", "/robot/arm", {"mode": "manual"}, ("arm", {"mode": "manual"})),
+        ("PUT", "/robot/mode", {"mode": "automatic"}, ("mode", {"mode": "automatic"})),
+        ("POST", "/robot/check-fins", None, ("check_fins", {})),
+        ("POST", "/robot/acknowledge", None, ("acknowledge", {})),
+    ],
+)
+def test_what_changes_who_steers_goes_to_the_runtime(
+    settings: Settings,
+    method: str,
+    path: str,
+    body: dict[str, str] | None,
+    asked: tuple[str, dict[str, str]],
+) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.request(method, path, json=body)
+        assert answer.status_code == 204
+        assert served.runtime.asked[-1] == asked
+
+    play(settings, scenario)
+
+
+def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario(served: Served) -> None:
+        usage = shutil.disk_usage(settings.data.path)
+        monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=19_999_999))
+        answer = await served.api.post("/robot/arm")
+        assert answer.status_code == 409
+        assert "The disk is full: 20 MB are free" in answer.json()["detail"]
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize("body", [{}, {"mode": "failsafe"}, {"mode": "manual", "alone": 60}])
+def test_no_other_mode_can_be_asked_for(settings: Settings, body: dict[str, Any]) -> None:
+    async def scenario(served: Served) -> None:
+        assert (await served.api.put("/robot/mode", json=body)).status_code == 422
+        assert served.runtime.asked == []
 
     play(settings, scenario)
 

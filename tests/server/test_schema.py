@@ -1,6 +1,6 @@
-import json
 import sqlite3
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 from alembic.autogenerate import compare_metadata
@@ -11,15 +11,12 @@ from sqlmodel import SQLModel
 
 import server.models  # noqa: F401 - declares the tables
 from migrations import HEAD
-from robot_runtime.topics import BY_NAME
 from server import schema
 from server.sessions.catalogue import Catalogue
-from server.sessions.chunks import describe_topics, encode_rows
 from server.sessions.recording import Recording
 from server.settings import Settings, SetupError
 from server.store import Store
-from tests.server.blocks import depth_block
-from tests.server.older import upgrade_to
+from tests.server.older import ROWS, make_session, upgrade_to
 
 
 def test_the_newest_revision_is_the_one_the_server_wants() -> None:
@@ -84,26 +81,14 @@ def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
         schema.prepare(settings.data)
 
 
-def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings) -> None:
-    upgrade_to(settings, "0003")
-    rows = [depth_block(0, 10).payload]
-    data, first, last = encode_rows(rows, BY_NAME["depth"].row_bytes)
-    topics = {name: one for name, one in describe_topics().items() if name != "thumbnail"}
-    session = (1, "old", "cold", "complete", "turtle", "0.0.9", "00c0ffee", 1e9, 100.0, 1e9 + 1, 1.0, 10)
+@pytest.mark.parametrize("revision", ["0001", "0002", "0003"])
+def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings, revision: str) -> None:
+    upgrade_to(settings, revision)
     with closing(sqlite3.connect(settings.data.database)) as database:
-        database.execute(
-            "INSERT INTO session (id, name, note, state, robot, version, definitions, started, "
-            "started_steady, ended, duration, samples, bytes, configuration, robot_state, topics) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 100, '', 'null', ?)",
-            (*session, json.dumps(topics)),
-        )
-        database.execute(
-            "INSERT INTO chunk (session_id, topic, number, first_time, last_time, first, count, encoding, "
-            "data) VALUES (1, 'depth', 0, ?, ?, 0, 10, 'shuffle-zlib', ?)",
-            (first, last, data),
-        )
-        database.commit()
+        make_session(database)
     schema.prepare(settings.data)
+    (copy,) = settings.data.backups.glob(f"mucat-before-{revision}-*.db")
+    assert schema.read_revision(copy) == revision
     with closing(Store(settings.data.database)) as store:
         catalogue = Catalogue(store)
         (found,) = catalogue.list("COLD")
@@ -116,7 +101,40 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
         )
         (topic,) = catalogue.detail(1).topics
         assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
-        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == rows[0]
+        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == ROWS
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def describe(database: Path) -> list[tuple[str, ...]]:
+    with closing(sqlite3.connect(database)) as connection:
+        return connection.execute("SELECT type, name, sql FROM sqlite_master ORDER BY name").fetchall()
+
+
+def test_an_upgrade_that_is_broken_off_changes_nothing_and_can_be_done_again(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    upgrade_to(settings, "0003")
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+    before = describe(settings.data.database)
+    with monkeypatch.context() as broken:
+        broken.setattr("alembic.op.create_index", lambda *_, **__: interrupt())
+        with pytest.raises(KeyboardInterrupt):
+            schema.prepare(settings.data)
+    assert describe(settings.data.database) == before
+    assert schema.read_revision(settings.data.database) == "0003"
+    schema.prepare(settings.data)
+    assert schema.read_revision(settings.data.database) == HEAD
+
+
+def interrupt() -> None:
+    raise KeyboardInterrupt
+
+
+def test_what_a_session_holds_is_read_from_an_index_alone(store: Store) -> None:
+    with store.read() as database:
+        query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "
+        plan = database.connection().exec_driver_sql(f"{query} WHERE session_id = 1 GROUP BY topic").all()
+    assert "USING COVERING INDEX chunk_time" in str(plan)

@@ -3048,6 +3048,11 @@ export interface components {
             mode: "disarmed" | "manual" | "automatic" | "test" | "failsafe";
             /** Paces */
             paces: components["schemas"]["Pace"][];
+            /**
+             * Pilot Dropped
+             * @default 0
+             */
+            pilot_dropped: number;
             /** Port */
             port: string;
             /** Refusals */
@@ -3062,6 +3067,7 @@ export interface components {
             set_point_detected: number;
             /**
              * Steering
+             * @default none
              * @enum {string}
              */
             steering: "none" | "beacons";
@@ -4818,7 +4824,7 @@ export interface operations {
                     "application/json": components["schemas"]["Session"];
                 };
             };
-            /** @description It is here already, or another is being imported */
+            /** @description It is here already, another is being imported, or the robot is armed */
             409: {
                 headers: {
                     [name: string]: unknown;

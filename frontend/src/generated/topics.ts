@@ -451,6 +451,7 @@ export interface State {
   colours: string[];
   card: string | null;
   camera: string;
+  pilot_dropped: number;
 }
 
 /** What the vision node found in one picture: the largest patch of each wanted colour that it saw. */

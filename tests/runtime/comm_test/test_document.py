@@ -39,6 +39,11 @@ def test_the_thesis_s_own_example_is_75_cells() -> None:
     ]
 
 
+@pytest.mark.parametrize("changes", [{"name": "\ud800"}, {"\udfff": 1}, {"ino_path": "\ud800"}])
+def test_halves_of_characters_are_refused(changes: dict[str, Any]) -> None:
+    assert "surrogates not allowed" in problems(changed(**changes))[0]
+
+
 def test_the_documents_print_the_example_that_ships() -> None:
     assert f"```json\n{THESIS}```" in (ROOT / "docs/communication.md").read_text()
 

@@ -134,7 +134,7 @@ def test_a_board_that_restarts_is_told(run_harmed: RunHarmed, delays: dict[str, 
 
 
 def test_a_line_that_is_cut_for_good_is_given_up_loudly(run_harmed: RunHarmed) -> None:
-    result = run_harmed(lambda board: board.cut_line("to_board", True), 1.0, arduinodelay=(0.1,))
+    result = run_harmed(lambda board: board.cut_line("to_board", True), 1.0, arduinodelay=(0.03,))
     assert (result.board, result.rate) == (None, 0.0)
     assert result.causes[0] == "out of time"
 

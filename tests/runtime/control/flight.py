@@ -10,7 +10,7 @@ from robot_runtime.samples import Event, Mode
 from robot_runtime.scenario.boards import boards
 from robot_runtime.scenario.document import read_scenario
 from robot_runtime.scenario.run import PRELUDE, _Performance
-from robot_runtime.scenario.stage import Stage
+from robot_runtime.scenario.stage import MakeBoard, Stage
 from robot_runtime.simulation.changes import changes
 from tests.runtime.scenario.staging import Told, document
 
@@ -21,8 +21,9 @@ STEP = 0.02
 class Flight:
     """From the moment at which everything is well; `sticks` are sent every 0.1 s where there are some."""
 
-    def __init__(self, board: str = "host", more: str = "") -> None:
-        self.stage = Stage(read_scenario(document(3600, more=more)), boards()[board], lambda _: None, PRELUDE)
+    def __init__(self, board: str | MakeBoard = "host", more: str = "") -> None:
+        make = boards()[board] if isinstance(board, str) else board
+        self.stage = Stage(read_scenario(document(3600, more=more)), make, lambda _: None, PRELUDE)
         self.robot, self.clock = self.stage.robot, self.stage.clock
         self.supervisor, self.board = self.robot.supervisor, self.stage.board
         self.events: list[Event] = []

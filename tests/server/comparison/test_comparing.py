@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from contextlib import closing
 from typing import Any
 
 import pytest
@@ -11,6 +12,7 @@ from server.comparison.comparing import Comparer
 from server.comparison.definitions import FIGURES
 from server.comparison.shapes import Comparison, WantedComparison
 from server.models import Gap, Marker
+from server.schema import prepare
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block
@@ -168,7 +170,11 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
     asyncio.run(run())
 
 
-def test_over_http(settings: Settings, session: int) -> None:
+def test_over_http(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, dive(), name="one")
+
     async def scenario(served: Served) -> None:
         signals = (await served.api.get(f"/sessions/{session}/signals")).json()
         names = [one["name"] for one in signals]

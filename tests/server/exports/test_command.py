@@ -1,5 +1,7 @@
 import asyncio
 import hashlib
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -9,6 +11,7 @@ from server.cli import main
 from server.exports.options import FORMATS
 from server.exports.shapes import Format
 from server.running import announce
+from server.schema import prepare
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import depth_block
@@ -17,8 +20,10 @@ from tests.server.serving import serve
 
 
 @pytest.fixture
-def session(store: Store, settings: Settings) -> int:
-    return record(store, settings, [depth_block(0, 20)])
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, [depth_block(0, 20)])
 
 
 def run(settings: Settings, *arguments: str, data: Path | None = None) -> int:
@@ -55,12 +60,12 @@ def test_beside_a_running_server_the_server_imports(
             import fcntl
 
             fcntl.flock(lock, fcntl.LOCK_EX)
-            announce(settings.data, "127.0.0.1", served.settings.port)
+            announce(served.settings)
             assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
             assert "is here already, as number 1" in capsys.readouterr().err
-            announce(settings.data, "127.0.0.1", 1)
+            announce(replace(settings, port=1))
             assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
-            assert "does not answer at 127.0.0.1:1" in capsys.readouterr().err
+            assert "does not answer at http://127.0.0.1:1" in capsys.readouterr().err
             lock.close()
 
     asyncio.run(scenario())

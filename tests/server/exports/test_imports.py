@@ -7,6 +7,7 @@ import math
 import zipfile
 import zlib
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
@@ -25,7 +26,7 @@ from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.schema import prepare
 from server.sessions.session import IMPORTING, REMOVING, find_row
 from server.settings import DataFolder, Settings, make_folders
-from server.store import Store, StoreError
+from server.store import Reader, Store, StoreError
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.exports.test_tables import record
 from tests.server.serving import serve
@@ -58,7 +59,7 @@ def archive(store: Store, session: int, tmp_path: Path) -> Path:
     return path
 
 
-def contents(store: Store, number: int) -> dict[str, Any]:
+def contents(store: Reader, number: int) -> dict[str, Any]:
     """Everything that a session is, but its number and where it came from."""
     with store.read() as database:
         row = database.get(SessionRow, number)
@@ -78,8 +79,8 @@ def test_a_session_goes_to_another_machine_and_stays_the_same(
     folder = DataFolder(tmp_path / "other")
     make_folders(folder)
     prepare(folder)
-    elsewhere = Store(folder.database)
-    record(elsewhere, settings, [depth_block(0, 1)])
+    with closing(Store(folder.database)) as elsewhere:
+        record(elsewhere, settings, [depth_block(0, 1)])
 
     async def scenario() -> None:
         async with serve(replace(settings, data=folder)) as served:
@@ -95,11 +96,11 @@ def test_a_session_goes_to_another_machine_and_stays_the_same(
             assert list(folder.imports.iterdir()) == []
 
     asyncio.run(scenario())
-    assert contents(elsewhere, 2) == contents(store, session)
-    row = find_row(elsewhere, 2)
+    with closing(Reader(folder.database)) as brought:
+        assert contents(brought, 2) == contents(store, session)
+        row = find_row(brought, 2)
     assert row is not None
     assert row.origin == "import"
-    elsewhere.close()
 
 
 def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) -> None:

@@ -4,6 +4,7 @@ import os
 import sys
 import zipfile
 from collections.abc import Awaitable, Callable
+from contextlib import closing
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from httpx import AsyncClient
 from server.exports import child as child_module
 from server.exports.jobs import JOBS_MAX, KEPT_DAYS
 from server.exports.shapes import Job, Wanted
+from server.schema import prepare
 from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block, depth_block
@@ -23,8 +25,10 @@ from tests.server.waiting import until
 
 
 @pytest.fixture
-def session(store: Store, settings: Settings) -> int:
-    return record(store, settings, [depth_block(0, 5000), debug_block(0, "a", "b")])
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, [depth_block(0, 5000), debug_block(0, "a", "b")])
 
 
 def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:

@@ -95,7 +95,9 @@ def test_no_gap_and_no_double_while_the_past_is_still_being_sent(monkeypatch: py
                 page.reading.clear()
         page.reading.set()
         total = 300 + 3 * ROWS_MESSAGES
-        await until(lambda: len(page.numbers("depth")) >= total, "everything")
+        # Of the past, the topics come one after the other.
+        await until(lambda: len(page.numbers("depth")) >= total, "every depth")
+        await until(lambda: len(page.numbers("debug")) >= total - 300, "every line")
         assert page.numbers("depth") == list(range(total))
         assert page.numbers("debug") == list(range(300, total))
         assert all(text["op"] == "hello" for text in page.texts)

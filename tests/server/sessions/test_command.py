@@ -54,6 +54,14 @@ def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFix
     assert "No server works on" in told("record", "start")
 
 
+def test_in_a_folder_that_no_server_has_used_yet(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.data.database.unlink(missing_ok=True)
+    assert run(settings, "sessions", "list") == 0
+    assert "No session" in capsys.readouterr().out
+
+
 def test_what_a_running_server_is_asked(
     settings: Settings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,7 +72,7 @@ def test_what_a_running_server_is_asked(
 
     async def scenario() -> None:
         async with serve(settings) as served:
-            announce(settings.data, "127.0.0.1", served.settings.port)
+            announce(served.settings)
             for arguments in (
                 ("record", "start", "from the shell"),
                 ("sessions", "tag", "1", "pool"),

@@ -3,6 +3,7 @@
 import asyncio
 import json
 from collections.abc import Awaitable, Callable
+from contextlib import closing
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
@@ -15,6 +16,7 @@ from robot_runtime import samples
 from robot_runtime.packets import Depth
 from robot_runtime.topics import BY_NAME, Block, documents, read_blocks, read_rows, row
 from server.models import Marker
+from server.schema import prepare
 from server.sessions.chunks import encode_rows
 from server.sessions.recording import Recording
 from server.sessions.replay import CHARTED, LISTED_CHUNKS, RANGE_MAX, TooMuch, read_stretch
@@ -301,9 +303,11 @@ def over_http(settings: Settings, scenario: Callable[[Served], Awaitable[None]])
     asyncio.run(run())
 
 
-def test_over_http(store: Store, settings: Settings) -> None:
-    session = record(store, settings, [depth_block(0, 500), state_block(0)])
-    wanted = read_stretch(read(store, session), 102.0, 103.0, 60.0)
+def test_over_http(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, [depth_block(0, 500), state_block(0)])
+        wanted = read_stretch(read(store, session), 102.0, 103.0, 60.0)
 
     async def scenario(served: Served) -> None:
         start = 102.0 - STARTED_STEADY

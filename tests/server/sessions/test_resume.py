@@ -191,8 +191,17 @@ def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pyte
         await wreck.start()
         monkeypatch.setattr(cache_module, "BYTES_MAX", 10)
         wreck.send(depth_block(20, 5), heard=False)
+        left = await wreck.after.recorder.recover()
+        assert left is not None
+        state = {"run": wreck.answers()["runtime"].run}
+        await wreck.after.store.write(
+            lambda connection: connection.execute(update(SessionRow).values(robot_state=json.dumps(state)))
+        )
         assert not (await wreck.resume())["runtime"].whole
         assert wreck.state == "interrupted"
+        missed = [("depth", "missed", 15), ("debug", "missed", 1), ("truth", "missed", 3)]
+        assert sorted(wreck.after.gaps()) == sorted(missed)
+        assert "19 samples sent since are not to be had any more" in wreck.after.told[0]
 
     play(scenario)
 

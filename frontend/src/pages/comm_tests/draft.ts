@@ -1,19 +1,3 @@
-const KEY = 'mucat-comm-test';
+import { Draft } from '../../parts/draft';
 
-/** The text of the test that somebody is writing: kept while another page is looked at, and over a reload. */
-export function readDraft(): string {
-  try {
-    return sessionStorage.getItem(KEY) ?? '';
-  } catch {
-    // Storage may be forbidden; then the draft lasts as long as the page is looked at.
-    return '';
-  }
-}
-
-export function writeDraft(text: string): void {
-  try {
-    sessionStorage.setItem(KEY, text);
-  } catch {
-    // As above.
-  }
-}
+export const draft = new Draft('mucat-comm-test');

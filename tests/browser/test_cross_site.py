@@ -1,0 +1,165 @@
+"""Pages of other origins, in the browser of somebody who is signed in: they read nothing and change nothing.
+
+Another port of 127.0.0.1 is the same site to a browser, so that it sends the strict cookie along: there the
+server alone stands in the way. A foreign name that leads to this computer is DNS rebinding.
+"""
+
+import threading
+from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, StorageState
+
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.stack import Stack
+
+FOREIGN = "evil.example"
+ATTACKS = """async (target) => {
+  const results = {}
+  const settle = async (name, promise) => {
+    try { results[name] = await promise } catch (problem) { results[name] = 'refused' }
+  }
+  const json = { 'content-type': 'application/json' }
+  const asked = { '/api/robot': null, '/api/sessions': { name: 'evil' }, '/api/robot/arm': {},
+    '/api/access/tokens': { name: 'evil', role: 'operator' }, '/api/control/seat': {} }
+  for (const [path, body] of Object.entries(asked)) {
+    const request = body === null ? {} : { method: 'POST', body: JSON.stringify(body) }
+    const cors = { ...request, credentials: 'include', headers: body === null ? {} : json }
+    await settle('cors ' + path, fetch(target + path, cors).then((answer) => answer.text()))
+    const blind = { ...request, credentials: 'include', mode: 'no-cors' }
+    await settle('no-cors ' + path, fetch(target + path, blind)
+      .then(async (answer) => answer.type === 'opaque' ? 'refused' : await answer.text()))
+    if (body !== null) navigator.sendBeacon(target + path, new Blob([request.body], { type: 'text/plain' }))
+  }
+  await settle('set points', fetch(target + '/api/robot/set-points', { method: 'PUT', credentials: 'include',
+    headers: { ...json, 'x-mucat': 'page' }, body: '{"default": 7.5}' }).then((answer) => answer.text()))
+  await settle('socket', new Promise((resolve, reject) => {
+    const socket = new WebSocket(target.replace('http', 'ws') + '/api/live')
+    socket.onopen = () => resolve('open')
+    socket.onerror = reject
+    socket.onclose = reject
+  }))
+  const load = (tag, name, path) => settle(name, new Promise((resolve, reject) => {
+    const element = document.createElement(tag)
+    element.onload = () => resolve('loaded')
+    element.onerror = reject
+    element.src = target + path
+    document.body.append(element)
+  }))
+  await load('img', 'image', '/favicon.svg')
+  await load('script', 'script', '/api/robot')
+  await settle('events', new Promise((resolve, reject) => {
+    const source = new EventSource(target + '/api/robot', { withCredentials: true })
+    source.onopen = () => resolve('open')
+    source.onerror = reject
+  }))
+  const frame = document.createElement('iframe')
+  frame.name = 'framed'
+  frame.src = target + '/'
+  document.body.append(frame)
+  await new Promise((resolve) => { frame.onload = resolve })
+  for (const [path, name, value] of [['/api/sessions', '{"name": "evil', '"}'], ['/api/robot/arm', 'a', 'b'],
+      ['/api/access/sign-out', 'a', 'b']]) {
+    const answered = document.createElement('iframe')
+    answered.name = 'answer' + path
+    document.body.append(answered)
+    const form = document.createElement('form')
+    Object.assign(form, { action: target + path, method: 'POST', target: answered.name })
+    form.enctype = 'text/plain'
+    const input = document.createElement('input')
+    Object.assign(input, { name, value })
+    form.append(input)
+    document.body.append(form)
+    const done = new Promise((resolve) => { answered.onload = resolve })
+    form.submit()
+    await done
+  }
+  return results
+}"""
+
+
+class Evil(BaseHTTPRequestHandler):
+    """Somebody else's page."""
+
+    def do_GET(self) -> None:
+        self.send_response(200)
+        self.send_header("content-type", "text/html")
+        self.end_headers()
+        self.wfile.write(b"<!doctype html><title>evil</title><body>")
+
+    def log_message(self, format: str, *_: Any) -> None:  # noqa: A002 - its name there
+        """Be quiet."""
+
+
+@pytest.fixture
+def evil_port() -> Iterator[int]:
+    with ThreadingHTTPServer(("127.0.0.1", 0), Evil) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield server.server_port
+        server.shutdown()
+        thread.join()
+
+
+@pytest.fixture
+def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
+    """Somebody's browser, signed in, in a net whose names an attacker may choose."""
+    rules = f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"
+    other = browser.browser_type.launch(executable_path=EXECUTABLE, args=[*ARGUMENTS, rules])
+    yield other.new_context(storage_state=cookies)
+    other.close()
+
+
+def snapshot(stack: Stack) -> dict[str, Any]:
+    """What an attack might have changed."""
+    robot = stack.api.get("/robot").raise_for_status().json()
+    names = ("mode", "armed", "controller", "set_point_default", "set_point_detected", "card", "vision_rate")
+    found: dict[str, Any] = {name: robot[name] for name in names}
+    for path in ("/sessions", "/exports", "/scenarios", "/comm-tests/runs"):
+        found[path] = [str(one.get("id", one.get("name"))) for one in stack.api.get(path).json()]
+    devices = stack.api.get("/access/devices").json()
+    return found | {"devices": [(one["id"], one["name"], one["role"]) for one in devices]}
+
+
+def attack(page: Page, target: str) -> dict[str, str]:
+    """Try everything there is; what came of it, but for what was refused."""
+    results: dict[str, str] = page.evaluate(ATTACKS, target)
+    framed = page.frame("framed")
+    assert framed is not None
+    assert framed.url.startswith("chrome-error:"), "the page lets itself be framed"
+    return {name: what for name, what in results.items() if what != "refused"}
+
+
+@pytest.mark.parametrize("name", ["127.0.0.1", "localhost", FOREIGN])
+def test_a_foreign_page_gets_nothing(victim: BrowserContext, stack: Stack, evil_port: int, name: str) -> None:
+    own = victim.new_page()
+    own.goto(stack.url)
+    assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it is not signed in"
+    before = snapshot(stack)
+    page = victim.new_page()
+    changed: list[str] = []
+    page.on("response", lambda one: changed.append(f"{one.request.method} {one.url} {one.status}"))
+    page.goto(f"http://{name}:{evil_port}/")
+    assert attack(page, stack.url) == {}
+    posts = [one for one in changed if one.startswith(("POST", "PUT"))]
+    assert posts
+    assert all(one.endswith((" 401", " 403")) for one in posts), posts
+    assert snapshot(stack) == before
+    assert own.evaluate("fetch('/api/robot').then((answer) => answer.status)") == 200, "it was signed out"
+
+
+def test_a_foreign_name_for_this_computer_opens_nothing(victim: BrowserContext, stack: Stack) -> None:
+    page = victim.new_page()
+    answer = page.goto(f"http://{FOREIGN}:{stack.port}/")
+    assert answer is not None
+    assert answer.status == 403
+    status = "(path) => fetch(path, {headers: {'x-mucat': 'page'}}).then((answer) => answer.status)"
+    assert [page.evaluate(status, path) for path in ("/api/robot", "/api/access/me", "/")] == [403] * 3
+    opened = """() => new Promise((resolve) => {
+      const socket = new WebSocket('ws://' + location.host + '/api/live')
+      socket.onopen = () => resolve(true)
+      socket.onerror = () => resolve(false)
+    })"""
+    assert page.evaluate(opened) is False

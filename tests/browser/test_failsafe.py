@@ -1,0 +1,31 @@
+"""A fault: the robot stops by itself, says why, and is armed again only by somebody who has seen it."""
+
+import re
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.test_swim import hold_to_arm
+from tests.stack import Stack
+
+
+def test_a_fault_is_told_acknowledged_and_left_behind(page: Page, stack: Stack) -> None:
+    expect(page.get_by_role("button", name="No alarms")).to_be_visible()
+    hold_to_arm(page)
+    board = stack.child("build/board")
+    board.suspend()
+    try:
+        arm = page.get_by_role("region", name="Arm", exact=True)
+        expect(arm).to_contain_text("Failsafe")
+        expect(page.get_by_text("FAILSAFE", exact=True)).to_be_visible()
+    finally:
+        board.resume()
+    alarms = page.get_by_role("button", name=re.compile("not acknowledged$"))
+    alarms.click()
+    expect(page.get_by_role("listitem").filter(has_text="The board fell silent.").first).to_contain_text(
+        "Do:"
+    )
+    page.keyboard.press("Escape")
+    expect(page.get_by_label("Connection lost")).to_be_hidden()
+    arm.get_by_role("button", name="Acknowledge").click()
+    expect(page.get_by_text("FAILSAFE", exact=True)).to_be_hidden()
+    hold_to_arm(page)

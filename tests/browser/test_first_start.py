@@ -1,0 +1,29 @@
+"""A newcomer's first minute: the link that the server printed, opened in a browser that knows nothing."""
+
+import re
+
+from playwright.sync_api import Browser, expect
+
+from tests.stack import Stack
+
+LINK = re.compile(r"http://localhost:\d+/#pair=\S+")
+
+
+def test_the_printed_link_signs_a_browser_in_without_typing(browser: Browser, stack: Stack) -> None:
+    (link,) = LINK.findall(stack.log.read_text())
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(link)
+    expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
+    assert "pair" not in page.url
+    assert page.evaluate("document.cookie") == ""
+    page.reload()
+    expect(page.get_by_role("link", name="Operate")).to_be_visible(timeout=15_000)
+    # It worked once: another browser is asked for a code.
+    stranger = browser.new_context()
+    other = stranger.new_page()
+    other.goto(link)
+    expect(other.get_by_text("This code is not valid")).to_be_visible(timeout=15_000)
+    expect(other.get_by_role("link", name="Operate")).to_have_count(0)
+    context.close()
+    stranger.close()

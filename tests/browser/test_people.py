@@ -1,0 +1,97 @@
+"""Who may come in, and what they may do: links, roles, revocation."""
+
+import re
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.people import make_link, somebody
+from tests.browser.test_swim import hold_to_arm
+from tests.stack import Stack
+
+
+def test_a_link_signs_in_once_and_leaves_no_trace(browser: Browser, stack: Stack) -> None:
+    link = make_link(stack, "viewer")
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto("about:blank")
+        page.goto(link)
+        expect(page.get_by_role("button", name="STOP")).to_be_visible()
+        assert "pair" not in page.url
+        page.go_back()
+        page.go_forward()
+        assert "pair" not in page.url
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(link)
+        expect(page.get_by_role("heading", name="Sign in to turtle")).to_be_visible()
+        expect(page.get_by_role("alert")).to_contain_text("code")
+        assert "pair" not in page.url
+
+
+def test_a_code_can_be_typed(browser: Browser, stack: Stack) -> None:
+    code = make_link(stack, "viewer").partition("#pair=")[2]
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(stack.url)
+        page.get_by_label("Pairing code").fill("nonsense")
+        page.get_by_role("button", name="Sign in").click()
+        expect(page.get_by_role("alert")).to_contain_text("code")
+        page.get_by_label("Pairing code").fill(code)
+        page.get_by_label("Name of this browser").fill("lab tablet")
+        page.get_by_role("button", name="Sign in").click()
+        page.goto(f"{stack.url}/#/people")
+        expect(page.get_by_role("region", name="You")).to_contain_text("lab tablet, viewer")
+        page.get_by_role("button", name="Sign out").click()
+        expect(page.get_by_role("alert")).to_have_text("You have signed out.")
+
+
+def test_a_viewer_stops_and_does_not_arm(page: Page, browser: Browser, stack: Stack) -> None:
+    with somebody(browser, stack, "viewer") as viewer:
+        arm = viewer.get_by_role("region", name="Arm", exact=True)
+        expect(arm).to_contain_text("Viewers may watch and STOP.")
+        expect(arm.get_by_role("button", name="Hold to arm")).to_be_disabled()
+        hold_to_arm(page)
+        expect(arm).to_contain_text("Armed")
+        viewer.get_by_role("button", name="STOP").click()
+        expect(viewer.get_by_text("Disarmed", exact=True)).to_be_visible()
+        expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
+
+
+def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/people")
+    page.get_by_role("region", name="Let somebody in").get_by_role("button", name="Make a link").click()
+    expect(page.get_by_alt_text("QR code of the link")).to_have_js_property("complete", True)
+    assert page.get_by_alt_text("QR code of the link").evaluate("picture => picture.naturalWidth") > 0
+    link = page.get_by_label("Link", exact=True).input_value()
+    with browser.new_context() as context:
+        guest = context.new_page()
+        guest.goto(link)
+        guest.goto(f"{stack.url}/#/people")
+        you = guest.get_by_role("region", name="You")
+        expect(you).to_contain_text("viewer")
+
+        row = page.get_by_role("row").last
+        row.get_by_role("button", name=re.compile("^Rename")).click()
+        row.get_by_label("Name").fill("guest")
+        row.get_by_role("button", name="Save").click()
+        page.get_by_role("button", name="Make guest operator").click()
+        expect(you).to_contain_text("guest, operator")
+
+        page.get_by_role("button", name="Revoke guest").click()
+        page.get_by_role("button", name="Revoke", exact=True).click()
+        expect(guest.get_by_role("heading", name="Sign in to turtle")).to_be_visible()
+        expect(guest.get_by_role("alert")).to_contain_text("revoked")
+        expect(page.get_by_role("row", name=re.compile("guest"))).to_be_hidden()
+
+
+def test_a_token_is_shown_once(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/people")
+    tokens = page.get_by_role("region", name="Token for a program")
+    tokens.get_by_label("Name of the program").fill("depth logger")
+    tokens.get_by_role("button", name="Make a token").click()
+    expect(tokens.get_by_label("Token", exact=True)).to_have_value(re.compile("^mucat_"))
+    tokens.get_by_role("button", name="Done").click()
+    expect(tokens.get_by_label("Token", exact=True)).to_be_hidden()
+    page.get_by_role("button", name="Revoke depth logger").click()
+    page.get_by_role("button", name="Revoke", exact=True).click()
+    expect(page.get_by_role("row", name=re.compile("depth logger"))).to_be_hidden()

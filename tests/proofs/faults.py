@@ -1,0 +1,331 @@
+"""Each fault that the robot must notice, injected over and over: how soon it is told, and the fins stop.
+
+The compiled firmware on the emulated chip, the whole runtime and the water, in simulated time: times are what
+a real robot's would be, whatever the computer does. `tests.proofs.outages` has the processes' faults.
+"""
+
+import random
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from math import acos, inf
+from pathlib import Path
+
+from robot_runtime.config import LinkConfig
+from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.watch import TILT_MAX
+from robot_runtime.errors import Refused
+from robot_runtime.firmware import firmware_path
+from robot_runtime.samples import Mode
+from robot_runtime.scenario.boards import BUILD
+from robot_runtime.scenario.run import PRELUDE
+from robot_runtime.simulation.emulated_board import EmulatedBoard
+from robot_runtime.simulation.sensors import Reading
+from robot_runtime.simulation.simulator import FinMotion
+from robot_runtime.simulation.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.vision.camera import CameraError, Frame
+from tests.proofs.watching import is_moving
+from tests.runtime.control.flight import Flight
+
+HEARTBEAT = 4.0
+"""s, as the server has the runtime started."""
+NEUTRAL, DISARMED = 0.5, 1.0
+"""s after which the chip alone has brought the fins to rest, and disarmed."""
+TICK = 0.015
+"""s: the chip looks every 10 ms, and the fins are looked at every 5."""
+SWIM_MIN, SWIM_MAX = 1.0, 2.0
+"""s of swimming before the fault."""
+AFTER = 1.2
+"""s for which it is watched afterwards; the chip needs less for anything."""
+CALM = 60.0
+"""s within which all is well again."""
+HANG_AFTER = 2.0
+"""s after arming at which `tests/firmware/hang` hangs."""
+_TRIM = {"forward": 0.0, "right": 0.0}
+_SOUND = _TRIM | {"buoyancy": 1.003, "above": 0.01}
+_HEAVY = _TRIM | {"buoyancy": 0.99, "above": 0.01}
+_TOP_HEAVY = _TRIM | {"buoyancy": 1.003, "above": -0.03}
+
+
+class Swim(Flight):
+    """A flight on the emulated chip; the fins are looked at every 5 ms."""
+
+    def __init__(self, elf: str = "robot", more: str = "") -> None:
+        self.moved = self.powered = self.switched_on = -inf
+        """s; when the fins moved last, when the motors had power last, and when they got it."""
+        self._felt = 0
+        path = firmware_path(BUILD, LinkConfig().baud, ".elf").with_name(f"{elf}.elf")
+        super().__init__(partial(self._make, path), more)
+        self.supervisor._heartbeat = HEARTBEAT
+
+    def told(self, fault: str, since: float) -> float | None:
+        """When this fault's alarm was told, s; None where it was not since then."""
+        words = BY_NAME[fault].what
+        for event in self.events:
+            if event.kind == "alarm" and event.time >= since and event.text.startswith(words):
+                time: float = event.time
+                return time
+        return None
+
+    def tilt(self) -> float:
+        """rad, of the simulated hull."""
+        _, x, y, _ = self.stage.simulator.truth().attitude
+        return acos(max(1 - 2 * (x * x + y * y), -1.0))
+
+    def calm(self, mode: Mode) -> None:
+        """Let all be well, then swim."""
+        self.supervisor.stop("The next one.")
+        self.until(lambda: not any(alarm.active for alarm in self.supervisor.alarms), CALM)
+        self.supervisor.acknowledge()
+        self.until(lambda: not self.supervisor.refusals(), CALM)
+        self.sticks = [0.5, 0.0, 0.0, 0.0, 0.0, 0.5] if mode == "manual" else None
+        self.run(0.2)
+        self.arm(mode)
+
+    def _make(self, path: Path, water: Water) -> SteppedBoard:
+        def feel(fins: FinMotion) -> Reading:
+            self._felt += 1
+            now = self._felt * PERIOD - PRELUDE
+            if is_moving(fins):
+                self.moved = now
+            if fins.powered:
+                if now - self.powered > 2 * PERIOD:
+                    self.switched_on = now
+                self.powered = now
+            return water(fins)
+
+        return EmulatedBoard(BUILD / "board", path, feel)
+
+
+Wrong = Generator[float, None, None]
+"""Does something wrong, yields since when it is (s), and mends it."""
+
+
+def _broken(sensor: str, kind: str, **more: float) -> Callable[[Swim], Wrong]:
+    def wrong(swim: Swim) -> Wrong:
+        swim.break_(sensor, kind, **more)
+        yield swim.now
+        swim.break_(sensor, "none")
+
+    return wrong
+
+
+def _cut(*ways: str) -> Callable[[Swim], Wrong]:
+    def wrong(swim: Swim) -> Wrong:
+        for way in ways:
+            swim.board.line(f"line {way} cut on")
+        yield swim.now
+        for way in ways:
+            swim.board.line(f"line {way} cut off")
+
+    return wrong
+
+
+def _no_pilot(swim: Swim) -> Wrong:
+    swim.sticks = None
+    yield swim.supervisor.pilot.taken
+
+
+def _no_server(swim: Swim) -> Wrong:
+    swim.server = False
+    yield swim.now
+    swim.server = True
+
+
+def _reset(swim: Swim) -> Wrong:
+    swim.board.reset()
+    yield swim.now
+
+
+def _hang(swim: Swim) -> Wrong:
+    began = swim.switched_on + HANG_AFTER
+    swim.run(began - swim.now)
+    yield began
+
+
+def _capsize(swim: Swim) -> Wrong:
+    swim.water("trim", **_TOP_HEAVY)
+    swim.until(lambda: swim.tilt() > TILT_MAX, CALM)
+    yield swim.now
+    swim.water("trim", **_SOUND)
+    swim.until(lambda: swim.tilt() < 0.2, CALM)
+
+
+def _held_down(swim: Swim) -> Wrong:
+    swim.run(8.0)
+    swim.water("trim", **_HEAVY)
+    swim.supervisor.stop("Stopped.")
+    yield swim.now
+    swim.water("trim", **_SOUND)
+
+
+def _no_picture(swim: Swim) -> Wrong:
+    camera, taken = swim.stage._camera, swim.supervisor.watch._vision
+    assert camera is not None
+    assert taken is not None
+
+    def fail() -> Frame:
+        raise CameraError("it was taken away")
+
+    camera.read = fail  # type: ignore[method-assign]
+    yield taken
+    del camera.read
+
+
+def _empty(swim: Swim) -> Wrong:
+    # From time 0 on the water tells of the battery; before, it was full.
+    yield 0.0
+    assert swim.now < 2 * BY_NAME["battery_low"].limit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A fault, and the s within which it must be told, the fins be at rest, and the motors without power."""
+
+    name: str
+    wrong: Callable[[Swim], Wrong]
+    fault: str
+    """The alarm by which it is told."""
+    told: float
+    rest: float | None = None
+    off: float | None = None
+    mode: Mode = "automatic"
+    elf: str = "robot"
+    more: str = ""
+    once: bool = False
+    """Whether it cannot be mended, and each injection takes a board of its own."""
+
+
+def _all_stop(fault: str, wrong: Callable[[Swim], Wrong], **more: bool | str) -> Row:
+    limit = BY_NAME[fault].limit
+    return Row(name=fault, wrong=wrong, fault=fault, told=limit, off=limit, **more)  # type: ignore[arg-type]
+
+
+ROWS = (
+    Row(name="pilot_quiet", wrong=_no_pilot, fault="pilot_quiet", told=0.5, mode="manual"),
+    _all_stop("pilot_lost", _no_pilot, mode="manual"),
+    _all_stop("server_silent", _no_server),
+    Row(
+        name="pi_silent",
+        wrong=_cut("to_board"),
+        fault="board_disarmed",
+        told=1.2,
+        rest=NEUTRAL,
+        off=DISARMED + TICK,
+    ),
+    Row(
+        name="line_cut",
+        wrong=_cut("to_board", "from_board"),
+        fault="board_silent",
+        told=1.0,
+        rest=NEUTRAL,
+        off=DISARMED + TICK,
+    ),
+    _all_stop("board_silent", _cut("from_board")),
+    Row(name="loop_hung", wrong=_hang, fault="board_restarted", told=1.0, off=0.5, elf="robot_hang"),
+    Row(name="board_restarted", wrong=_reset, fault="board_restarted", told=1.0, off=TICK),
+    _all_stop("depth_stale", _broken("pressure", "bus")),
+    _all_stop("depth_frozen", _broken("pressure", "stuck")),
+    _all_stop("depth_range", _broken("pressure", "spike", share=1.0, size=300_000.0)),
+    _all_stop("imu_stale", _broken("gyroscope", "bus")),
+    _all_stop("capsized", _capsize),
+    Row(
+        name="vision_stale",
+        wrong=_no_picture,
+        fault="vision_stale",
+        told=1.0,
+        more='[vision]\ncamera = "card"\nrate = 4.0',
+    ),
+    Row(name="not_rising", wrong=_held_down, fault="not_rising", told=20.0),
+    _all_stop("battery_low", _empty, once=True, more="[robot]\nbattery_full = 6.19"),
+    Row(name="fin_failing", wrong=_broken("encoder2", "bus"), fault="fin_failing", told=0.5),
+)
+BY_ROW = {row.name: row for row in ROWS}
+
+
+@dataclass
+class Measured:
+    """A row's times of each injection, s after it, and what must not be."""
+
+    told: list[float] = field(default_factory=list)
+    rest: list[float] = field(default_factory=list)
+    off: list[float] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+
+
+def measure(row: Row, times: int, seed: int) -> Measured:
+    """Inject the fault so many times, each at a random moment of swimming."""
+    chance = random.Random(f"{row.name} {seed}")
+    measured = Measured()
+    while len(measured.told) < times:
+        with Swim(row.elf, row.more) as swim:
+            swim._performance._looks = "camera" in row.more
+            for _ in range(1 if row.once else times):
+                _inject(swim, row, chance, measured)
+    return measured
+
+
+def measure_all(times: int, seed: int, rows: Sequence[Row] = ROWS, processes: int = 2) -> dict[str, Measured]:
+    """All rows, some beside each other."""
+    with ProcessPoolExecutor(processes) as pool:
+        parts = {row.name: pool.submit(measure_named, row.name, times, seed) for row in rows}
+        return {name: part.result() for name, part in parts.items()}
+
+
+def measure_named(name: str, times: int, seed: int) -> Measured:
+    """`measure` of the row of this name."""
+    return measure(BY_ROW[name], times, seed)
+
+
+def table(measured: dict[str, Measured]) -> str:
+    """For a person, in ms."""
+    lines = [
+        f"{'fault':<18}{'n':>5}{'told':>9}{'limit':>7}{'at rest':>9}{'limit':>7}{'no power':>10}{'limit':>7}"
+    ]
+    for name, one in measured.items():
+        row = BY_ROW[name]
+        lines.append(
+            f"{name:<18}{len(one.told):>5}{_ms(max(one.told)):>9}{_ms(row.told):>7}"
+            f"{_longest(one.rest):>9}{_ms(row.rest):>7}{_longest(one.off):>10}{_ms(row.off):>7}"
+        )
+    return "\n".join([*lines, *(problem for one in measured.values() for problem in one.problems)])
+
+
+def _inject(swim: Swim, row: Row, chance: random.Random, measured: Measured) -> None:
+    swim.calm(row.mode)
+    swim.run(round(chance.uniform(SWIM_MIN, SWIM_MAX), 3))
+    wrong = row.wrong(swim)
+    since = next(wrong)
+    swim.until(lambda: swim.told(row.fault, since) is not None, row.told + AFTER)
+    swim.run(AFTER)
+    told = swim.told(row.fault, since)
+    assert told is not None
+    measured.told.append(told - since)
+    _judge(measured, row, "told", told - since, row.told)
+    if row.rest is not None:
+        measured.rest.append(swim.moved - since)
+        _judge(measured, row, "rest", swim.moved - since, row.rest)
+    if row.off is not None:
+        measured.off.append(swim.powered - since)
+        _judge(measured, row, "off", swim.powered - since, row.off)
+        try:
+            swim.supervisor.begin_arming(row.mode)
+        except Refused:
+            pass
+        else:
+            measured.problems.append(f"{row.name}: it could be armed before anybody acknowledged")
+    next(wrong, None)
+
+
+def _judge(measured: Measured, row: Row, what: str, took: float, limit: float) -> None:
+    if took > limit + 1e-9:
+        measured.problems.append(f"{row.name}: {what} after {took:.3f} s, of which {limit:g} are allowed")
+
+
+def _longest(times: list[float]) -> str:
+    return _ms(max(times)) if times else ""
+
+
+def _ms(seconds: float | None) -> str:
+    return "" if seconds is None else f"{1000 * seconds:.0f}"

@@ -1,0 +1,373 @@
+"""Hostile words through every entrance that leads to a build, an upload, a file's name or a path.
+
+A canary is a file that a command in one of them would make, a secret a file that a path would lead to.
+`python -m tests.proofs.hostile TIMES` takes that many words to each entrance; it fails where one gets in.
+"""
+
+import json
+import re
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from http.client import HTTPConnection
+from io import BytesIO
+from pathlib import Path
+from urllib.parse import quote, urlsplit
+
+import requests
+from websockets.sync.client import ClientConnection
+
+from robot_runtime.comm_test.builder import _macros
+from robot_runtime.comm_test.document import NEEDED, OPTIONAL, SKETCH, DocumentError, read_document
+from robot_runtime.errors import Refused
+from robot_runtime.scenario.document import ScenarioError
+from server.exports.reading import ArchiveRefused, open_archive
+from server.page import Page
+from server.processes.parts import plan
+from server.scenarios.library import keep_scenario
+from server.settings import Settings, SetupError, read_settings
+from server.web import MESSAGE_BYTES_MAX
+from tests.proofs.interface import Surface, run_surface
+from tests.proofs.words import Words
+
+SECRET = "carapace-of-slate"
+MACRO = re.compile(r"-D[A-Z_]+=[A-Za-z0-9_.]+")
+FILE_NAME = re.compile(r'attachment; filename="[A-Za-z0-9_.-]+"')
+SCENARIO_FILE = re.compile(r"[a-z0-9][a-z0-9_-]{0,59}\.toml")
+AROUND = ["data", "page", "robot.toml", "secret.txt"]
+HEADERS = {"content-type": "application/json"}
+SEED = 11
+ENTRANCES: dict[str, Callable[["Field"], object]] = {}
+
+
+class Field:
+    """What the words are let loose on: a server, in whose folder lie a secret and no canary."""
+
+    def __init__(self, surface: Surface, live: ClientConnection, seed: int) -> None:
+        self.surface = surface
+        self.data = surface.served.settings.data
+        self.folder = self.data.path.parent
+        self.canary, self.secret = self.folder / "canary", self.folder / "secret.txt"
+        self.secret.write_text(SECRET, encoding="utf-8")
+        self.page = Page(surface.served.settings.page)
+        self.live = live
+        self.words = Words(self.canary, self.secret, seed)
+
+    def ask(self, method: str, path: str, body: object = None) -> requests.Response:
+        """What the server answers to JSON as Python writes it, NaN and all; never a 5xx, never the secret."""
+        data = None if body is None else json.dumps(body).encode()
+        url = f"{self.surface.url}/api/{path}"
+        answer = self.surface.session.request(method, url, data=data, headers=HEADERS, timeout=60)
+        self.look(answer.status_code, answer.text)
+        return answer
+
+    def look(self, status: int, text: str) -> None:
+        """Nothing has come out that must not."""
+        assert status < 500, (status, text)
+        assert SECRET not in text, text
+
+    def survey(self) -> None:
+        """Nothing has been made or changed that must not be."""
+        assert not self.canary.exists(), "a command was carried out"
+        assert self.secret.read_text(encoding="utf-8") == SECRET
+        assert sorted(one.name for one in self.folder.iterdir()) == AROUND
+        kept = [one.name for one in self.data.scenarios.glob("*")]
+        assert all(map(SCENARIO_FILE.fullmatch, kept)), kept
+
+
+def entrance(name: str) -> Callable[[Callable[[Field], object]], Callable[[Field], object]]:
+    """One way in; what it decorates takes one hostile word there."""
+
+    def add(way: Callable[[Field], object]) -> Callable[[Field], object]:
+        ENTRANCES[name] = way
+        return way
+
+    return add
+
+
+def document(words: Words) -> list[dict[str, object]]:
+    """A communication test of one hostile field, or of none but its name."""
+    test: dict[str, object] = {
+        "id": 1,
+        "name": words.word() or "-",
+        "ino_path": SKETCH,
+        "delay": [0.01],
+        "baud_rate": [9600],
+        "from_val": 0,
+        "to_val": 2,
+        "expected": 2,
+        "arduinodelay": [0.0],
+        "framing": "plain",
+        "direction": "to_board",
+    }
+    field = words.choose((*NEEDED, *OPTIONAL, *NEEDED, words.word()))
+    value = words.value()
+    test[field] = [value] if field in ("delay", "baud_rate", "arduinodelay") else value
+    if field == "faults":
+        test[field] = {words.choose(("bit_flips", "burst", "seed", words.word())): value}
+    return [test]
+
+
+def scenario(words: Words) -> str:
+    """A scenario that could be run, but for one or two hostile words."""
+    fields = {"name": "mine", "title": "Mine", "kind": "pool", "controller": "pid", "do": "arm"}
+    for _ in range(2):
+        fields[words.choose(tuple(fields))] = words.word()
+    said = {name: json.dumps(value) for name, value in fields.items()}
+    return (
+        f"name = {said['name']}\ntitle = {said['title']}\nduration = 10\n"
+        f"[scene]\nkind = {said['kind']}\ndepth = 1.5\nlength = 4.0\nwidth = 2.0\n"
+        f"[control]\ncontroller = {said['controller']}\n"
+        f"[[events]]\nat = 1\ndo = {said['do']}\n"
+    )
+
+
+@entrance("compiler")
+def compile_arguments(field: Field) -> None:
+    """A document that is accepted makes arguments of letters and digits alone."""
+    with suppress(DocumentError):
+        for test in read_document(json.dumps(document(field.words))):
+            for cell in test.cells:
+                macros = _macros(test, cell.baud, cell.arduino_delay)
+                assert all(MACRO.fullmatch(one) for one in macros), macros
+
+
+@entrance("document over HTTP")
+def check_document(field: Field) -> None:
+    """It is looked at, and told what is wrong."""
+    assert field.ask("POST", "comm-tests/check", {"text": json.dumps(document(field.words))}).ok
+
+
+@entrance("place of a run")
+def start_run(field: Field) -> None:
+    """What is no test begins nothing."""
+    text = json.dumps([{"id": field.words.value(), "name": field.words.word()}])
+    answer = field.ask("POST", "comm-tests/runs", {"text": text, "place": field.words.value()})
+    assert answer.status_code == 422
+
+
+@entrance("number of a run")
+def run_number(field: Field) -> None:
+    """Numbers are numbers."""
+    ending = field.words.choose(("", "/csv", "/json"))
+    field.ask("GET", f"comm-tests/runs/{escape(field.words.word())}{ending}")
+
+
+@entrance("scenario's file")
+def scenario_file(field: Field) -> None:
+    """It is kept under a name of its own kind, or not at all."""
+    with suppress(ScenarioError, Refused):
+        keep_scenario(field.data.scenarios, scenario(field.words))
+
+
+@entrance("scenario over HTTP")
+def scenario_over_http(field: Field) -> None:
+    """Looked at, or kept."""
+    text = scenario(field.words)
+    field.ask("POST", field.words.choose(("scenarios/check", "scenarios")), {"text": text})
+
+
+@entrance("scenario to run")
+def scenario_to_run(field: Field) -> None:
+    """Refused; nothing of it is run live where there is no simulator."""
+    wanted = {"text": scenario(field.words), "place": "live", "board": field.words.value()}
+    assert field.ask("POST", "scenarios/runs", wanted).status_code in (409, 422)
+
+
+@entrance("robot.toml")
+def configuration(field: Field) -> None:
+    """What of it reaches a command line is one argument there."""
+    words = field.words
+    given = {
+        "name": "turtle",
+        "mode": "emulated",
+        "port": "/dev/serial0",
+        "reset": "dtr",
+        "host": "127.0.0.1",
+    }
+    given[words.choose(tuple(given))] = words.word()
+    said = {name: json.dumps(value) for name, value in given.items()}
+    text = f"[robot]\nname = {said['name']}\nmode = {said['mode']}\n[server]\nhost = {said['host']}\n"
+    text += f"[link]\nport = {said['port']}\nreset = {said['reset']}\n"
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "robot.toml"
+        path.write_text(text, encoding="utf-8")
+        with suppress(SetupError):
+            settings = read_settings(path, Path(name), None, None, {})
+            plain = plan(Settings(settings.data, path, mode=settings.mode, hil=settings.hil))
+            commands = plan(settings)
+            assert [len(one.arguments) for one in commands] == [len(one.arguments) for one in plain]
+
+
+@entrance("session's name")
+def session_name(field: Field) -> None:
+    """It names files in their headers, by letters and digits."""
+    answer = field.ask("POST", "sessions", {"name": field.words.word()[:100], "note": field.words.word()})
+    if answer.ok:
+        number = answer.json()["id"]
+        assert field.ask("POST", f"sessions/{number}/stop").ok
+        found = field.surface.session.get(f"{field.surface.url}/api/sessions/{number}/csv", timeout=60)
+        assert FILE_NAME.fullmatch(found.headers["content-disposition"]), found.headers
+        members = zipfile.ZipFile(BytesIO(found.content)).namelist()
+        assert all(re.fullmatch(r"[a-z_]+\.(csv|json|txt)", one) for one in members), members
+
+
+@entrance("session's words")
+def session_words(field: Field) -> None:
+    """Names, notes and tags are words."""
+    wanted = {field.words.choose(("name", "note")): field.words.value(), "tags": [field.words.value()]}
+    field.ask("PATCH", "sessions/1", wanted)
+
+
+@entrance("search")
+def search(field: Field) -> None:
+    """Words to search for are no language."""
+    field.ask("GET", f"sessions?search={escape(field.words.word())}&tag={escape(field.words.word())}")
+
+
+@entrance("mark")
+def mark(field: Field) -> None:
+    """Its text is text."""
+    field.ask("POST", "sessions/1/markers", {"time": field.words.value(), "text": field.words.word()})
+
+
+@entrance("number of a session")
+def session_number(field: Field) -> None:
+    """Numbers are numbers."""
+    ending = field.words.choose(("", "/csv", "/timeline", "/signals", "/thumbnail?time=0", "/restore"))
+    field.ask("GET", f"sessions/{escape(field.words.word())}{ending}")
+
+
+@entrance("thumbnail's time")
+def thumbnail(field: Field) -> None:
+    """A time is a time."""
+    field.ask("GET", f"sessions/1/thumbnail?time={escape(str(field.words.value()))}")
+
+
+@entrance("stretch")
+def stretch(field: Field) -> None:
+    """So are these."""
+    start, end = (escape(str(field.words.value())) for _ in range(2))
+    field.ask("GET", f"sessions/1/blocks?start={start}&end={end}")
+
+
+@entrance("report")
+def report(field: Field) -> None:
+    """What is compared is chosen among what there is."""
+    words = field.words
+    query = (
+        f"sessions=1&signals={escape(words.word())}&marker={escape(words.word())}&by={escape(words.word())}"
+    )
+    field.ask("GET", f"compare/report?{query}")
+
+
+@entrance("export")
+def export(field: Field) -> None:
+    """Formats are an enumeration, topics names of what there is."""
+    words = field.words
+    wanted = {"session": 1, "format": words.choose(("csv", words.word())), "topics": [words.word()]}
+    assert not field.ask("POST", "exports", wanted | {"start": words.value()}).ok
+
+
+@entrance("export's name")
+def export_name(field: Field) -> None:
+    """Names are the server's own."""
+    method, ending = field.words.choose((("GET", ""), ("GET", "/file"), ("DELETE", "")))
+    answer = field.ask(method, f"exports/{escape(field.words.word())}{ending}")
+    assert not answer.ok or answer.url.endswith("/exports/")
+
+
+@entrance("archive's members")
+def archive(field: Field) -> None:
+    """None is unpacked anywhere, and one of a strange name refuses the whole."""
+    with tempfile.NamedTemporaryFile() as file:
+        name = field.words.word().encode(errors="replace").decode().lstrip("\0") or "x"
+        with zipfile.ZipFile(file, "w") as zipped:
+            zipped.writestr(field.words.choose((name, f"chunks/{name}", f"../{name}")), SECRET)
+            zipped.writestr("session.json", "{}")
+            zipped.writestr("checksums.json", "{}")
+        file.flush()
+        with suppress(ArchiveRefused), open_archive(Path(file.name)):
+            raise AssertionError(f"{name!r} was let in")
+
+
+@entrance("page's path")
+def page_path(field: Field) -> None:
+    """No file outside of the page's folder is found."""
+    found = field.page.find(field.words.word())
+    assert found is None or found.is_relative_to(field.surface.served.settings.page)
+
+
+@entrance("path over HTTP")
+def path_over_http(field: Field) -> None:
+    """As it is on the line, with no client that tidies it up."""
+    word = field.words.word().encode(errors="replace").decode()
+    path = field.words.choose(
+        (escape(word), quote(word, safe="/.%;\\"), quote(word, safe="/."), f"assets/{escape(word)}")
+    )
+    line = HTTPConnection(urlsplit(field.surface.url).netloc, timeout=60)
+    try:
+        line.putrequest("GET", f"/{path}", skip_accept_encoding=True)
+        line.endheaders()
+        answer = line.getresponse()
+        field.look(answer.status, answer.read().decode(errors="replace"))
+    finally:
+        line.close()
+
+
+@entrance("words to the robot")
+def robot_words(field: Field) -> None:
+    """Checked before the runtime hears of them."""
+    words = field.words
+    path, body = words.choose(
+        (
+            ("controller", {"name": words.value(), "gains": {words.word(): words.value()}}),
+            ("set-points", {"default": words.value(), words.word(): 1}),
+            ("card", {"colour": words.value()}),
+            ("vision", {"rate": words.value(), "colour": words.value()}),
+        )
+    )
+    field.ask("PUT", f"robot/{path}", body)
+
+
+@entrance("words on the live socket")
+def live_words(field: Field) -> None:
+    """Understood, or told that they are not; the socket stays open."""
+    words = field.words
+    message = {"op": words.choose(("ping", "watch", words.word())), "id": words.value()}
+    text = json.dumps(message | {"pictures": [words.value()]})
+    field.live.send(text[:MESSAGE_BYTES_MAX])
+    field.live.send('{"op": "ping", "id": "the last"}')
+    while (said := field.live.recv(60)) != '{"op": "pong", "id": "the last"}':
+        assert isinstance(said, bytes | str)
+
+
+def escape(word: str) -> str:
+    """As one piece of a path or a query."""
+    return quote(word.encode(errors="replace"), safe="")
+
+
+@contextmanager
+def open_field(seed: int = SEED) -> Iterator[Field]:
+    """A field, until the context is left."""
+    with run_surface() as surface, surface.connect() as live:
+        yield Field(surface, live, seed)
+
+
+def main() -> int:
+    """Exit status."""
+    times = int(sys.argv[1])
+    with open_field() as field:
+        for name, way in ENTRANCES.items():
+            for _ in range(times):
+                way(field)
+            field.survey()
+            print(f"{name}: {times} words", flush=True)
+    print(f"{times * len(ENTRANCES)} words through {len(ENTRANCES)} entrances: no canary")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

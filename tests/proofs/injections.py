@@ -1,0 +1,51 @@
+"""`python -m tests.proofs.injections 100`: every fault so many times; status 1 where the robot is too late.
+
+First the faults of robot and chip, in simulated time, then those of the processes, in real time, for which
+the computer should have nothing else to do. The figures go to build/faults.json.
+"""
+
+import json
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.proofs import faults, outages
+
+RESULT = Path("build/faults.json")
+PROCESSES = 2
+
+
+def figures(measured: dict[str, faults.Measured], outcomes: Sequence[outages.Outcome]) -> dict[str, float]:
+    """The longest times, ms: until a fault was told, until the fins were at rest, until they had no power.
+
+    Of processes, instead of the first, it is the time until all was well again.
+    """
+    found = {f"fault.{name}_ms_max": 1000 * max(one.told) for name, one in measured.items()}
+    found |= {f"fault.{name}_rest_ms_max": 1000 * max(one.rest) for name, one in measured.items() if one.rest}
+    found |= {f"fault.{name}_off_ms_max": 1000 * max(one.off) for name, one in measured.items() if one.off}
+    for outage in dict.fromkeys(one.outage for one in outcomes):
+        mine = [one for one in outcomes if one.outage == outage]
+        found[f"fault.{outage.name}_ms_max"] = 1000 * max(one.again for one in mine)
+        if outage.off is not None:
+            found[f"fault.{outage.name}_off_ms_max"] = 1000 * max(one.off for one in mine)
+    return {name: round(value, 1) for name, value in found.items()}
+
+
+def main() -> int:
+    """Exit status."""
+    times = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    seed = int(time.time())
+    print(f"{times} injections of each fault, seed {seed} ...", flush=True)
+    measured = faults.measure_all(times, seed, processes=PROCESSES)
+    print(faults.table(measured), flush=True)
+    outcomes = outages.measure(times, seed, lambda text: print(text, flush=True))
+    print(outages.table(outcomes))
+    RESULT.parent.mkdir(exist_ok=True)
+    RESULT.write_text(json.dumps(figures(measured, outcomes), indent=2) + "\n")
+    late = any(one.problems for one in measured.values())
+    return 1 if late or any(one.problems or one.is_slow for one in outcomes) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,240 @@
+"""`python -m tests.proofs.power_work FOLDER LOG [SYNCHRONOUS PSOW]`: what a server stores, in a few seconds.
+
+The server's own parts, on a disk whose steps are written down: a database of an older version is upgraded;
+sessions are recorded, marked, renamed, tagged, deleted and removed; a communication test, exports and a
+scenario are kept. After each step the log says what has been acknowledged. Without the last two, the database
+is written as the product writes it.
+"""
+
+import asyncio
+import hashlib
+import random
+import sqlite3
+import sys
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine
+from sqlalchemy.pool import Pool
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.comm_test.document import read_document
+from robot_runtime.topics import BY_NAME, Block, row
+from server import store as store_module
+from server.cli import main
+from server.comm_tests.runs import Runs
+from server.exports.jobs import Jobs
+from server.exports.shapes import NewExport
+from server.live.notices import Notices
+from server.scenarios.library import _shipped, keep_scenario
+from server.schema import prepare
+from server.sessions.catalogue import Catalogue
+from server.sessions.markers import Markers
+from server.sessions.recorder import PERIOD, Recorder
+from server.sessions.session import find_row, new_row
+from server.sessions.tidying import Tidying
+from server.settings import DataFolder, Settings, make_folders
+from server.store import Store
+from tests.proofs.disk import note
+from tests.proofs.facts import read_facts
+from tests.server.blocks import debug_block, depth_record
+from tests.server.older import make_session, upgrade_to
+
+FLUSHES = 24
+ROWS = 400
+DOCUMENT = Path(__file__).parents[2] / "firmware/examples/comm_test/figure10.json"
+
+
+class Work:
+    """The server's parts, and what of their work has been acknowledged."""
+
+    def __init__(self, settings: Settings, log: Path) -> None:
+        self.settings = settings
+        self._log = log
+        self._told: dict[str, Any] = {}
+        self._chance = random.Random(1)
+        self._first = 0
+
+    def acknowledged(self) -> None:
+        """All that is stored now has been acknowledged."""
+        facts = read_facts(self.settings.data.database, "ro")
+        changed: dict[str, list[Any] | None] = {
+            name: [value] for name, value in facts.items() if self._told.get(name) != value
+        }
+        changed |= {name: None for name in self._told if name not in facts}
+        note(self._log, changed)
+        self._told = facts
+
+    def doubtful(self, prefix: str) -> None:
+        """What begins so is about to change, and may be found before or after."""
+        note(self._log, {name: None for name in self._told if name.startswith(prefix)})
+        self._told = {name: value for name, value in self._told.items() if not name.startswith(prefix)}
+
+    def file(self, path: Path, *older: str) -> str:
+        """A file has been acknowledged; `older` are checksums that may be found as well."""
+        checksum = hashlib.sha256(path.read_bytes()).hexdigest()
+        note(self._log, {f"file/{path.relative_to(self.settings.data.path)}": [checksum, *older]})
+        return checksum
+
+    def noise(self) -> Block:
+        """Rows that no compression makes small."""
+        size = len(depth_record(0).to_bytes())
+        rows = b"".join(
+            row(100.0 + (self._first + place) * 0.002, self._chance.randbytes(size)) for place in range(ROWS)
+        )
+        self._first += ROWS
+        return Block.of(BY_NAME["depth"], ROWS, self._first - ROWS, rows)
+
+    async def run(self) -> None:
+        """All of it."""
+        store = Store(self.settings.data.database)
+        clock = SimulatedClock(100.0)
+        recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+        catalogue = Catalogue(store, recorder)
+        sessions = [await self._record(recorder, catalogue, clock, name) for name in ("one", "two")]
+        await self._test(Runs(store))
+        await self._export(store, sessions[0])
+        await asyncio.to_thread(self._look_from_a_shell)
+        self._keep()
+        await self._remove(store, catalogue, sessions[0])
+        await self._record(recorder, catalogue, clock, "three")
+        await asyncio.to_thread(store.close)
+
+    async def _record(
+        self, recorder: Recorder, catalogue: Catalogue, clock: SimulatedClock, name: str
+    ) -> int:
+        session = (await recorder.start(new_row(self.settings, clock, name, "", "null"))).id
+        self.acknowledged()
+        markers = Markers(recorder._store, clock, recorder)
+        for flush in range(FLUSHES):
+            clock.forward(PERIOD)
+            recorder.add(self.noise())
+            recorder.add(debug_block(flush, f"line {flush}"))
+            if flush == FLUSHES // 2:
+                recorder.add(self.noise())
+                self.noise()  # a hole: of it a gap is stored
+                await markers.add(session, None, f"half of {name}")
+            await recorder.flush()
+            self.acknowledged()
+        self.doubtful(f"name/{session}")
+        await catalogue.change(session, name=f"{name} of them", tags=["tested", name])
+        self.acknowledged()
+        self.doubtful(f"state/{session}")
+        await recorder.stop(session)
+        self.acknowledged()
+        return session
+
+    async def _test(self, runs: Runs) -> None:
+        (test, *_) = read_document(DOCUMENT.read_text(encoding="utf-8"))
+        run = await runs.start(test, "emulated", "00c0ffee", {}, "here")
+        self.acknowledged()
+        for number, cell in enumerate(test.cells[:10]):
+            figures = dict.fromkeys(COUNTS, number)
+            await runs.add(
+                run,
+                number,
+                figures
+                | {"baud": cell.baud, "arduino_delay": 0.0, "pi_delay": 0.0, "rate": 1.0}
+                | {"answered": True, "seconds": 1.0, "causes": "", "explanation": ""},
+            )
+            self.acknowledged()
+        self.doubtful(f"run/{run}")
+        await runs.end(run, "complete")
+        self.acknowledged()
+
+    async def _export(self, store: Store, session: int) -> None:
+        jobs = Jobs(self.settings.data, store)
+        jobs.open()
+        working = asyncio.create_task(jobs.run())
+        found = find_row(store, session)
+        assert found is not None
+        job = jobs.add(found, NewExport(session=session, format="archive"))
+        while job.state in ("waiting", "running"):
+            await asyncio.sleep(0.01)
+            job = jobs.find(job.id) or job
+        assert job.state == "done", job.problem
+        assert self.file(jobs.path(job)) == job.sha256
+        self.file(jobs._description(job))
+        working.cancel()
+
+    def _look_from_a_shell(self) -> None:
+        where = ["--data", str(self.settings.data.path), "--config", str(self.settings.config)]
+        for words in (["sessions", "list"], ["commtest", "list"], ["backup"]):
+            assert main([*words, *where]) == 0
+        (backup,) = self.settings.data.backups.glob("mucat-backup-*.db")
+        self.file(backup)
+
+    def _keep(self) -> None:
+        text = _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1)
+        path = self.settings.data.scenarios / "mine.toml"
+        keep_scenario(self.settings.data.scenarios, text)
+        before = self.file(path)
+        changed = text + "# changed\n"
+        after = hashlib.sha256(changed.encode()).hexdigest()
+        self.file(path, after)
+        keep_scenario(self.settings.data.scenarios, changed)
+        assert self.file(path) == after != before
+
+    async def _remove(self, store: Store, catalogue: Catalogue, session: int) -> None:
+        for kind in ("samples", "name", "state", "chunk", "marker", "tag", "gap"):
+            self.doubtful(f"{kind}/{session}")
+        await catalogue.delete(session)
+        await catalogue.purge(session)
+        tidying = Tidying(store, self.settings, Notices(SimulatedClock(), lambda _: None))
+        await tidying.tidy(1e9)
+        self.acknowledged()
+
+
+COUNTS = (
+    "right",
+    "out_of_sequence",
+    "checksum_errors",
+    "framing_errors",
+    "ring_full",
+    "bytes_read",
+    "bytes_lost",
+    "line_errors",
+    "uart_overruns",
+    "repeated",
+)
+
+
+def weaken(synchronous: str, overwrite: str) -> None:
+    """Have the database written in another way than the product does: that must be noticed."""
+    make_durable, engine = store_module._make_durable, store_module._engine
+
+    def make_weaker(connection: sqlite3.Connection, record: object) -> None:
+        make_durable(connection, record)
+        connection.execute(f"PRAGMA synchronous = {synchronous}")
+
+    def engine_weaker(database: Path, options: str, kind: type[Pool]) -> Engine:
+        return engine(database, options.replace("psow=0", f"psow={overwrite}"), kind)
+
+    vars(store_module).update(_make_durable=make_weaker, _engine=engine_weaker)
+
+
+def work() -> None:
+    """A folder that is empty, and the log."""
+    folder, log = Path(sys.argv[1]), Path(sys.argv[2])
+    if len(sys.argv) > 3:
+        weaken(*sys.argv[3:])
+    data = DataFolder(folder / "data")
+    make_folders(data)
+    config = folder / "robot.toml"
+    config.touch()
+    settings = Settings(data=data, config=config)
+    upgrade_to(settings, "0003")
+    with closing(sqlite3.connect(data.database)) as database:
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = FULL")
+        make_session(database)
+    stored = Work(settings, log)
+    stored.acknowledged()
+    prepare(data)
+    stored.acknowledged()
+    asyncio.run(stored.run())
+
+
+if __name__ == "__main__":
+    work()

@@ -1,0 +1,55 @@
+"""A short version of `make power`, and who writes the database."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.proofs import disk
+from tests.proofs.disk import Disk, Step
+from tests.proofs.power import WEAKER, is_whole, record, replay
+
+Recorded = tuple[Path, Disk, list[Step]]
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return disk.build(tmp_path_factory.mktemp("library"))
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory, library: Path) -> Recorded:
+    return record(tmp_path_factory.mktemp("work"), library)
+
+
+def test_what_was_acknowledged_survives_a_power_cut(recorded: Recorded) -> None:
+    data, before, steps = recorded
+    report = replay(data, before, steps, states=300, seed=1)
+    assert (report.cuts.total(), report.bad, report.words) == (300, 0, [])
+    assert report.facts > 300
+    assert is_whole(data, before)
+
+
+@pytest.mark.parametrize("weaker", WEAKER.values(), ids=WEAKER)
+def test_weaker_settings_are_seen_to_lose_something(
+    weaker: tuple[str, str], library: Path, tmp_path: Path
+) -> None:
+    report = replay(*record(tmp_path, library, *weaker), states=180, seed=1)
+    assert report.lossy.total() > 0
+
+
+def test_one_connection_writes_the_database(recorded: Recorded) -> None:
+    """Beside an export, and a shell that lists and makes a backup."""
+    data, _, steps = recorded
+    prepared = [place for place, step in enumerate(steps) if step.kind == "a"][1]
+    nodes: dict[int, str] = {}
+    writers: dict[str, set[tuple[int, int]]] = {}
+    processes = set()
+    for place, step in enumerate(steps):
+        if step.kind == "c":
+            nodes[step.node] = step.name
+        elif place > prepared and step.kind == "w":
+            processes.add(step.process)
+            writers.setdefault(nodes[step.node], set()).add((step.process, step.handle))
+    assert [len(writers[f"{data}/mucat.db{end}"]) for end in ("", "-wal")] == [1, 1]
+    assert f"{data}/mucat.db-journal" not in writers
+    assert len(processes) > 1  # the export's own
