@@ -5,6 +5,7 @@ FUZZ_SECONDS ?= 600
 KILLS ?= 100
 FAULTS ?= 100
 CHAOS_SECONDS ?= 3600
+CUTS ?= 10000
 QUESTIONS ?= 300
 WORDS ?= 500
 PYTHON := .venv/bin/python
@@ -67,6 +68,9 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
+
+power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
+	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
 
 faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
 	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)

@@ -26,7 +26,8 @@ from robot_runtime.samples import (
     State,
 )
 from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
-from robot_runtime.vision.node import THUMBNAIL_SECONDS, THUMBNAIL_WIDTH
+from robot_runtime.vision.looking import THUMBNAIL_WIDTH
+from robot_runtime.vision.node import THUMBNAIL_SECONDS
 
 Floats = NDArray[np.float64]
 Fields = dict[str, Any]

@@ -22,6 +22,7 @@ from robot_runtime.simulation.stepped_board import PERIOD, SteppedBoard, Water
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
 
+_NOISY = -round(1.0 / PERIOD)
 _TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
 
 
@@ -92,7 +93,8 @@ class Stage:
         self._at_surface = STILL_WATER._replace(
             pressure=scenario.robot.surface_pressure, temperature=scenario.robot.temperature
         )
-        # No sensor is without noise, and one that is counts as frozen.
+        # No sensor is without noise, and one that is counts as frozen. Before that it learns the surface's,
+        # which is exact then, as the scenario says it.
         self._noise = Random(f"{scenario.seed} prelude").gauss
         self._broken: frozenset[str] = frozenset()
         self._camera: Camera | None = None
@@ -128,6 +130,8 @@ class Stage:
 
     def _feel(self, fins: FinMotion) -> Reading:
         if self._period < 0:
+            if self._period < _NOISY:
+                return self._at_surface
             pressure = self._noise(self._at_surface.pressure, self.scenario.robot.pressure.noise)
             return self._at_surface._replace(pressure=pressure)
         reading = self.simulator.advance(PERIOD, fins)

@@ -1,9 +1,10 @@
 """What every camera is, whatever stands behind it."""
 
 from abc import ABC, abstractmethod
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from robot_runtime.vision.colours import Picture
+if TYPE_CHECKING:
+    from robot_runtime.vision.picture import Picture
 
 
 class CameraError(Exception):
@@ -20,7 +21,7 @@ class CameraError(Exception):
 class Frame(NamedTuple):
     """One picture, uint8 of shape (height, width, 3) in the order blue, green, red."""
 
-    picture: Picture
+    picture: "Picture"
     taken: float
     """s on the steady clock."""
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from robot_runtime.clock import Clock
 from robot_runtime.vision.camera import Camera, Frame
 from robot_runtime.vision.cards import card_paint
-from robot_runtime.vision.colours import ColourRange, Picture
+from robot_runtime.vision.colours import ColourRange
+from robot_runtime.vision.picture import Picture
 
 Floats = NDArray[np.float32]
 

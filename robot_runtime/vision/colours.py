@@ -3,13 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
-import cv2
-import numpy as np
-from numpy.typing import NDArray
-
 from robot_runtime.config import ConfigError
 
-Picture = NDArray[np.uint8]
 Pair = tuple[int, int]
 
 HUE_MAX = 179
@@ -28,25 +23,12 @@ class ColourRange:
     saturation: Pair
     value: Pair
 
-    def mask(self, hsv: Picture) -> Picture:
-        """255 where the HSV picture (height, width, 3) has this colour, 0 elsewhere; (height, width)."""
-        low, high = self.hue
-        if low <= high:
-            return self._between(hsv, low, high)
-        return self._between(hsv, low, HUE_MAX) | self._between(hsv, 0, high)
-
     @property
     def middle(self) -> tuple[int, int, int]:
         """Hue, saturation and value in the middle of the ranges."""
         low, high = self.hue
         span = (high - low) % (HUE_MAX + 1)
         return (low + span // 2) % (HUE_MAX + 1), sum(self.saturation) // 2, sum(self.value) // 2
-
-    def _between(self, hsv: Picture, hue_low: int, hue_high: int) -> Picture:
-        lows = (hue_low, self.saturation[0], self.value[0])
-        return cv2.inRange(hsv, lows, (hue_high, self.saturation[1], self.value[1])).astype(
-            np.uint8, copy=False
-        )
 
 
 DEFAULTS: Mapping[str, ColourRange] = {

@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 
 from robot_runtime.samples import Box
-from robot_runtime.vision.colours import ColourRange, Picture
+from robot_runtime.vision.colours import HUE_MAX, ColourRange
+from robot_runtime.vision.picture import Picture
 
 
 class Patch(NamedTuple):
@@ -36,7 +37,7 @@ class Detector:
 
     def _largest(self, hsv: Picture, name: str) -> Patch | None:
         height, width = hsv.shape[:2]
-        mask = self._colours[name].mask(hsv)
+        mask = find_colour(hsv, self._colours[name])
         if cv2.countNonZero(mask) < self._area_min * width * height:
             return None
         # Opening removes specks, which noise makes, and keeps patches as they are.
@@ -53,3 +54,17 @@ class Detector:
             return None
         x, y, w, h = cv2.boundingRect(largest)
         return Patch(name, Box(x=x / width, y=y / height, width=w / width, height=h / height), area)
+
+
+def find_colour(hsv: Picture, colour: ColourRange) -> Picture:
+    """255 where the HSV picture (height, width, 3) has this colour, 0 elsewhere; (height, width)."""
+    low, high = colour.hue
+    if low <= high:
+        return _between(hsv, colour, low, high)
+    return _between(hsv, colour, low, HUE_MAX) | _between(hsv, colour, 0, high)
+
+
+def _between(hsv: Picture, colour: ColourRange, hue_low: int, hue_high: int) -> Picture:
+    lows = (hue_low, colour.saturation[0], colour.value[0])
+    highs = (hue_high, colour.saturation[1], colour.value[1])
+    return cv2.inRange(hsv, lows, highs).astype(np.uint8, copy=False)

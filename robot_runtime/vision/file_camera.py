@@ -7,7 +7,7 @@ import numpy as np
 
 from robot_runtime.clock import Clock
 from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.colours import Picture
+from robot_runtime.vision.picture import Picture
 
 HINT = "name a video or a picture in robot.toml: [vision] file"
 

@@ -1,12 +1,11 @@
 """The vision node: a thread that looks, searches for the wanted colour, and tells what it found."""
 
+import importlib
 import logging
 import threading
 from collections.abc import Callable
 from math import inf
-from pathlib import Path
-
-import cv2
+from typing import TYPE_CHECKING
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import ConfigError, VisionConfig
@@ -14,23 +13,18 @@ from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.samples import Detection, Event, Severity
 from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.colours import Picture, parse_colours
-from robot_runtime.vision.detector import Detector
-from robot_runtime.vision.file_camera import FileCamera
+from robot_runtime.vision.colours import parse_colours
 from robot_runtime.vision.pace import Pace
-from robot_runtime.vision.pi_camera import PiCamera
-from robot_runtime.vision.scene_camera import SceneCamera, SceneMissing
+
+if TYPE_CHECKING:
+    from robot_runtime.vision.detector import Detector
 
 log = logging.getLogger(__name__)
 
 RETRY = 2.0
 """s between two attempts to open a camera that failed."""
-JPEG_QUALITY = 80
 THUMBNAIL_SECONDS = 2.0
 """s between two small pictures for recordings. The runtime does not know whether anything records."""
-THUMBNAIL_WIDTH = 160
-THUMBNAIL_QUALITY = 50
 
 
 class Vision:
@@ -74,8 +68,8 @@ class Vision:
         self._tell = tell
         self._messages = messages
         self._open_camera = open_camera or self._configured_camera
-        self._detector = Detector(self.colours, config.area_min)
         self._pace = Pace(clock, config.rate)
+        self._detector: Detector | None = None
         self._camera: Camera | None = None
         self._failure: str | None = None
         self._failing_since: float | None = None
@@ -149,8 +143,8 @@ class Vision:
         return 0.0
 
     def _run(self) -> None:
-        # On pictures of this size more threads cost more than they bring, and the robot has one core.
-        cv2.setNumThreads(1)
+        # Here, so that the first picture is not late for it.
+        importlib.import_module("robot_runtime.vision.looking")
         while not self._ending:
             remaining = self.tick()
             if remaining > 0:
@@ -172,6 +166,11 @@ class Vision:
         return frame
 
     def _examine(self, frame: Frame) -> None:
+        # Loads NumPy and OpenCV, which takes longest of all at a start; the robot is in hand before that.
+        from robot_runtime.vision import looking
+
+        if self._detector is None:
+            self._detector = looking.Detector(self.colours, self._config.area_min)
         begun = self._clock.now()
         patch = self._detector.find(frame.picture, self.colour)
         ended = self._clock.now()
@@ -186,11 +185,10 @@ class Vision:
             )
         )
         if self._picture_wanted():
-            _, jpeg = cv2.imencode(".jpg", frame.picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-            self._on_picture(frame.taken, jpeg.tobytes())
+            self._on_picture(frame.taken, looking.as_jpeg(frame.picture))
         if self._on_thumbnail is not None and frame.taken >= self._thumbnail_due:
             self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
-            self._on_thumbnail(frame.taken, _shrink(frame.picture))
+            self._on_thumbnail(frame.taken, looking.as_thumbnail(frame.picture))
 
     def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
@@ -214,26 +212,11 @@ class Vision:
                 log.exception("a camera could not be closed")
 
     def _configured_camera(self) -> Camera:
-        config = self._config
-        if config.camera == "pi":
-            return PiCamera(config.width, config.height, self._clock)
-        if config.camera == "file":
-            return FileCamera(Path(config.file), config.width, config.height, self._clock)
-        if config.camera == "scene" and self._messages is not None:
-            try:
-                return SceneCamera(
-                    config.width, config.height, self._messages, self.colours, lambda: self.card
-                )
-            except SceneMissing as missing:
-                self._report(
-                    "caution", f"Camera: the scene cannot be rendered: {missing}. A drawn card stands in."
-                )
-        return CardCamera(config.width, config.height, self._clock, self.colours, lambda: self.card)
+        from robot_runtime.vision.looking import open_camera
 
+        def tell_missing(why: str) -> None:
+            self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-def _shrink(picture: Picture) -> bytes:
-    height, width = picture.shape[:2]
-    size = (THUMBNAIL_WIDTH, max(1, round(height * THUMBNAIL_WIDTH / width)))
-    small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-    _, jpeg = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, THUMBNAIL_QUALITY])
-    return jpeg.tobytes()
+        return open_camera(
+            self._config, self._clock, self._messages, self.colours, lambda: self.card, tell_missing
+        )

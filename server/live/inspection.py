@@ -16,7 +16,8 @@ SILENT_SECONDS = 1.5
 STARTING_SECONDS = 10.0
 """For which a process that has just been started may be silent; a Raspberry Pi Zero takes its time."""
 DISK_LOW_BYTES = 500_000_000
-"""An hour of recording with everything that it may come with."""
+DISK_LOW_SHARE = 0.05
+"""The smaller of the two is little room: hours of recording, but on a disk that is small itself."""
 DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
 """The alarms of parts that have ended."""
 
@@ -53,7 +54,8 @@ class Inspection:
             see(fault, part is not None and part.state == "failed")
         see("runtime_silent", self._is_silent("runtime"))
         see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
-        see("disk_low", shutil.disk_usage(self._settings.data.path).free < DISK_LOW_BYTES)
+        disk = shutil.disk_usage(self._settings.data.path)
+        see("disk_low", disk.free < min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total))
         see("store_failing", self._store.failing is not None)
         see("server_restarted", wrong=False)
 

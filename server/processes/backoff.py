@@ -2,7 +2,10 @@
 
 FIRST = 0.1
 """s after the second death; after the first there is nothing to wait for."""
-MAX = 1.0
+KILLED_MAX = 1.0
+"""s, at most, for what was killed."""
+MAX = 5.0
+"""s, at most, for what ends by itself: it will probably do so again, and each start costs much."""
 STEADY_SECONDS = 10.0
 """What lived this long is started again at once when it ends."""
 
@@ -13,11 +16,11 @@ class Backoff:
     def __init__(self) -> None:
         self._next = 0.0
 
-    def after(self, lived: float) -> float:
-        """s to wait after a life of `lived` s."""
+    def after(self, lived: float, *, killed: bool) -> float:
+        """s to wait after a life of `lived` s; `killed` tells whether it was ended by a signal."""
         if lived >= STEADY_SECONDS:
             self._next = 0.0
-        pause = self._next
+        pause = min(self._next, KILLED_MAX) if killed else self._next
         self._next = min(max(2 * pause, FIRST), MAX)
         return pause
 

@@ -102,7 +102,7 @@ class Keeper:
 
     def _see_end(self, status: int | None) -> None:
         now = time.monotonic()
-        pause = self._backoff.after(now - self._since)
+        pause = self._backoff.after(now - self._since, killed=status is None or status < 0)
         self._due = now + pause
         if not self._ending and not self._is_over():
             self._ended = f"The server {'has ended' if status is None else describe_status(status)}."

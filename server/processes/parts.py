@@ -100,8 +100,8 @@ class Part:
                 if self._process is None:
                     await self._wait_for_needs()
                     began = self._clock.now()
-                problem = await self._run_once()
-                pause = self._backoff.after(self._clock.now() - began)
+                problem, killed = await self._run_once()
+                pause = self._backoff.after(self._clock.now() - began, killed=killed)
                 self._fail(problem, pause)
                 await asyncio.sleep(pause)
         finally:
@@ -124,13 +124,13 @@ class Part:
                 self._set("waiting")
             await asyncio.sleep(NEED_POLL_SECONDS)
 
-    async def _run_once(self) -> str:
-        """Run the process to its end. Returns what happened, in words."""
+    async def _run_once(self) -> tuple[str, bool]:
+        """Run the process to its end. Returns what happened, in words, and whether a signal ended it."""
         try:
             process = self._process = self._process or self._start()
         except OSError as problem:
             program = self.command.arguments[0]
-            return f"cannot be started: {program}: {problem.strerror}. Build it with “make firmware”"
+            return f"cannot be started: {program}: {problem.strerror}. Build it with “make firmware”", False
         self._set("running")
         trimming = asyncio.create_task(self._trim())
         try:
@@ -139,7 +139,8 @@ class Part:
             trimming.cancel()
         self._let_go()
         last = self._log.last(LINES_TOLD, self._logged_before)
-        return describe_status(status) + (f". Its last words: {last}" if last else "")
+        words = describe_status(status) + (f". Its last words: {last}" if last else "")
+        return words, status is None or status < 0
 
     def _start(self) -> Process:
         self._logged_before = self._log.size()

@@ -172,15 +172,16 @@ def _examine(database: Path, report: Report) -> None:
             ends[topic] = (first + count, last_time)
             report.rows += count
             if topic == "control":
-                ticks += _times(topic, data)
+                ticks += row_times(topic, data)
             elif topic == "event":
                 for event in decode_documents(data):
-                    told[event["text"].partition(" for ")[0]] += 1
-    report.stops = told["The server has been silent"]
+                    told[event["text"].partition(";")[0]] += 1
+    report.stops = told["The server fell silent"]
     report.tick_longest = max((after - before for before, after in pairwise(ticks)))
 
 
-def _times(topic: str, data: bytes) -> list[float]:
+def row_times(topic: str, data: bytes) -> list[float]:
+    """The times of a chunk's rows, s."""
     assert BY_NAME[topic].kind is Kind.ROWS
     size = BY_NAME[topic].row_bytes
     rows = decode_rows(data, size)

@@ -123,7 +123,7 @@ class World:
         if outage.blow == "kill":
             victim.kill()
             self._see(outcome, since)
-            since_up = wait(lambda: self._replaced(outage.victim, victim.pid), f"a new {outage.victim}")
+            since_up = wait(lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}")
         else:
             victim.suspend()
             self._see(outcome, since)
@@ -158,11 +158,15 @@ class World:
 
     def calm(self) -> None:
         """Disarmed, nothing to acknowledge, everything well."""
-        since = time.monotonic()
-        wait(lambda: self.well(since), "all to be well")
+        self.wait_well()
         self.stack.api.post("/robot/stop").raise_for_status()
         self.stack.api.post("/robot/acknowledge").raise_for_status()
         wait(lambda: not self.viewer.alarms and not self.viewer.state["armed"], "no alarm")
+
+    def wait_well(self) -> None:
+        """Everything is well, by what comes from now on."""
+        since = time.monotonic()
+        wait(lambda: self.well(since), "all to be well")
 
     def arm(self) -> None:
         """Swim: with power, and fins that move."""
@@ -180,7 +184,8 @@ class World:
             return found[0]
         return psutil.Process(running_parts(self.folder.run)[name].pid)
 
-    def _replaced(self, name: str, pid: int) -> bool:
+    def is_replaced(self, name: str, pid: int) -> bool:
+        """Whether there is another of this name."""
         try:
             return self.find(name).pid != pid
         except (LookupError, psutil.Error):

@@ -9,24 +9,32 @@ import os
 import random
 import sqlite3
 import sys
+from collections.abc import Awaitable, Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.errors import Refused
 from robot_runtime.topics import BY_NAME, Block, row
+from server.backup_command import back_up
+from server.comm_tests.runs import Runs
 from server.live.notices import Notices
+from server.scenarios.library import _shipped, keep_scenario
 from server.schema import prepare
 from server.sessions.recorder import Recorder
 from server.sessions.session import new_row
-from server.settings import DataFolder, Settings, make_folders
+from server.settings import DataFolder, Settings, SetupError, make_folders
 from server.store import Store, StoreError
 from tests.server.blocks import depth_record
+from tests.server.comm_tests.test_comm_tests import LOST, begin
 
 LEFT_BYTES = 400_000
 """Room for the database when recording begins."""
 COUNT = 1000
 FULL_TIMES = 5
+LONG = {**LOST.values, "explanation": "why " * 50_000}
+"""A cell that does not fit into what room is left in the database's own files."""
 
 
 def noisy_block(first: int, chance: random.Random) -> Block:
@@ -41,6 +49,9 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
     settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
     store = Store(data.database)
     recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+    runs = Runs(store)
+    run = await begin(runs)
+    await runs.add(run, 0, LOST.values)
     session = await recorder.start(new_row(settings, clock, "full", "", "null"))
     ballast = data.path / "ballast"
     with ballast.open("wb") as file:
@@ -56,9 +67,13 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
         except StoreError as problem:
             refusals.append(str(problem))
     stored_when_full = recorder.session.samples if recorder.session else -1
+    refused_beside = [await refusal(work) for work in beside(data, runs, run)]
     ballast.unlink()
     recorder.add(noisy_block(first, chance))
     done = await recorder.stop(session.id)
+    for work in beside(data, runs, run):
+        await work()
+    cells = [cell.number for cell in runs.cells(run)]
     store.close()
     return {
         "refusals": sorted(set(refusals)),
@@ -66,7 +81,30 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
         "stored_when_full": stored_when_full,
         "stored": done.samples,
         "state": done.state,
+        "refused_beside": refused_beside,
+        "cells": cells,
     }
+
+
+def beside(data: DataFolder, runs: Runs, run: int) -> list[Callable[[], Awaitable[object]]]:
+    """What else is stored: a communication test's next cell, a scenario, a backup."""
+
+    async def keep() -> None:
+        keep_scenario(data.scenarios, _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1))
+
+    async def copy() -> None:
+        back_up(data, data.path / "copy.db")
+
+    return [lambda: runs.add(run, 1, LONG), keep, copy]
+
+
+async def refusal(work: Callable[[], Awaitable[object]]) -> str:
+    """In which words it is refused; "" where it is not."""
+    try:
+        await work()
+    except (StoreError, Refused, SetupError) as problem:
+        return str(problem)
+    return ""
 
 
 def main() -> None:

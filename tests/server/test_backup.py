@@ -25,6 +25,7 @@ from server.store import Reader, Store
 from tests.server.blocks import depth_block
 from tests.server.exports.test_tables import record
 from tests.server.older import ROWS, make_session, upgrade_to
+from tests.stack import ROOT
 
 
 def run(settings: Settings, *arguments: str) -> int:
@@ -224,3 +225,15 @@ def test_a_second_writer_is_refused(settings: Settings) -> None:
             Store(settings.data.database)
         asyncio.run(store.probe())
     Store(settings.data.database).close()
+
+
+def test_the_documented_commands_do_what_they_say(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill(settings, "one")
+    text = (ROOT / "docs/durability.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^\.venv/bin/mucat (.*)$", text, re.MULTILINE)
+    assert len(commands) == 3
+    monkeypatch.chdir(tmp_path)
+    assert [run(settings, *command.split()) for command in commands] == [0, 0, 0]
+    assert names(settings.data.database) == ["one"]

@@ -50,6 +50,7 @@ class Wire:
 
     def __init__(self, baud: int, noise: Noise, chance: random.Random) -> None:
         self.sent = 0
+        self.carried: list[bytes] = []
         self._byte_time = 10 / baud
         self._noise = noise
         self._chance = chance
@@ -62,6 +63,7 @@ class Wire:
             return
         self._free = max(self._free, now) + len(frame) * self._byte_time
         self.sent += len(frame)
+        self.carried.append(frame)
         late = self._chance.uniform(0.0, self._noise.delay)
         arrival = max(self._free + late, self._arrivals[-1][0] if self._arrivals else 0.0)
         noise = self._noise

@@ -7,6 +7,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
+from robot_runtime.link.framing import Decoder
 from robot_runtime.link.session import Session, Stage
 from robot_runtime.packets import DEFINITIONS_HASH, Beacon, Debug, Hello, Packet, Start, decode
 from tests.line_end import LineEnd
@@ -33,6 +34,8 @@ class World:
         self._host_epoch = 1
         self._board_epoch = 0
         self._set_line(NOISE)
+        self._old_to_board: list[bytes] = []
+        self._old_to_host: list[bytes] = []
         self._beacon_at = 0.0
         self.session = Session(self._host_epoch, BAUD)
         self.restart_board()
@@ -54,6 +57,12 @@ class World:
         self.board = LineEnd(is_host=False)
         self._say(Hello(definitions=DEFINITIONS_HASH, epoch=self._board_epoch, credit=255))
         self._forget()
+
+    def replay(self, count: int) -> None:
+        """Frames of earlier sessions come once more, in any order, between those of this one."""
+        for old, wire in ((self._old_to_board, self._to_board), (self._old_to_host, self._to_host)):
+            for frame in self.chance.sample(old, min(count, len(old))):
+                wire.send(frame, self.now)
 
     def send(self) -> None:
         """Both send a number each; where they are joined it is owed to the other."""
@@ -108,6 +117,10 @@ class World:
         self._to_host.send(self.board.say(packets, self.now), self.now)
 
     def _forget(self) -> None:
+        # An old greeting is one of its own kind: it says that the other end has restarted.
+        for old, wire in ((self._old_to_board, self._to_board), (self._old_to_host, self._to_host)):
+            old += [frame for frame in wire.carried if not list(Decoder().feed(frame))]
+            wire.carried.clear()
         self.owed_to_board.clear()
         self.owed_to_host.clear()
 
@@ -131,7 +144,7 @@ def test_a_thousand_restarts_lose_nothing_and_repeat_nothing() -> None:
 
 
 class Restarts(RuleBasedStateMachine):
-    """Any order of sending, waiting and restarting."""
+    """Any order of sending, waiting, restarting and frames that come again."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -154,6 +167,10 @@ class Restarts(RuleBasedStateMachine):
     @rule()
     def board_restarts(self) -> None:
         self.world.restart_board()
+
+    @rule(count=st.integers(1, 20))
+    def old_frames_come_again(self, count: int) -> None:
+        self.world.replay(count)
 
     @rule()
     def line_is_good_for_a_while(self) -> None:

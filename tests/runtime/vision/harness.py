@@ -3,7 +3,8 @@
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.colours import DEFAULTS, Picture
+from robot_runtime.vision.colours import DEFAULTS
+from robot_runtime.vision.picture import Picture
 
 
 def drawn(time: float, card: str | None, width: int = 320, height: int = 240) -> Picture:

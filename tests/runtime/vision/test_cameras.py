@@ -12,10 +12,11 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
-from robot_runtime.vision.colours import DEFAULTS, ColourRange, Picture
+from robot_runtime.vision.colours import DEFAULTS, ColourRange
 from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
+from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import drawn
 
 FPS = 10.0

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from robot_runtime.config import ConfigError
 from robot_runtime.vision.colours import DEFAULTS, ColourRange, parse_colours
+from robot_runtime.vision.detector import find_colour
 
 WHOLE = (0, 255)
 GOOD = {"hue": [20, 35], "saturation": [100, 255], "value": [70, 255]}
@@ -23,7 +24,7 @@ def every_hue() -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
 
 @given(st.integers(0, 179), st.integers(0, 179))
 def test_hue_range_holds_its_ends_and_what_lies_between_going_up(low: int, high: int) -> None:
-    mask = ColourRange(hue=(low, high), saturation=WHOLE, value=WHOLE).mask(every_hue())[0]
+    mask = find_colour(every_hue(), ColourRange(hue=(low, high), saturation=WHOLE, value=WHOLE))[0]
     expected = {(low + step) % 180 for step in range((high - low) % 180 + 1)}
     assert {hue for hue in range(180) if mask[hue]} == expected
 
@@ -39,7 +40,7 @@ def test_saturation_and_value_count_too(part: str, index: int) -> None:
     pixel = [90, 120, 120]
     for number, inside in ((99, False), (100, True), (150, True), (151, False)):
         pixel[index] = number
-        assert bool(ColourRange(**ranges).mask(np.array([[pixel]], np.uint8))[0, 0]) is inside
+        assert bool(find_colour(np.array([[pixel]], np.uint8), ColourRange(**ranges))[0, 0]) is inside
 
 
 def test_ranges_are_parsed() -> None:

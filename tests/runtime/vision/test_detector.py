@@ -4,8 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from robot_runtime.vision.colours import DEFAULTS, Picture
+from robot_runtime.vision.colours import DEFAULTS
 from robot_runtime.vision.detector import Detector
+from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import drawn
 
 TIMES = [0.0, 0.7, 3.0, 11.3, 60.0, 1000.2]

@@ -18,6 +18,7 @@ from robot_runtime.errors import Refused
 from server.access.access import Access
 from server.access.codes import CODE_SECONDS, CODES_MAX, TooManyTries, WrongCode
 from server.access.identity import SHELL, Identity, Kind, Role
+from server.access.secret import TOKEN_PREFIX, make_token
 from server.schema import prepare
 from server.settings import DataFolder, Settings, make_folders
 from server.store import Store
@@ -70,7 +71,12 @@ class SigningIn(RuleBasedStateMachine):
         """What a server does: it knows who was paired, and no codes."""
         self.store = Store(self.settings.data.database)
         self.access = Access(
-            self.settings, self.store, self.clock, lambda *_: None, lambda one, _: self.closed.append(one)
+            self.settings,
+            self.store,
+            self.clock,
+            lambda *_: None,
+            lambda one, _: self.closed.append(one),
+            make_token(TOKEN_PREFIX),
         )
         self.access.open()
 
@@ -143,7 +149,7 @@ class SigningIn(RuleBasedStateMachine):
         if browser:
             assert known is not None
             assert secret is None
-            role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
+            role: Role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
             known.identity = Identity(known.identity.device, "tablet", role, "browser")
             assert identity == known.identity
             return known

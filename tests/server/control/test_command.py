@@ -13,7 +13,7 @@ from tests.server.waiting import until
 
 def with_address(scenario: Callable[[Served], Awaitable[None]]) -> Callable[[Served], Awaitable[None]]:
     async def run(served: Served) -> None:
-        announce(served.settings.data, "127.0.0.1", served.settings.port)
+        announce(served.settings)
         await free(served)
         await scenario(served)
 

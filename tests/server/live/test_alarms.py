@@ -1,8 +1,9 @@
+import shutil
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-import server.live.inspection as inspection_module
 from robot_runtime.samples import Alarm
 from server.live.alarms import FAULTS, Alarms
 from server.live.inspection import DOWN, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Inspection
@@ -126,9 +127,16 @@ def test_a_part_that_is_paused_is_not_wrong(room: Room) -> None:
 
 
 def test_a_disk_that_fills_up(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inspection_module, "DISK_LOW_BYTES", 1 << 62)
-    room.spend(PERIOD, all=room.hear)
-    assert room.active() == {"disk_low"}
+    disk = SimpleNamespace()
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: disk)
+    for disk.total, disk.free, low in (
+        (10**12, 499_000_000, True),
+        (10**12, 501_000_000, False),
+        (10**9, 49_000_000, True),
+        (10**9, 51_000_000, False),
+    ):
+        room.spend(PERIOD, all=room.hear)
+        assert room.active() == ({"disk_low"} if low else set())
 
 
 def test_a_database_that_fails(room: Room, store: Store) -> None:

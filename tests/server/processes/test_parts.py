@@ -60,6 +60,7 @@ def run(crew: Crew, scenario: Callable[[], Awaitable[None]]) -> None:
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(backoff_module, "FIRST", 0.01)
+    monkeypatch.setattr(backoff_module, "KILLED_MAX", 0.02)
     monkeypatch.setattr(backoff_module, "MAX", 0.04)
 
 
@@ -100,17 +101,21 @@ def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(
     run(crew, scenario)
 
 
+@pytest.mark.parametrize(
+    ("killed", "wanted"),
+    [(False, [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]), (True, [0, 0.01, 0.02, 0.02, 0.02, 0, 0.01])],
+)
 def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: bool, wanted: list[float]
 ) -> None:
     pauses: list[float] = []
     lives = iter([0, 1, 2, 3, 4, 20, 0])
     clock = SimulatedClock()
     part = Part(Command("engine", "engine", ()), PartLog(tmp_path), tmp_path, clock, lambda *_: None)
 
-    async def live() -> str:
+    async def live() -> tuple[str, bool]:
         clock.forward(next(lives))
-        return "has ended"
+        return "has ended", killed
 
     async def pause(seconds: float) -> None:
         pauses.append(seconds)
@@ -121,7 +126,7 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
     monkeypatch.setattr(asyncio, "sleep", pause)
     with suppress(asyncio.CancelledError):
         asyncio.run(part.run())
-    assert pauses == [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]
+    assert pauses == wanted
 
 
 def test_the_end_is_asked_for_first_and_then_forced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

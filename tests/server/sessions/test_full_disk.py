@@ -40,3 +40,8 @@ def test_recording_on_a_disk_that_fills_up_loses_nothing(tmp_path: Path) -> None
     assert 0 < told["stored_when_full"] < told["sent"]
     assert (told["stored"], told["state"]) == (told["sent"], "complete")
     assert (told["integrity"], told["gaps"], told["holes"]) == ("ok", [], 0)
+    assert len(told["refused_beside"]) == 3
+    for refusal in told["refused_beside"]:
+        assert "disk" in refusal
+        assert "full" in refusal or "No space left" in refusal
+    assert told["cells"] == [0, 1]

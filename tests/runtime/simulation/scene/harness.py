@@ -10,7 +10,7 @@ from robot_runtime.simulation.parameters import Vector
 from robot_runtime.simulation.scene.contents import Contents, Place, Target
 from robot_runtime.simulation.scene.water import Kind
 from robot_runtime.simulation.surroundings import Basin
-from robot_runtime.vision.colours import Picture
+from robot_runtime.vision.picture import Picture
 
 
 def truth(

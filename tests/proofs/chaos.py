@@ -1,0 +1,339 @@
+"""Everything that can go wrong, while it records: `python -m tests.proofs.chaos 3600`; status 1 for losses.
+
+Noise and cuts on the serial line, processes killed and stopped, pages that read slowly or not at all, a disk
+that fills up, a wall clock that jumps, one after the other at random. Afterwards what was counted must be
+what was done: each kill an alarm in the session, each restart a gap of its kind, no other gap or hole, and as
+many rows that a slow page missed as it was told of. In the second half nobody is killed, and memory is looked
+at.
+
+The disk is a small one in a mount namespace of its own, as anybody may have it; where the system forbids
+that, it is not filled. The clock jumps for the robot's processes alone (`wall_clock.c`).
+"""
+
+import json
+import os
+import random
+import sqlite3
+import struct
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from contextlib import closing, suppress
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from statistics import linear_regression, quantiles
+from tempfile import TemporaryDirectory
+
+import httpx
+import psutil
+
+from robot_runtime.simulation.board import Board, BoardError
+from server.sessions.chunks import decode_documents
+from tests.proofs.counting import count
+from tests.proofs.kills import row_times
+from tests.proofs.outages import World
+from tests.proofs.slow_page import SlowPage
+from tests.proofs.watching import wait
+from tests.stack import ROOT
+
+DISK = "400m"
+PAUSE = (0.5, 4.0)
+"""s between two misfortunes."""
+ROOM = 1 << 26
+"""B of the disk that are taken at once, then less and less."""
+JUMPS = (-86_400, -3600, 3600, 86_400, 10 * 365 * 86_400)
+"""s by which the wall clock is wrong, from now on."""
+SAMPLE = 1.0
+"""s between two looks at the memory."""
+PARTS = ("runtime", "board", "simulator", "scene")
+VICTIMS = (*PARTS, "server", "keeper", "second")
+WARM_UP = 0.25
+"""Of the time in which nobody is killed: in it memory may still grow."""
+LINE_SECONDS = (20.0, 600.0)
+"""s of simulated swimming on a line that damages single frames, at most."""
+
+
+@dataclass
+class Report:
+    """What was done, what came of it, and what must not be."""
+
+    seconds: float = 0.0
+    done: Counter[str] = field(default_factory=Counter)
+    alarms: Counter[str] = field(default_factory=Counter)
+    """Recorded notices, by kind."""
+    gaps: Counter[str] = field(default_factory=Counter)
+    """Recorded gaps, by "kind topic"."""
+    holes: Counter[str] = field(default_factory=Counter)
+    """Missing numbers, by topic."""
+    frames: dict[str, list[int]] = field(default_factory=dict)
+    """Damaged frames and those that were counted, by direction."""
+    pages: dict[str, list[int]] = field(default_factory=dict)
+    """Rows that slow pages missed and those that they were told of."""
+    memory: dict[str, list[float]] = field(default_factory=dict)
+    """MB at the end, and MB an hour by which it grew, by process."""
+    jitter: dict[str, float] = field(default_factory=dict)
+    """ms between two control ticks more or less than their period."""
+    samples: int = 0
+    integrity: str = ""
+    problems: list[str] = field(default_factory=list)
+
+
+class Storm:
+    """A robot, and what befalls it."""
+
+    def __init__(self, data: Path, clock: Path, seed: int, *, small_disk: bool) -> None:
+        self.report = Report()
+        self._chance = random.Random(seed)
+        self._clock = clock
+        self._world = World(data, self._chance)
+        self._stack = self._world.stack
+        self._pages = [SlowPage(self._stack, stalled=stalled) for stalled in (False, False, True, True)]
+        self._memory: dict[int, tuple[str, list[tuple[float, float]]]] = {}
+        self._sampled = 0.0
+        self._gentle: list[Callable[[], None]] = [self._noise, self._cut, self._stop, self._jump]
+        if small_disk:
+            self._gentle.append(self._fill_disk)
+
+    def close(self) -> None:
+        """End everything."""
+        for page in self._pages:
+            page.close()
+        self._world.close()
+
+    def rage(self, seconds: float) -> None:
+        """Let it befall them for so long, the second half without kills, and count afterwards."""
+        session = self._stack.api.post("/sessions", json={"name": "chaos"}).json()["id"]
+        began = time.monotonic()
+        for gentle in (False, True):
+            self._memory.clear()
+            while time.monotonic() < began + seconds * (1.0 if gentle else 0.5):
+                self._swim()
+                self._rest(self._chance.uniform(*PAUSE))
+                kinds = self._gentle if gentle else [*self._gentle, *[self._kill] * len(self._gentle)]
+                what = self._chance.choice(kinds)
+                what()
+                self._world.wait_well()
+                self._rest(0.0)
+                told = f"{time.monotonic() - began:7.1f} s {what.__name__[1:]}"
+                print(told, file=sys.stderr, flush=True)
+        self._world.calm()
+        for page in self._pages:
+            page.close()
+        answer = self._ask(lambda: self._stack.api.post(f"/sessions/{session}/stop"))
+        answer.raise_for_status()
+        self.report.seconds = time.monotonic() - began
+        self._count(session)
+
+    # Misfortunes
+
+    def _kill(self) -> None:
+        name = self._chance.choice(VICTIMS)
+        self.report.done[f"{name} killed"] += 1
+        victim = self._world.find(name)
+        victim.kill()
+        wait(lambda: self._world.is_replaced(name, victim.pid), f"a new {name}")
+
+    def _stop(self) -> None:
+        name = self._chance.choice(("server", "runtime", "simulator"))
+        self.report.done["stopped"] += 1
+        victim = self._world.find(name)
+        victim.suspend()
+        time.sleep(self._chance.uniform(0.2, 1.2))
+        victim.resume()
+
+    def _noise(self) -> None:
+        self.report.done["noise"] += 1
+        kind, rate = self._chance.choice((("bit_errors", 1e-4), ("drop", 1e-3), ("insert", 1e-3)))
+        way = self._chance.choice(("to_board", "from_board"))
+        self._line(f"line {way} {kind} {rate}", self._chance.uniform(0.5, 3.0), f"line {way} clean")
+
+    def _cut(self) -> None:
+        self.report.done["cut"] += 1
+        way = self._chance.choice(("to_board", "from_board"))
+        self._line(f"line {way} cut on", self._chance.uniform(0.1, 1.5), f"line {way} cut off")
+
+    def _line(self, wrong: str, seconds: float, right: str) -> None:
+        with suppress(BoardError), Board(self._world.folder.board_socket) as board:
+            board.order(wrong)
+            time.sleep(seconds)
+            board.order(right)
+
+    def _jump(self) -> None:
+        self.report.done["clock jumped"] += 1
+        self._clock.write_bytes(struct.pack("<q", self._chance.choice(JUMPS)))
+
+    def _fill_disk(self) -> None:
+        self.report.done["disk full"] += 1
+        ballast = self._world.folder.path / "ballast"
+        with ballast.open("wb", buffering=0) as file:
+            size, room = 0, ROOM
+            while room:
+                try:
+                    os.posix_fallocate(file.fileno(), size, room)
+                    size += room
+                except OSError:
+                    room //= 2
+        wait(lambda: self._world.viewer.tells("store_failing"), "the alarm of the full disk")
+        time.sleep(self._chance.uniform(0.0, 2.0))
+        ballast.unlink()
+        wait(lambda: not self._is_failing(), "the database to store again")
+
+    def _is_failing(self) -> bool:
+        return any(one["fault"] == "store_failing" and one["active"] for one in self._world.viewer.alarms)
+
+    # In between
+
+    def _swim(self) -> None:
+        """Armed again, where it was stopped; a refusal is not what is tested here."""
+        with suppress(httpx.TransportError):
+            self._stack.api.post("/robot/acknowledge")
+            self._stack.api.post("/robot/arm")
+
+    def _rest(self, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while True:
+            if time.monotonic() > self._sampled + SAMPLE:
+                self._sampled = time.monotonic()
+                self._weigh()
+            if time.monotonic() >= end:
+                return
+            time.sleep(min(0.1, max(end - time.monotonic(), 0.0)))
+
+    def _weigh(self) -> None:
+        for name in ("server", "keeper", "runtime"):
+            with suppress(psutil.Error, LookupError):
+                process = self._world.find(name)
+                _, weights = self._memory.setdefault(process.pid, (name, []))
+                weights.append((time.monotonic(), process.memory_full_info().uss / 1e6))
+
+    def _ask(self, question: Callable[[], httpx.Response]) -> httpx.Response:
+        while True:
+            with suppress(httpx.TransportError):
+                return question()
+
+    # Afterwards
+
+    def _count(self, session: int) -> None:
+        report, done = self.report, self.report.done
+        for page, name in zip(self._pages, ("slow 1", "slow 2"), strict=False):
+            missing, told = page.missing.total(), page.told.total()
+            report.pages[name] = [missing, told]
+            self._insist(missing == told, f"{name}: {missing} rows missing, {told} told")
+        for name, weights in self._memory.values():
+            weights = weights[round(WARM_UP * len(weights)) :]
+            if len(weights) > 1:
+                slope = linear_regression(*zip(*weights, strict=True)).slope
+                report.memory[name] = [round(weights[-1][1], 1), round(3600 * slope, 1)]
+        self._examine(session)
+        for name in PARTS:
+            self._expect(f"{name}_down", report.alarms[f"{name}_down"], done[f"{name} killed"])
+        self._expect("server_restarted", report.alarms["server_restarted"], done["server killed"])
+        self._expect("store_failing", report.alarms["store_failing"], done["disk full"])
+        self._expect("restarted state", report.gaps.pop("restarted state", 0), done["runtime killed"])
+        self._expect("restarted truth", report.gaps.pop("restarted truth", 0), done["simulator killed"])
+        others = {name: count for name, count in report.gaps.items() if not name.startswith("restarted ")}
+        self._insist(not others, f"gaps: {others}")
+        self._insist(not report.holes, f"holes: {dict(report.holes)}")
+        self._insist(report.integrity == "ok", f"the database is damaged: {report.integrity}")
+
+    def _expect(self, what: str, counted: int, injected: int) -> None:
+        self._insist(counted == injected, f"{what}: {counted} counted, {injected} injected")
+
+    def _insist(self, holds: bool, problem: str) -> None:
+        if not holds:
+            self.report.problems.append(problem)
+
+    def _examine(self, session: int) -> None:
+        report, ends, ticks = self.report, dict[str, int](), list[float]()
+        with closing(sqlite3.connect(self._world.folder.database)) as database:
+            (report.integrity,) = database.execute("PRAGMA integrity_check").fetchone()
+            (state,) = database.execute("SELECT state FROM session WHERE id = ?", (session,)).fetchone()
+            self._insist(state == "complete", f"the session is {state}")
+            gaps = database.execute("SELECT kind, topic FROM gap WHERE session_id = ?", (session,))
+            report.gaps = Counter(f"{kind} {topic}" for kind, topic in gaps)
+            chunks = database.execute(
+                "SELECT topic, first, count, data FROM chunk WHERE session_id = ? ORDER BY topic, number",
+                (session,),
+            )
+            for topic, first, number, data in chunks:
+                # Below what is expected its sender has begun to count anew.
+                if first > ends.get(topic, first):
+                    report.holes[topic] += first - ends[topic]
+                ends[topic] = first + number
+                report.samples += number
+                if topic == "control":
+                    ticks += row_times(topic, data)
+                elif topic == "notice":
+                    report.alarms.update(
+                        one["kind"] for one in decode_documents(data) if not one["text"].startswith("Over")
+                    )
+        late = [1000 * abs(after - before - 0.1) for before, after in pairwise(ticks)]
+        cuts = quantiles(late, n=1000)
+        report.jitter = {"p50": round(cuts[499], 2), "p99": round(cuts[989], 2), "max": round(max(late), 1)}
+
+
+def storm(folder: Path, seconds: float, seed: int, *, small_disk: bool) -> Report:
+    """In this folder, on a disk of its own where it is a small one."""
+    library, clock = folder / "wall_clock.so", folder / "wall_clock"
+    clock.write_bytes(struct.pack("<q", 0))
+    source = Path(__file__).with_name("wall_clock.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-o", str(library), str(source), "-ldl"], check=True)
+    os.environ |= {"LD_PRELOAD": str(library), "MUCAT_WALL_CLOCK": str(clock)}
+    one = Storm(folder / "data", clock, seed, small_disk=small_disk)
+    try:
+        one.rage(seconds)
+    finally:
+        one.close()
+    del os.environ["LD_PRELOAD"]
+    to_host, to_board = count(min(max(seconds / 6, LINE_SECONDS[0]), LINE_SECONDS[1]), seed)
+    report = one.report
+    report.frames = {
+        "to host": [to_host.damaged, to_host.invalid],
+        "unreliable to host": [to_host.unreliable, to_host.missed],
+        "to board": [to_board.damaged, to_board.invalid],
+    }
+    for way, (damaged, counted) in report.frames.items():
+        if damaged != counted or not damaged:
+            report.problems.append(f"frames {way}: {damaged} damaged, {counted} counted")
+    return report
+
+
+def run(seconds: float, seed: int, folder: Path) -> str:
+    """A storm in a process of its own, on a small disk where the system lets us; its report as JSON."""
+    command = [sys.executable, "-m", "tests.proofs.chaos", str(seconds), str(seed), str(folder)]
+    mount = f'mount -t tmpfs -o size={DISK} tmpfs "{folder}" && exec "$@"'
+    namespace = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", mount, "sh"]
+    try:
+        can = subprocess.run([*namespace, "true"], capture_output=True).returncode == 0
+    except FileNotFoundError:
+        can = False
+    done = subprocess.run(
+        [*namespace, *command, "small"] if can else command,
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    return done.stdout
+
+
+def main() -> int:
+    """Exit status."""
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 3600.0
+    if len(sys.argv) > 3:
+        seed, folder = int(sys.argv[2]), Path(sys.argv[3])
+        small = sys.argv[4:] == ["small"]
+        report = storm(folder, seconds, seed, small_disk=small)
+        print(json.dumps(vars(report), indent=2))
+        return 1 if report.problems else 0
+    with TemporaryDirectory(prefix="mucat-") as name:
+        text = run(seconds, int(time.time()), Path(name))
+    print(text)
+    return 0 if text and not json.loads(text)["problems"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,96 @@
+"""Frames of the serial line damaged one by one: does each end count exactly those that were damaged?
+
+The emulated chip and the runtime's end of the line, in simulated time. In each chosen frame one bit is
+changed, but never so that a byte becomes the zero that ends a frame: then one damaged frame is one, and every
+single bit is one that the CRC must see.
+"""
+
+import random
+from dataclasses import dataclass
+
+from cobs.cobs import decode
+
+from robot_runtime.config import LinkConfig
+from robot_runtime.firmware import firmware_path
+from robot_runtime.packets import PACKETS, Status
+from robot_runtime.scenario.boards import BUILD
+from robot_runtime.simulation.emulated_board import EmulatedBoard
+from robot_runtime.simulation.stepped_board import Water
+from tests.runtime.control.flight import Flight
+
+SHARE = 0.02
+"""Of the frames that are damaged."""
+SETTLE = 1.0
+"""s, in which the next frames tell what was missing."""
+
+
+@dataclass
+class Counts:
+    """Of one direction: how many frames were damaged, and how many of them the receiver has counted.
+
+    `unreliable` of them are sent once; the host counts as `missed` what the numbers show to be missing.
+    """
+
+    damaged: int = 0
+    invalid: int = 0
+    unreliable: int = 0
+    missed: int = 0
+
+
+class Wire(EmulatedBoard):
+    """A board on a line that damages frames."""
+
+    def __init__(self, water: Water, seed: int) -> None:
+        self.to_host, self.to_board = Counts(), Counts()
+        self.share = 0.0
+        self._chance = random.Random(seed)
+        self._partial = b""
+        super().__init__(BUILD / "board", firmware_path(BUILD, LinkConfig().baud, ".elf"), water)
+
+    def run(self, periods: int) -> bytes:
+        """Let time pass; what came for the host, some of it damaged."""
+        *frames, self._partial = (self._partial + super().run(periods)).split(b"\0")
+        return b"".join(self._pass(frame, self.to_host) + b"\0" for frame in frames)
+
+    def write(self, data: bytes) -> None:
+        """Put these frames on the line, some of them damaged."""
+        frames = data.split(b"\0")
+        assert frames.pop() == b"", "the host writes whole frames"
+        super().write(b"".join(self._pass(frame, self.to_board) + b"\0" for frame in frames))
+
+    def _pass(self, frame: bytes, counts: Counts) -> bytes:
+        if not frame or self._chance.random() >= self.share:
+            return frame
+        counts.damaged += 1
+        counts.unreliable += not PACKETS[decode(frame)[1]].reliable
+        while True:
+            place, bit = self._chance.randrange(len(frame)), self._chance.randrange(8)
+            changed = frame[place] ^ 1 << bit
+            if changed:
+                return frame[:place] + bytes([changed]) + frame[place + 1 :]
+
+
+def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
+    """Swim for so long on such a line; the counts of what goes to the host, and to the board."""
+    wires: list[Wire] = []
+
+    def make(water: Water) -> Wire:
+        wires.append(Wire(water, seed))
+        return wires[0]
+
+    with Flight(make) as flight:
+        wire = wires[0]
+        told: list[Status] = []
+        flight.robot.bus.on_row("status", lambda _, __, record: told.append(Status.from_bytes(record)))
+        flight.arm()
+        flight.run(SETTLE)
+        before, board_before = flight.robot.conversation.statistics(), told[-1].frames_invalid
+        wire.share = SHARE
+        flight.run(seconds)
+        wire.share = 0.0
+        flight.run(SETTLE)
+        after = flight.robot.conversation.statistics()
+        wire.to_host.invalid = after.frames_invalid - before.frames_invalid
+        wire.to_host.missed = after.frames_missed - before.frames_missed
+        wire.to_board.invalid = told[-1].frames_invalid - board_before
+    return wire.to_host, wire.to_board

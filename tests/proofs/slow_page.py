@@ -1,0 +1,89 @@
+"""A page on a poor connection: it reads too slowly, and counts what it is told it missed."""
+
+import json
+import threading
+from collections import Counter
+from contextlib import suppress
+
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from robot_runtime.topics import Kind, read_blocks
+from server.settings import DataFolder
+from tests.shell import shell_headers
+from tests.stack import Stack
+
+PAUSE = 0.4
+"""s between two messages; the robot sends some 25 a second."""
+STALL = 30.0
+"""s for which a page that has stopped reading keeps its connection, if it may."""
+
+
+class SlowPage:
+    """Reads slowly; `stalled` not at all. Comes back whenever it is sent away."""
+
+    def __init__(self, stack: Stack, *, stalled: bool) -> None:
+        self.told: Counter[str] = Counter()
+        """Samples that the server said it left out, by topic, ..."""
+        self.missing: Counter[str] = Counter()
+        """... and those that the numbers show to be missing."""
+        self.connections = 0
+        self._stack = stack
+        self._stalled = stalled
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._come_back, name="slow page")
+        self._thread.start()
+
+    def close(self) -> None:
+        """Go away."""
+        self._ending.set()
+        self._thread.join()
+
+    def _come_back(self) -> None:
+        while not self._ending.is_set():
+            with suppress(OSError, WebSocketException, TimeoutError):
+                self._read()
+            self._ending.wait(0.1)
+
+    def _read(self) -> None:
+        address = f"ws://127.0.0.1:{self._stack.port}/api/live"
+        signed = shell_headers(DataFolder(self._stack.data))
+        origin = Origin(self._stack.url)
+        with connect(
+            address,
+            origin=origin,
+            max_size=None,
+            max_queue=1,
+            proxy=None,
+            additional_headers=signed,
+            close_timeout=0.2,
+            ping_interval=None,
+        ) as socket:
+            self.connections += 1
+            if self._stalled:
+                # The library reads ahead no further than it must, and then nobody reads.
+                self._ending.wait(STALL)
+                return
+            expected: dict[str, int] = {}
+            pending: Counter[str] = Counter()
+            while not self._ending.wait(PAUSE):
+                self._take(socket.recv(timeout=1.0), expected, pending)
+
+    def _take(self, message: str | bytes, expected: dict[str, int], pending: Counter[str]) -> None:
+        if isinstance(message, str):
+            news = json.loads(message)
+            if news["op"] == "dropped":
+                pending[news["topic"]] += news["count"]
+            return
+        for block in read_blocks(message):
+            name = block.topic.name
+            if block.topic.kind is Kind.PICTURE:
+                continue
+            wanted = expected.get(name)
+            # Below it: its sender was started anew, and nothing can be said.
+            if wanted is not None and block.first >= wanted:
+                self.missing[name] += block.first - wanted
+                self.told[name] += pending[name]
+            del pending[name]
+            expected[name] = block.following

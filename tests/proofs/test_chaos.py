@@ -1,0 +1,16 @@
+"""A minute of `make chaos`."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.proofs.chaos import run
+
+
+@pytest.mark.timeout(400)
+def test_what_is_lost_in_a_minute_of_chaos_is_counted(tmp_path: Path) -> None:
+    report = json.loads(run(60.0, 4, tmp_path))
+    assert report["problems"] == []
+    assert report["samples"] > 0
+    assert sum(report["done"].values()) >= 5
