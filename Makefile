@@ -69,14 +69,14 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
 
+power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
+	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
+
 faults: setup-test host-firmware ## inject every fault a hundred times, and measure how soon the fins stop (FAULTS=100)
 	@nice $(PYTHON) -m tests.proofs.injections $(FAULTS)
 
 chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while it records (CHAOS_SECONDS=3600)
 	@nice $(PYTHON) -m tests.proofs.chaos $(CHAOS_SECONDS)
-
-power: setup-test ## cut the power ten thousand times while the server stores, and look for losses (CUTS=10000)
-	@nice $(PYTHON) -m tests.proofs.power $(CUTS)
 
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."

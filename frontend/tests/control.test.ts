@@ -53,6 +53,13 @@ describe('a page and the control', () => {
     expect(asked).toEqual([]);
   });
 
+  it('takes over from another page of this browser, as after a reload', () => {
+    control.greet(OPERATOR);
+    control.hear(message({ holder: { seat: 9, name: 'me' } }));
+    control.hear(message());
+    expect(asked).toEqual(['take']);
+  });
+
   it('does not take back what was given up, not even over another connection', async () => {
     control.greet(OPERATOR);
     control.hear(message({ holder: { seat: 1, name: 'me' } }));

@@ -34,7 +34,7 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         expect(request).to_be_visible()
         page.get_by_role("button", name="STOP").click()
         request.get_by_role("button", name="Keep").click()
-        expect(other.get_by_text(re.compile("keeps control"))).to_be_visible()
+        expect(other.get_by_role("status").filter(has_text="keeps control")).to_be_visible()
         expect(control(page)).to_have_accessible_name(MINE)
 
         control(page).click()
@@ -48,7 +48,7 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         other.get_by_role("button", name="Hand over", exact=True).click()
         expect(control(page)).to_have_accessible_name(MINE)
 
-        other.get_by_role("button", name="Ask for control").click()
+        ask(other)
         expect(request).to_be_visible()
         expect(control(other)).to_have_accessible_name(MINE, timeout=PASSES_MS)
         expect(request).to_be_hidden()

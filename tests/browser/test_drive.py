@@ -3,7 +3,7 @@
 import csv
 import io
 import zipfile
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any
 
 from playwright.sync_api import Page, expect
@@ -56,9 +56,9 @@ def look_away(page: Page) -> float:
     # Playwright lets every page believe that it has the focus.
     session = page.context.new_cdp_session(page)
     session.send("Emulation.setFocusEmulationEnabled", {"enabled": False})
+    page.evaluate("addEventListener('blur', () => { globalThis.left = Date.now(); })")
     page.context.new_page().bring_to_front()
-    assert not page.evaluate("document.hasFocus()")
-    return datetime.now(UTC).timestamp()
+    return float(page.wait_for_function("globalThis.left").json_value()) / 1000
 
 
 def exported(stack: Stack, session: int) -> dict[str, list[dict[str, str]]]:

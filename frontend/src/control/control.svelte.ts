@@ -53,7 +53,8 @@ export class Control {
 
   hear(message: ControlMessage): void {
     this.now = message;
-    if (message.holder !== null) this.#eager = false;
+    // What this browser has held by another page comes free when that is closed: after a reload, for one.
+    if (message.holder !== null && message.holder.name !== this.you?.name) this.#eager = false;
     this.consider();
   }
 
@@ -77,6 +78,7 @@ export class Control {
 
   readonly release = (): Promise<void> => {
     this.#released = true;
+    this.#eager = false;
     return this.#run(this.call.release());
   };
 

@@ -17,7 +17,7 @@ export const KEYS: Readonly<Record<string, Push>> = {
 };
 
 export const LEGEND = [
-  { keys: 'W S', what: 'forwards, back' },
+  { keys: 'W S', what: 'ahead, back' },
   { keys: 'A D', what: 'turn left, right' },
   { keys: 'R F', what: 'up, down' },
   { keys: 'Q E', what: 'left, right' },

@@ -167,6 +167,17 @@ class Arming(RuleBasedStateMachine):
         self.arm(mode, 0.0)
         assert self.supervisor.mode == mode
 
+    @rule(
+        mode=st.sampled_from(["automatic", "manual", "test"]),
+        what=st.sampled_from(["depth", "imu", "server", "pilot", "speaks"]),
+        seconds=st.floats(0.1, 6.0),
+    )
+    def lose_one_thing_under_way(self, mode: Any, what: str, seconds: float) -> None:
+        """And nothing else."""
+        self.begin_well(mode)
+        self.fall_silent(what)
+        self._live(seconds)
+
     @rule()
     def restart(self) -> None:
         """The board's watchdog."""
