@@ -57,6 +57,7 @@ class Field:
 
     def ask(self, method: str, path: str, body: object = None) -> requests.Response:
         """What the server answers to JSON as Python writes it, NaN and all; never a 5xx, never the secret."""
+        self.surface.take_control()
         data = None if body is None else json.dumps(body).encode()
         url = f"{self.surface.url}/api/{path}"
         answer = self.surface.session.request(method, url, data=data, headers=HEADERS, timeout=60)

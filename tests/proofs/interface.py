@@ -62,6 +62,13 @@ class Surface:
             one.ok().definition.raw["operationId"]: one.ok() for one in found if isinstance(one, Ok)
         }
 
+    def take_control(self) -> None:
+        """Have what only the control's holder may ask let through."""
+        control = f"{self.url}/api/control"
+        if self.session.post(f"{control}/take").status_code != 200:
+            self.session.headers["x-mucat-seat"] = self.session.post(f"{control}/seat").json()["key"]
+            self.session.post(f"{control}/take").raise_for_status()
+
     def connect(self) -> ClientConnection:
         """A WebSocket to /api/live."""
         headers = {name: value for name, value in self.session.headers.items() if name == "authorization"}
@@ -86,6 +93,7 @@ class Surface:
         def ask(case: AnyCase, there: bool) -> None:
             if there and "session" in (case.path_parameters or {}):
                 case.path_parameters["session"] = 1
+            self.take_control()
             response = case.call(base_url=self.url, session=self.session, timeout=PATIENCE)
             case.validate_response(response, checks=CHECKS)
 

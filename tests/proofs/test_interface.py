@@ -10,7 +10,7 @@ from server.settings import DataFolder, Settings
 from tests.board.rig import ROOT
 from tests.proofs.interface import Surface, run_surface
 
-EXAMPLES = 12
+EXAMPLES = 8
 
 
 def operations() -> list[str]:

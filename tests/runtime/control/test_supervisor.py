@@ -225,6 +225,19 @@ def test_a_board_that_restarts_or_disarms_itself_is_noticed(rig: Rig) -> None:
     assert rig.supervisor.mode == "failsafe"
 
 
+def test_a_failsafe_is_acknowledged_before_anything_arms(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.board.flags = 0
+    rig.report()
+    before = len(rig.board.sent)
+    with pytest.raises(Refused, match="Acknowledge the alarms"):
+        rig.supervisor.arm()
+    assert not any(isinstance(packet, Start) for packet in rig.board.sent[before:])
+    rig.supervisor.acknowledge()
+    rig.supervisor.arm()
+    assert rig.supervisor.armed
+
+
 def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()

@@ -1,0 +1,378 @@
+"""Every route and every message of the live socket, asked by everybody from everywhere, against one table.
+
+The table is written here by hand, and knows nothing of the server's own: what is not in it fails.
+"""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any, Literal, cast
+
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from starlette.types import Message
+
+from server.access.policy import MESSAGES
+from server.app import create_app
+from server.assembly import Assembly
+from server.schema import prepare
+from server.settings import Settings
+from tests.server.blocks import state_block
+from tests.server.runtime_end import RuntimeEnd
+from tests.server.waiting import until
+from tests.shell import shell_headers
+
+Least = Literal["anyone", "viewer", "operator", "control"]
+Who = Literal["anonymous", "viewer", "operator", "control", "program of a viewer", "program of an operator"]
+Where = Literal["right", "wrong", "missing"]
+
+ROUTES: dict[tuple[str, str], Least] = {
+    ("GET", "/{path:path}"): "anyone",
+    ("HEAD", "/{path:path}"): "anyone",
+    ("GET", "/api/openapi.json"): "viewer",
+    ("HEAD", "/api/openapi.json"): "viewer",
+    ("GET", "/api/access/me"): "anyone",
+    ("POST", "/api/access/pair"): "anyone",
+    ("POST", "/api/access/codes"): "operator",
+    ("GET", "/api/access/devices"): "operator",
+    ("PATCH", "/api/access/devices/{device}"): "operator",
+    ("DELETE", "/api/access/devices/{device}"): "operator",
+    ("POST", "/api/access/tokens"): "operator",
+    ("GET", "/api/control"): "viewer",
+    ("POST", "/api/control/seat"): "operator",
+    ("POST", "/api/control/take"): "operator",
+    ("POST", "/api/control/renew"): "operator",
+    ("POST", "/api/control/release"): "operator",
+    ("POST", "/api/control/refuse"): "control",
+    ("POST", "/api/control/hand-over"): "control",
+    ("GET", "/api/health"): "viewer",
+    ("GET", "/api/robot"): "viewer",
+    ("POST", "/api/robot/stop"): "viewer",
+    ("POST", "/api/robot/acknowledge"): "control",
+    ("POST", "/api/robot/arm"): "control",
+    ("PUT", "/api/robot/mode"): "control",
+    ("POST", "/api/robot/check-fins"): "control",
+    ("PUT", "/api/robot/controller"): "control",
+    ("PUT", "/api/robot/set-points"): "control",
+    ("PUT", "/api/robot/steering"): "control",
+    ("PUT", "/api/robot/card"): "control",
+    ("PUT", "/api/robot/vision"): "control",
+    ("PUT", "/api/simulator"): "control",
+    ("PUT", "/api/scene/view"): "operator",
+    ("GET", "/api/link/frames"): "viewer",
+    ("GET", "/api/storage"): "viewer",
+    ("GET", "/api/sessions"): "viewer",
+    ("POST", "/api/sessions"): "operator",
+    ("GET", "/api/sessions/{session}"): "viewer",
+    ("PATCH", "/api/sessions/{session}"): "operator",
+    ("DELETE", "/api/sessions/{session}"): "operator",
+    ("POST", "/api/sessions/{session}/stop"): "operator",
+    ("POST", "/api/sessions/{session}/restore"): "operator",
+    ("POST", "/api/sessions/{session}/purge"): "operator",
+    ("GET", "/api/sessions/{session}/thumbnail"): "viewer",
+    ("GET", "/api/sessions/{session}/csv"): "viewer",
+    ("GET", "/api/sessions/{session}/timeline"): "viewer",
+    ("GET", "/api/sessions/{session}/blocks"): "viewer",
+    ("GET", "/api/sessions/{session}/signals"): "viewer",
+    ("POST", "/api/sessions/{session}/markers"): "operator",
+    ("PATCH", "/api/sessions/{session}/markers/{mark}"): "operator",
+    ("DELETE", "/api/sessions/{session}/markers/{mark}"): "operator",
+    ("POST", "/api/compare"): "viewer",
+    ("POST", "/api/compare/lines"): "viewer",
+    ("GET", "/api/compare/report"): "viewer",
+    ("GET", "/api/exports"): "viewer",
+    ("POST", "/api/exports"): "operator",
+    ("GET", "/api/exports/{export}"): "viewer",
+    ("DELETE", "/api/exports/{export}"): "operator",
+    ("GET", "/api/exports/{export}/file"): "viewer",
+    ("POST", "/api/imports"): "operator",
+    ("GET", "/api/comm-tests/documents"): "viewer",
+    ("POST", "/api/comm-tests/check"): "viewer",
+    ("GET", "/api/comm-tests/runs"): "viewer",
+    ("POST", "/api/comm-tests/runs"): "operator",
+    ("POST", "/api/comm-tests/cancel"): "operator",
+    ("GET", "/api/comm-tests/runs/{run}"): "viewer",
+    ("GET", "/api/comm-tests/runs/{run}/csv"): "viewer",
+    ("GET", "/api/comm-tests/runs/{run}/json"): "viewer",
+    ("GET", "/api/comm-tests/tables"): "viewer",
+    ("GET", "/api/scenarios"): "viewer",
+    ("POST", "/api/scenarios"): "operator",
+    ("POST", "/api/scenarios/check"): "viewer",
+    ("GET", "/api/scenarios/state"): "viewer",
+    ("POST", "/api/scenarios/runs"): "operator",
+    ("POST", "/api/scenarios/cancel"): "operator",
+    # The last: whoever has asked for it has to be paired again.
+    ("POST", "/api/access/sign-out"): "viewer",
+}
+LIVE: dict[str, Least] = {"ping": "viewer", "watch": "viewer", "stop": "viewer", "drive": "control"}
+SOCKETS = {"/api/live"}
+
+ROLES: dict[Who, int] = {
+    "anonymous": 0,
+    "viewer": 1,
+    "program of a viewer": 1,
+    "operator": 2,
+    "program of an operator": 2,
+    "control": 3,
+}
+LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3}
+SAFE = {"GET", "HEAD"}
+REFUSED = {401, 403, 423}
+FAULTS_ALLOWED = {503, 504, 507}
+"""There is no scene and no simulator, and an import says that it is larger than the disk."""
+ABSENT = dict.fromkeys(("session", "mark", "run", "device"), "999") | {
+    "export": "0" * 16,
+    "path": "x.html",
+}
+
+
+def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) -> int | None:
+    """The status with which this is refused; None where it is let through."""
+    browser = who in ("viewer", "operator", "control")
+    if host != "right" or origin == "wrong":
+        return 403
+    if who == "anonymous":
+        return None if least == "anyone" else 401
+    if browser and origin == "missing" and not safe:
+        return 403
+    if ROLES[who] >= LEAST[least]:
+        return None
+    return 423 if ROLES[who] == 2 else 403
+
+
+@dataclass
+class Somebody:
+    """Who asks, by what is sent with each request."""
+
+    headers: dict[str, str] = field(default_factory=dict)
+
+
+class House:
+    """The whole application in this event loop, with the runtime's end, and everybody who asks."""
+
+    def __init__(self, app: FastAPI, settings: Settings, runtime: RuntimeEnd) -> None:
+        self.app = app
+        self.own = f"127.0.0.1:{settings.port}"
+        self.assembly: Assembly = app.state.assembly
+        self.runtime = runtime
+        self.people: dict[Who, Somebody] = {"anonymous": Somebody()}
+        self.shell = Somebody(shell_headers(settings.data))
+
+    def places(self, host: Where, origin: Where) -> dict[str, str]:
+        """The headers that say from where something is asked."""
+        names = {"right": self.own, "wrong": "evil.example:8000"}
+        said = {} if host == "missing" else {"host": names[host]}
+        return said if origin == "missing" else said | {"origin": f"http://{names[origin]}"}
+
+    async def ask(
+        self, who: Somebody, method: str, path: str, places: dict[str, str], body: object = None
+    ) -> tuple[int, dict[str, str], bytes]:
+        """The status, headers and body of an answer."""
+        data = json.dumps({} if body is None else body).encode()
+        # An archive that says it is so large is refused before a process looks at it.
+        size = 10**15 if path == "/api/imports" else len(data)
+        headers = places | who.headers | {"content-length": str(size), "content-type": "application/json"}
+        scope = self._scope("http", path, headers) | {"method": method, "scheme": "http"}
+        sent: list[Message] = []
+        parts = iter([{"type": "http.request", "body": data, "more_body": False}])
+
+        async def receive() -> Message:
+            return next(parts, {"type": "http.disconnect"})
+
+        async def send(message: Message) -> None:
+            sent.append(message)
+
+        await self.app(scope, receive, send)
+        named = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
+        return sent[0]["status"], named, b"".join(part.get("body", b"") for part in sent[1:])
+
+    async def enter(self, who: Who) -> Somebody:
+        """Somebody who has just signed in."""
+        role = "viewer" if "viewer" in who else "operator"
+        return await (self._program(role) if who.startswith("program") else self._pair(role))
+
+    async def _pair(self, role: str) -> Somebody:
+        right = self.places("right", "right")
+        _, _, told = await self.ask(self.shell, "POST", "/api/access/codes", right, {"role": role})
+        wanted = {"code": json.loads(told)["code"], "name": role}
+        status, headers, _ = await self.ask(Somebody(), "POST", "/api/access/pair", right, wanted)
+        assert status == 200
+        return Somebody({"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"})
+
+    async def _program(self, role: str) -> Somebody:
+        right = self.places("right", "missing")
+        wanted = {"name": role, "role": role}
+        _, _, told = await self.ask(self.shell, "POST", "/api/access/tokens", right, wanted)
+        return Somebody({"authorization": f"Bearer {json.loads(told)['token']}"})
+
+    @asynccontextmanager
+    async def socket(self, who: Somebody, places: dict[str, str]) -> AsyncIterator["LiveSocket"]:
+        """A live socket, let in or not."""
+        socket = LiveSocket()
+        scope = self._scope("websocket", "/api/live", places | who.headers) | {"scheme": "ws"}
+        running = asyncio.create_task(self.app(scope | {"subprotocols": []}, socket.receive, socket.send))
+        try:
+            await until(lambda: socket.opened is not None, "an answer to the handshake")
+            yield socket
+        finally:
+            socket.to_server.put_nowait({"type": "websocket.disconnect", "code": 1000})
+            await running
+
+    def _scope(self, kind: str, path: str, headers: dict[str, str]) -> dict[str, Any]:
+        return {
+            "type": kind,
+            "asgi": {"version": "3.0"},
+            "http_version": "1.1",
+            "path": path,
+            "raw_path": path.encode(),
+            "query_string": b"",
+            "root_path": "",
+            "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
+            "client": ("127.0.0.1", 50000),
+            "server": ("127.0.0.1", 8000),
+        }
+
+
+class LiveSocket:
+    """The page's end; `opened` is None until the handshake is answered."""
+
+    def __init__(self) -> None:
+        self.opened: bool | None = None
+        self.told: list[dict[str, Any]] = []
+        self.to_server: asyncio.Queue[Message] = asyncio.Queue()
+        self.to_server.put_nowait({"type": "websocket.connect"})
+
+    async def receive(self) -> Message:
+        """What the server hears."""
+        return await self.to_server.get()
+
+    async def send(self, message: Message) -> None:
+        """What the server says."""
+        if message["type"] in ("websocket.accept", "websocket.close"):
+            self.opened = self.opened or message["type"] == "websocket.accept"
+        elif (text := message.get("text")) is not None:
+            self.told.append(json.loads(text))
+
+    async def hello(self) -> dict[str, Any]:
+        """The greeting."""
+        await until(lambda: self.told, "the greeting")
+        return self.told[0]
+
+    async def say(self, message: dict[str, Any]) -> list[str]:
+        """Say this; the errors that are told of it."""
+        before = len(self.told)
+        for one in (message, {"op": "ping", "id": before}):
+            self.to_server.put_nowait({"type": "websocket.receive", "text": json.dumps(one)})
+        await until(lambda: {"op": "pong", "id": before} in self.told, "the answer to a ping")
+        return [one["text"] for one in self.told[before:] if one["op"] == "error"]
+
+
+@asynccontextmanager
+async def open_house(settings: Settings) -> AsyncIterator[House]:
+    """A running application, and everybody signed in; who is in control has a live page."""
+    prepare(settings.data)
+    app = create_app(settings)
+    with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
+        async with app.router.lifespan_context(app):
+            house = House(app, settings, runtime)
+            await until(lambda: runtime.is_heard("stream"), "the server to listen")
+            runtime.publish(state_block(0))
+            await until(house.assembly.watch.state, "the state")
+            for who in ROLES:
+                if who != "anonymous":
+                    house.people[who] = await house.enter(who)
+            right = house.places("right", "right")
+            async with house.socket(house.people["control"], right) as live:
+                house.people["control"].headers["x-mucat-seat"] = (await live.hello())["seat_key"]
+                yield house
+
+
+def routes() -> Iterator[tuple[str, str]]:
+    """What the application has, but for sockets."""
+    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None)))
+    for route in iter_route_contexts(app.routes):
+        for method in getattr(route, "methods", None) or ():
+            yield method, str(route.path)
+
+
+def test_every_route_has_an_entry_and_every_entry_a_route() -> None:
+    assert set(routes()) == set(ROUTES)
+    app = create_app(Settings(data=cast("Any", None), config=cast("Any", None)))
+    assert {one.path for one in iter_route_contexts(app.routes) if not one.methods} == SOCKETS
+
+
+def test_every_message_has_an_entry_and_every_entry_a_message() -> None:
+    assert MESSAGES.keys() == LIVE.keys()
+
+
+WHERE: tuple[Where, ...] = ("right", "wrong", "missing")
+
+
+def test_every_route_lets_in_whom_the_table_says(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with open_house(settings) as house:
+            surprises = [one for who in ROLES for one in await ask_everything(house, who)]
+            assert surprises == []
+
+    asyncio.run(scenario())
+
+
+async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
+    """Everything that is not as the table says."""
+    surprises: list[tuple[object, ...]] = []
+    right = house.places("right", "right")
+    for (method, template), least in ROUTES.items():
+        path = template.replace(":path", "").format(**ABSENT)
+        for host in WHERE:
+            for origin in WHERE:
+                # Whoever has control may have given it back a moment ago.
+                await house.ask(house.people["control"], "POST", "/api/control/take", right)
+                places = house.places(host, origin)
+                status, _, body = await house.ask(house.people[who], method, path, places)
+                wanted = expected(who, least, safe=method in SAFE, host=host, origin=origin)
+                fine = status == wanted if wanted else status not in REFUSED
+                fault = status >= 500 and status not in FAULTS_ALLOWED
+                if not fine or fault:
+                    surprises.append((who, method, template, host, origin, wanted, status, body[:200]))
+                if status == 204 and template.endswith("/sign-out"):
+                    house.people[who] = await house.enter(who)
+    return surprises
+
+
+def test_every_message_is_obeyed_for_whom_the_table_says(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with open_house(settings) as house:
+            for who in ROLES:
+                for host in WHERE:
+                    for origin in WHERE:
+                        wanted = expected(who, "viewer", safe=False, host=host, origin=origin)
+                        async with house.socket(house.people[who], house.places(host, origin)) as socket:
+                            assert socket.opened is (wanted is None), (who, host, origin)
+                            if wanted is None:
+                                await say_everything(house, who, socket)
+
+    asyncio.run(scenario())
+
+
+async def say_everything(house: House, who: Who, socket: LiveSocket) -> None:
+    """Each message that there is, and one that there is not."""
+    hello = await socket.hello()
+    assert await socket.say({"op": "nothing"}) != []
+    assert await socket.say({"op": "watch", "pictures": []}) == []
+    before = len(house.runtime.asked)
+    assert await socket.say({"op": "stop"}) == []
+    await until(lambda: ("stop", {}) in house.runtime.asked[before:], "the STOP")
+    desk = house.assembly.desk
+    if who == "control":
+        seat = desk.seats.get(hello["you"]["seat"])
+        assert seat is not None
+        for one in desk.seats:
+            desk.release(one)
+        desk.take(seat)
+    passed = desk.driving.counts.passed
+    drive = {"op": "drive", "lease": desk.lease.epoch, "sequence": 1, "axes": [0.0] * 6}
+    errors = await socket.say(drive | {"taken": house.assembly.clock.now()})
+    assert (errors != []) is (ROLES[who] < LEAST["operator"])
+    assert desk.driving.counts.passed - passed == (who == "control")
