@@ -262,9 +262,9 @@ def _run(settings: Settings) -> int:
 
 
 def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:
-    from server.access.welcome import welcome
+    from server.access.welcome import shows_pictures, welcome
 
-    lines = welcome(settings, access, certificate, picture=sys.stdout.isatty())
+    lines = welcome(settings, access, certificate, picture=shows_pictures(sys.stdout))
     print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks
 
 

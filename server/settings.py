@@ -161,14 +161,14 @@ class Settings:
     @property
     def only_here(self) -> bool:
         """Whether no other computer can reach the server."""
-        return _is_loopback(self.host)
+        return is_loopback(self.host)
 
     def base_url(self, called: str = "") -> str:
         """The server's address for a browser; `called` is the name by which somebody has just called it.
 
         Where others can reach the server, it is a name that works for them too.
         """
-        names = [name for name in self.allowed_hosts if self.only_here or not _is_loopback(name)]
+        names = [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
         name = called if called in names else (names or [self.host])[0]
         return f"{self.scheme}://{name}:{self.port}"
 
@@ -250,7 +250,8 @@ def _own_names() -> list[str]:
     return [*address, f"{name}.local", name]
 
 
-def _is_loopback(name: str) -> bool:
+def is_loopback(name: str) -> bool:
+    """Whether this address or name always means the computer that uses it."""
     try:
         return ip_address(name.strip("[]")).is_loopback
     except ValueError:

@@ -8,22 +8,22 @@ import sys
 from datetime import datetime
 from typing import Any
 
-from server.access.welcome import invitation
+from server.access.welcome import invitation, shows_pictures
 from server.running import ask
 from server.settings import DataFolder, Settings
 
 
 def perform(options: argparse.Namespace, settings: Settings) -> int:
     """Do what the command line says. Raises SetupError, with a line for a person, where it cannot be done."""
-    lines = _pair(options, settings) if options.command == "pair" else _act(options, settings.data)
+    lines = _pair(options, settings.data) if options.command == "pair" else _act(options, settings.data)
     print(*lines, sep="\n")  # noqa: T201 - a command line speaks
     return 0
 
 
-def _pair(options: argparse.Namespace, settings: Settings) -> list[str]:
-    role = options.role or ("viewer" if _has_operator(settings.data) else "operator")
-    made = ask(settings.data, "POST", "/access/codes", {"role": role})
-    lines = invitation(made["link"], sys.stdout.isatty(), settings.only_here)
+def _pair(options: argparse.Namespace, folder: DataFolder) -> list[str]:
+    role = options.role or ("viewer" if _has_operator(folder) else "operator")
+    made = ask(folder, "POST", "/access/codes", {"role": role})
+    lines = invitation(made["link"], picture=shows_pictures(sys.stdout))
     return [*lines, f"It makes the browser {'an operator' if role == 'operator' else 'a viewer'}."]
 
 

@@ -1,10 +1,13 @@
 """What the server says when it has started: where the page is, who can reach it, and how to get in."""
 
+from typing import TextIO
+from urllib.parse import urlsplit
+
 from server import VERSION
 from server.access.access import Access
 from server.access.certificate import Certificate
 from server.access.links import pairing_link, qr_text
-from server.settings import Settings
+from server.settings import Settings, is_loopback
 
 
 def welcome(
@@ -24,16 +27,21 @@ def welcome(
             f"  {certificate.fingerprint}",
         ]
     if settings.only_here or not access.devices.operators:
-        lines += invitation(pairing_link(base, access.codes.make("operator")), picture, settings.only_here)
+        lines += invitation(pairing_link(base, access.codes.make("operator")), picture=picture)
     return lines
 
 
-def invitation(link: str, picture: bool, only_here: bool) -> list[str]:
-    """A pairing link for a person; as a picture too, where a telephone could follow it."""
+def invitation(link: str, *, picture: bool) -> list[str]:
+    """A pairing link for a person; as a picture too, where another device could follow it."""
     lines = ["To sign a browser in, open this link. It works once, for ten minutes:", f"  {link}"]
-    if picture and not only_here:
+    if picture and not is_loopback(urlsplit(link).hostname or ""):
         lines.append(qr_text(link))
     return lines
+
+
+def shows_pictures(stream: TextIO) -> bool:
+    """Whether what it is read with knows the signs of which a QR code is drawn."""
+    return stream.encoding.lower().startswith("utf")
 
 
 def _reach(settings: Settings) -> str:

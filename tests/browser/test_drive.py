@@ -47,7 +47,7 @@ def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> Non
     assert max(float(row["x"]) for _, row in rows) == 1.0
     assert left - 1 < driven[-1] <= left + NEUTRAL_SECONDS
     assert any(at > left + NEUTRAL_SECONDS for at, _ in rows)
-    moved = [abs(float(row["drive_0 [V]"])) for row in tables["motor.csv"]]
+    moved = [abs(float(row["drive_0"])) for row in tables["motor.csv"]]
     assert max(moved) > 0.5
 
 

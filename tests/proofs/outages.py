@@ -23,8 +23,11 @@ from tests.stack import Stack
 
 Blow = Literal["kill", "stop"]
 
-NEUTRAL, DISARMED = 0.5, 1.0
-"""s after which the chip alone has brought silent fins to rest, and taken their power."""
+NEUTRAL, DISARMED = 0.55, 1.05
+"""s after which the chip alone has brought silent fins to rest, and taken their power.
+
+0.05 s of it is for what was under way when the host died.
+"""
 HEARTBEAT = 5.0
 """s after which a robot whose server is silent is stopped."""
 AGAIN = 2.0

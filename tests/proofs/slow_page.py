@@ -1,6 +1,7 @@
 """A page on a poor connection: it reads too slowly, and counts what it is told it missed."""
 
 import json
+import socket
 import threading
 from collections import Counter
 from contextlib import suppress
@@ -16,6 +17,8 @@ from tests.stack import Stack
 
 PAUSE = 0.4
 """s between two messages; the robot sends some 25 a second."""
+READ_AHEAD = 4096
+"""bytes"""
 STALL = 30.0
 """s for which a page that has stopped reading keeps its connection, if it may."""
 
@@ -28,7 +31,6 @@ class SlowPage:
         """Samples that the server said it left out, by topic, ..."""
         self.missing: Counter[str] = Counter()
         """... and those that the numbers show to be missing."""
-        self.connections = 0
         self._stack = stack
         self._stalled = stalled
         self._ending = threading.Event()
@@ -50,8 +52,13 @@ class SlowPage:
         address = f"ws://127.0.0.1:{self._stack.port}/api/live"
         signed = shell_headers(DataFolder(self._stack.data))
         origin = Origin(self._stack.url)
+        # Else the system would read ahead for minutes.
+        line = socket.socket()
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, READ_AHEAD)
+        line.connect(("127.0.0.1", self._stack.port))
         with connect(
             address,
+            sock=line,
             origin=origin,
             max_size=None,
             max_queue=1,
@@ -59,16 +66,14 @@ class SlowPage:
             additional_headers=signed,
             close_timeout=0.2,
             ping_interval=None,
-        ) as socket:
-            self.connections += 1
+        ) as connection:
             if self._stalled:
-                # The library reads ahead no further than it must, and then nobody reads.
                 self._ending.wait(STALL)
                 return
             expected: dict[str, int] = {}
             pending: Counter[str] = Counter()
             while not self._ending.wait(PAUSE):
-                self._take(socket.recv(timeout=1.0), expected, pending)
+                self._take(connection.recv(timeout=1.0), expected, pending)
 
     def _take(self, message: str | bytes, expected: dict[str, int], pending: Counter[str]) -> None:
         if isinstance(message, str):
