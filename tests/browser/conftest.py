@@ -77,6 +77,7 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: dict[str,
     # The next test finds the robot as this one did.
     stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
+    stack.api.post("/robot/acknowledge").raise_for_status()
     for session in stack.api.get("/sessions").json():
         if session["state"] == "recording":
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()

@@ -38,7 +38,9 @@ def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> Non
     expect_surge(page, "forwards")
     left = look_away(page)
     expect_surge(page, "")
-    stack.api.post("/robot/stop").raise_for_status()
+    # The page says nothing more; the robot rests, and at last stops by itself.
+    stopped = page.context.pages[0].get_by_text("FAILSAFE", exact=True)
+    expect(stopped).to_be_visible()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
     tables = exported(stack, session)

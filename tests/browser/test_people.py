@@ -73,8 +73,11 @@ def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, 
         page.get_by_role("button", name="Rename Safari on iPhone").click()
         page.get_by_role("table").get_by_label("Name", exact=True).fill("guest")
         page.get_by_role("button", name="Save").click()
-        page.get_by_role("button", name="Make guest operator").click()
+        with guest.expect_websocket() as coming:
+            page.get_by_role("button", name="Make guest operator").click()
         expect(you).to_contain_text("guest, operator")
+        # Only a live socket can be told why it is closed.
+        coming.value.wait_for_event("framereceived")
 
         page.get_by_role("button", name="Revoke guest").click()
         page.get_by_role("button", name="Revoke", exact=True).click()

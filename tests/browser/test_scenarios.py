@@ -43,7 +43,7 @@ def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
     happens = any_page.get_by_role("list", name="What happens").get_by_role("listitem")
     expect(happens).to_have_count(5)
     any_page.get_by_role("radio", name=re.compile("The link is lost")).check()
-    expect(happens).to_have_count(11)
+    expect(happens).to_have_count(12)
     expect(happens.nth(5)).to_contain_text("Line to the board cut")
     width = any_page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert width == 0
