@@ -23,7 +23,7 @@ from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
 from server.live.alarms import Alarms
-from server.live.bridge import SENT_BY, Bridge
+from server.live.bridge import SENT_BY, Bridge, RuntimeSilent
 from server.live.health import Watch
 from server.live.hub import Hub
 from server.live.inspection import DOWN, Inspection
@@ -57,6 +57,7 @@ class Assembly:
 
     def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
         self.settings = settings
+        self._stopping: asyncio.Task[None] | None = None
         self._ended = ended
         """How the server before this one has ended unexpectedly, a sentence."""
         self.clock: Clock = SteadyClock()
@@ -220,6 +221,13 @@ class Assembly:
 
     def _see_down(self, part: str, text: str) -> None:
         self.alarms.begin(DOWN[part], text)
+        if part == "simulator":
+            self._stopping = asyncio.create_task(self._stop_without_water())
+
+    async def _stop_without_water(self) -> None:
+        # It may be back before the sensors have frozen for long enough, with a robot that is elsewhere.
+        with suppress(Refused, RuntimeSilent):
+            await self.bridge.disarm()
 
     async def _tell_health(self) -> None:
         while True:

@@ -36,12 +36,17 @@ _ARMED_WORDS: dict[Mode, str] = {
 
 @dataclass(slots=True)
 class Arming:
-    """An attempt to arm this board; once it is `over`, `refusal` says why it failed, if it did."""
+    """An attempt to arm this board; once it is `over`, `refusal` says why it failed, if it did.
+
+    `rested`: the board has said that it is disarmed. What it said of an earlier arming, before the last STOP,
+    may be on its way still.
+    """
 
     board: Hello | None
     tries: int
     mode: Mode = "automatic"
     alone: float = 0.0
+    rested: bool = False
     over: bool = False
     refusal: str = ""
 
@@ -120,7 +125,7 @@ class Supervisor:
         with self._changed:
             arming = self.begin_arming(mode, alone)
             while not arming.over:
-                self._changed.wait_for(lambda: self.board_armed or arming.over, ARM_WAIT)
+                self._changed.wait_for(lambda: arming.over or self.board_armed == arming.rested, ARM_WAIT)
                 self.go_on_arming()
             if arming.refusal:
                 raise Refused(arming.refusal)
@@ -141,6 +146,7 @@ class Supervisor:
                 raise Refused(" ".join(reasons))
             if self._arming is None:
                 self._arming = arming = Arming(board, self._arm_tries, mode, alone)
+                arming.rested = not self.board_armed
                 self._ask_to_arm(arming)
                 return arming
             if self._arming.mode != mode:
@@ -153,9 +159,12 @@ class Supervisor:
             arming = self._arming
             if arming is None:
                 return
-            if self.board_armed:
+            if not arming.rested:
+                arming.rested = not self.board_armed
+            elif self.board_armed:
                 self._become_armed(arming)
-            elif arming.tries > 0:
+                return
+            if arming.tries > 0:
                 self._ask_to_arm(arming)
             else:
                 self._line.send(Stop())
@@ -234,7 +243,9 @@ class Supervisor:
         # Repeated because the board wants half a second of steady traffic first. It ignores what it has, and
         # the line does not carry the same twice at a time.
         arming.tries -= 1
-        if arming.board is not None:
+        if not arming.rested:
+            self._line.send(Stop())
+        elif arming.board is not None:
             self._line.send(Start(epoch=arming.board.epoch))
 
     def _end_arming(self, refusal: str) -> None:

@@ -174,7 +174,10 @@ class World:
     def arm(self) -> None:
         """Swim: with power, and fins that move."""
         wait(lambda: self.stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
-        wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
+        try:
+            wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
+        except AssertionError as problem:
+            raise AssertionError(f"{problem}: {self.viewer.state}; {self.fins.seen[-1]}") from problem
 
     def find(self, name: str) -> psutil.Process:
         """The process that is called so here."""

@@ -190,6 +190,26 @@ def test_stop_disarms_at_once_and_again_and_again(rig: Rig) -> None:
     assert [event.kind for event in rig.events] == ["armed", "disarmed"]
 
 
+def test_what_the_board_said_before_a_stop_is_not_taken_for_the_next_arming(rig: Rig) -> None:
+    rig.ready()
+    rig.supervisor.arm()
+    rig.board.obeys = False
+    obedient, rig.board.send = rig.board.send, Board.send.__get__(rig.board)  # type: ignore[method-assign]
+    rig.supervisor.stop("Enough.")
+    arming = rig.supervisor.begin_arming()
+    rig.supervisor.go_on_arming()
+    assert rig.supervisor.mode == "disarmed"
+    assert not any(isinstance(packet, Start) for packet in rig.board.sent[-3:])
+    rig.board.flags, rig.board.obeys = 0, True
+    rig.board.send = obedient  # type: ignore[method-assign]
+    rig.report()
+    rig.supervisor.go_on_arming()
+    rig.supervisor.go_on_arming()
+    assert arming.over
+    assert rig.supervisor.mode == "automatic"
+    assert rig.supervisor.alarms == []
+
+
 def test_stop_is_repeated_while_the_board_stays_armed(rig: Rig) -> None:
     rig.board.flags = StatusFlag.ARMED
     rig.report()

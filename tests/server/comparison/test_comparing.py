@@ -204,8 +204,11 @@ BAD: list[tuple[dict[str, Any], int, str]] = [
 ]
 
 
-@pytest.mark.usefixtures("session")
 def test_bad_questions_are_refused(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        record(store, settings, dive(), name="one")
+
     async def scenario(served: Served) -> None:
         for wanted, status, words in BAD:
             answer = await served.api.post("/compare", json=wanted)

@@ -195,7 +195,6 @@ def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: S
     begin_long(stack)
     session = state(stack)["active"]["session"]
     stack.kill()
-    stack.start()
     stack.wait_ready()
     wait(lambda: settings_of(stack) == before, "everything to be as before")
     wait(lambda: not (stack.data / "scenario-before.json").exists(), "nothing to be left to put back")
