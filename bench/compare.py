@@ -94,7 +94,7 @@ def _serve(data: Path) -> Iterator[httpx.Client]:
             try:
                 api.get("/api/health").raise_for_status()
                 break
-            except httpx.TransportError:
+            except httpx.HTTPError:  # also 401: its token is not there before it is
                 if process.poll() is not None or time.monotonic() > end:
                     raise
                 time.sleep(0.1)
