@@ -93,7 +93,7 @@ def create_app(
     app.add_exception_handler(UnknownDevice, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    app.add_exception_handler(NoSessionError, _not_there)
+    app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
@@ -134,10 +134,6 @@ async def _silent(_: Request, problem: Exception) -> JSONResponse:
 
 async def _not_stored(_: Request, problem: Exception) -> JSONResponse:
     return _tell(503, f"The database does not work: {problem}.")
-
-
-async def _not_there(_: Request, problem: Exception) -> JSONResponse:
-    return _tell(404, str(problem))
 
 
 async def _unreadable(_: Request, problem: Exception) -> JSONResponse:
