@@ -94,6 +94,15 @@ FAULTS = (
         remedy="The console says why. Look at the serial line and the load of this computer.",
     ),
     Fault(
+        name="runtime_stalled",
+        severity="alarm",
+        limit=1.0,
+        action="all-stop",
+        what="The robot's software stood still for longer than the board waits.",
+        cause="This computer is overloaded, or somebody suspended the process.",
+        remedy="The board had stopped the fins by itself. Look at the load of this computer; then arm again.",
+    ),
+    Fault(
         name="depth_stale",
         severity="alarm",
         limit=0.5,

@@ -220,6 +220,8 @@ class Supervisor:
         if self._loop is not None:
             self._loop.tick()
         with self._changed:
+            if self.watch.note_look() and self.armed:
+                self._fail("runtime_stalled")
             active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}
             wrong = self.watch.wrong(self.mode, active)
             self._alarms.update(wrong)

@@ -78,7 +78,7 @@ class Watch:
         self._depth = 0.0
         self._pressure: int | None = None
         self._moved, self._repeats = _NEVER, 0
-        self._server = clock.now()
+        self._server = self._looked = clock.now()
         self._vision = float("inf")
         self._ascent: tuple[float, float] | None = None
         self._sinks = False
@@ -116,6 +116,15 @@ class Watch:
     def see_picture(self, taken: float) -> None:
         """The vision node looked at a picture of that time (s)."""
         self._vision = taken
+
+    def note_look(self) -> bool:
+        """Somebody looks for faults; whether nobody had for so long that what is known may be of long ago.
+
+        What the board sent before is read first then, as if it came just now.
+        """
+        stalled = self._age(self._looked) > _limit("runtime_stalled")
+        self._looked = self._clock.now()
+        return stalled
 
     def note_stopped(self) -> None:
         """From now on the robot should rise."""

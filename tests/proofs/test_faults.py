@@ -25,4 +25,4 @@ def test_a_fault_is_told_and_the_fins_stop_in_time(row: Row) -> None:
 def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back() -> None:
     outcomes = outages.measure(1, seed=3)
     assert {one.outage for one in outcomes} == set(outages.OUTAGES)
-    assert [problem for one in outcomes for problem in one.problems] == []
+    assert [(one.outage.name, problem) for one in outcomes for problem in one.problems] == []

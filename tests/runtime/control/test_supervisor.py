@@ -173,12 +173,34 @@ def test_a_slow_line_has_its_own_measure_of_a_fresh_depth(baud: int, limit: floa
     rig = Rig(baud)
     rig.ready()
     rig.supervisor.arm()
-    rig.clock.forward(limit - 0.001)
+    rig.clock.forward(limit / 2)
+    rig.supervisor.tick()
+    rig.clock.forward(limit / 2 - 0.001)
     rig.supervisor.tick()
     assert rig.supervisor.armed
     rig.clock.forward(0.01)
     rig.supervisor.tick()
     assert not rig.supervisor.armed
+
+
+def test_after_a_standstill_what_the_board_said_before_it_counts_for_nothing(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.supervisor.tick()
+    rig.clock.forward(3.0)
+    rig.ready()
+    rig.supervisor.tick()
+    assert rig.supervisor.mode == "failsafe"
+    assert [alarm.fault for alarm in rig.supervisor.alarms] == ["runtime_stalled"]
+    assert rig.board.sent[-1] == Stop()
+
+
+def test_a_short_standstill_is_none(rig: Rig) -> None:
+    rig.supervisor.arm()
+    rig.supervisor.tick()
+    rig.clock.forward(0.89)
+    rig.ready()
+    rig.supervisor.tick()
+    assert rig.supervisor.armed
 
 
 def test_stop_disarms_at_once_and_again_and_again(rig: Rig) -> None:
