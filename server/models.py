@@ -182,3 +182,50 @@ class DeviceRow(SQLModel, table=True):
     secret: str
     paired: float
     seen: float
+
+
+class ProfileRow(SQLModel, table=True):
+    """Parameters that somebody kept under a name; `parameters` as JSON. Time is UTC (s since 1970)."""
+
+    __tablename__ = "profile"
+    __table_args__ = (UniqueConstraint("name", name="profile_name"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    note: str = ""
+    saved: float
+    parameters: str
+
+
+class TuningRunRow(SQLModel, table=True):
+    """A step response or a relay experiment, and what came of it. Time is UTC (s since 1970).
+
+    Kinds: "step", "relay". States: "running", "complete", "stopped", "failed". `settings` (what was asked),
+    `parameters` (in force then) and `figures` are JSON; `curve` is what was measured.
+    """
+
+    __tablename__ = "tuning_run"
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    kind: str
+    loop: str
+    started: float
+    state: str
+    problem: str = ""
+    settings: str
+    parameters: str
+    figures: str = ""
+    curve: bytes = b""
+
+
+class LayoutRow(SQLModel, table=True):
+    """Where the panels of Operate stand, under a name; `document` as JSON. Time is UTC (s since 1970)."""
+
+    __tablename__ = "layout"
+    __table_args__ = (UniqueConstraint("name", name="layout_name"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    saved: float
+    document: str

@@ -2,6 +2,7 @@ import { createContext } from 'svelte';
 
 export const PAGES = [
   { name: 'operate', title: 'Operate' },
+  { name: 'tune', title: 'Tune' },
   { name: 'scenarios', title: 'Scenarios' },
   { name: 'comm-tests', title: 'Comm tests' },
   { name: 'sessions', title: 'Sessions' },

@@ -25,7 +25,7 @@ from robot_runtime.simulation.sensors import Reading
 from robot_runtime.simulation.simulator import FinMotion
 from robot_runtime.simulation.stepped_board import PERIOD, SteppedBoard, Water
 from robot_runtime.vision.camera import CameraError, Frame
-from tests.proofs.watching import is_moving
+from tests.proofs.watching import Motion
 from tests.runtime.control.flight import Flight
 
 HEARTBEAT = 4.0
@@ -55,6 +55,7 @@ class Swim(Flight):
         self.moved = self.powered = self.switched_on = -inf
         """s; when the fins moved last, when the motors had power last, and when they got it."""
         self._felt = 0
+        self._motion = Motion()
         path = firmware_path(BUILD, LinkConfig().baud, ".elf").with_name(f"{elf}.elf")
         super().__init__(partial(self._make, path), more)
         self.supervisor._heartbeat = HEARTBEAT
@@ -87,7 +88,7 @@ class Swim(Flight):
         def feel(fins: FinMotion) -> Reading:
             self._felt += 1
             now = self._felt * PERIOD - PRELUDE
-            if is_moving(fins):
+            if self._motion.see(now, fins):
                 self.moved = now
             if fins.powered:
                 if now - self.powered > 2 * PERIOD:

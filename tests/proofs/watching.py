@@ -3,6 +3,7 @@
 import json
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -19,8 +20,10 @@ from server.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack
 
-MOVING = 0.5
-"""rad/s. A stroke reaches 7; below this a fin only coasts to its rest, without a drive."""
+MOVING = 1.0
+"""rad/s, over `SPAN`. A stroke reaches 7."""
+SPAN = 0.05
+"""s. In less, the chip's smallest corrections end: they put a resting fin right by up to 0.03 rad."""
 _LOOK = 0.004
 _AGAIN = 0.01
 
@@ -37,9 +40,20 @@ class Seen(NamedTuple):
     powered: bool
 
 
-def is_moving(fins: FinMotion) -> bool:
-    """Whether any fin moves."""
-    return any(abs(speed) > MOVING for speed in fins.speeds)
+class Motion:
+    """Tells from one look at the fins to the next whether any moves."""
+
+    def __init__(self) -> None:
+        self._looks: deque[tuple[float, tuple[float, ...]]] = deque()
+
+    def see(self, time: float, fins: FinMotion) -> bool:
+        """Whether any has moved in the last `SPAN`; `time` in s."""
+        looks = self._looks
+        looks.append((time, fins.angles))
+        while len(looks) > 1 and looks[1][0] <= time - SPAN:
+            looks.popleft()
+        pairs = zip(fins.angles, looks[0][1], strict=True)
+        return any(abs(now - then) > MOVING * SPAN for now, then in pairs)
 
 
 class Fins:
@@ -72,9 +86,10 @@ class Fins:
     def _look(self) -> None:
         while not self._ending.is_set():
             with suppress(BoardError), Board(self._socket) as board:
+                motion = Motion()
                 while not self._ending.wait(_LOOK):
-                    now, fins = time.monotonic(), board.fins()
-                    self.seen.append(Seen(now, board.stats()["time"], is_moving(fins), fins.powered))
+                    now, fins, there = time.monotonic(), board.fins(), board.stats()["time"]
+                    self.seen.append(Seen(now, there, motion.see(there, fins), fins.powered))
             self.seen.append(Seen(time.monotonic(), 0.0, moving=False, powered=False))
             self._ending.wait(_AGAIN)
 
