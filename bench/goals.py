@@ -54,7 +54,7 @@ GOALS = {
     "compare.open_ms": _most(1500),
     "export.csv_1h_ratio": _most(1.3),
     "export.mcap_1h_ratio": _most(1.3),
-    **_fault("pilot_quiet", 0.5),
+    **_fault("pilot_quiet", 0.5, rest=0.5),
     **_fault("pilot_lost", 3, 3),
     **_fault("server_silent", 5, 5),
     **_fault("pi_silent", 1.2, **_CHIP),

@@ -8,6 +8,7 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import asdict
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from robot_runtime.control.controllers import Controller
 from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
+from robot_runtime.control.pilot import PILOT_LOOK
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.conversation import Conversation
 from robot_runtime.link.dissection import dissect
@@ -63,7 +65,8 @@ class Core:
     `loop` stands for sensors that the board has not. With `heartbeat` a server must be heard so often (s).
 
     `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
-    That, `control_tick`, `publish_tick` and `vision.tick` may each have a thread of their own.
+    That, `take_pilot`, `publish_tick` and `vision.tick` may each have a thread of their own, and so may
+    `control_tick` with `pilot_tick`.
     """
 
     def __init__(
@@ -86,6 +89,7 @@ class Core:
         self.outbox = outbox
         self._run = run
         self._state_wanted = threading.Event()
+        self._piloted = False
         self.line = line
         self._paces = [
             Pace(topic=_ROW_OF[packet.type], period=period)
@@ -140,6 +144,19 @@ class Core:
         """Do at once what the pilot's sticks say, without waiting for the next tick."""
         if self.supervisor.pilot.take(payload):
             self.control.drive()
+
+    def pilot_tick(self) -> float:
+        """Let the fins rest as soon as the pilot has fallen silent; when to look again (s, steady clock)."""
+        pilot, now = self.supervisor.pilot, self.clock.now()
+        if self.supervisor.mode != "manual":
+            return inf
+        if pilot.quiet:
+            if self._piloted:
+                self.control.drive()
+            self._piloted = False
+            return now + PILOT_LOOK
+        self._piloted = True
+        return min(now + PILOT_LOOK, pilot.until)
 
     def look(self) -> None:
         """Look for faults; to be called every `PUBLISH_EVERY` at least."""

@@ -46,6 +46,7 @@ export class LiveFeed {
       say: (said) => this.#socket.send({ op: 'drive', ...said }),
       now: () => this.#steady.now(),
       lease: () => this.#lease(),
+      keeps: () => false,
     });
     this.live.onObserve = () => this.#watch();
   }
