@@ -17,8 +17,10 @@ from server.access.secret import TOKEN_PREFIX, make_token
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
 from server.control.lease import NotInControl
+from server.layouts.library import UnknownLayout
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
+from server.panels.own import UnknownPanel
 from server.processes.parts import Command
 from server.routes import (
     access,
@@ -27,9 +29,11 @@ from server.routes import (
     control,
     exports,
     health,
+    layouts,
     link,
     live,
     marks,
+    panels,
     replay,
     robot,
     scenarios,
@@ -91,13 +95,15 @@ def create_app(
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(UnknownDevice, _absent)
+    app.add_exception_handler(UnknownLayout, _absent)
+    app.add_exception_handler(UnknownPanel, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
-    for module in (access, *robots, *kept, comm_tests, scenarios):
+    for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app

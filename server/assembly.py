@@ -22,6 +22,7 @@ from server.control.desk import Desk
 from server.control.telling import Telling
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
+from server.layouts.library import Layouts
 from server.live.alarms import Alarms
 from server.live.bridge import SENT_BY, Bridge, RuntimeSilent
 from server.live.health import Watch
@@ -82,6 +83,7 @@ class Assembly:
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
         self.jobs = Jobs(settings.data, self.store)
         self.imports = Imports(settings.data, self.store)
+        self.layouts = Layouts(self.store)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
         self._live = Live(

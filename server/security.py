@@ -13,6 +13,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from server.refusing import SAFE_METHODS, refuse
 
 BODY_BYTES_MAX = 65_536
+FRAMED = "/api/panels/frame"
+"""What the page shows in a frame; it brings a stricter policy of its own (panels/frame.py)."""
+OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
 STREAMED = frozenset({"/api/imports"})
 """Paths that take bodies of any size, piece by piece, and see to their limits themselves."""
 HEADERS = {
@@ -85,7 +88,8 @@ def _with_headers(send: Send, scope: Scope) -> Send:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in HEADERS.items():
-                headers[name] = value
+                if scope["path"] != FRAMED or name not in OWN_POLICY or name not in headers:
+                    headers[name] = value
             if scope["path"].startswith("/api"):
                 headers.setdefault("cache-control", "no-store")
         await send(message)

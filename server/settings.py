@@ -130,6 +130,11 @@ class DataFolder:
         return self.path / "scenarios"
 
     @property
+    def panels(self) -> Path:
+        """Panels of one's own for the page (docs/panels.md)."""
+        return self.path / "panels"
+
+    @property
     def board_eeprom(self) -> Path:
         """What the emulated board remembers without power."""
         return self.path / "board.eeprom"

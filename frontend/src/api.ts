@@ -32,6 +32,8 @@ export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
+export type KeptLayout = Schemas['KeptLayout'];
+export type OwnPanel = Schemas['OwnPanel'];
 export type ThesisTable = Schemas['ThesisTable'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
@@ -154,5 +156,12 @@ export const api = {
   checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),
   startScenario: (start: ScenarioStart) => request<Schemas['ScenarioStarted']>('POST', '/scenarios/runs', start),
   cancelScenario: () => command('POST', '/scenarios/cancel'),
+  layouts: () => request<KeptLayout[]>('GET', '/layouts'),
+  layout: (id: KeptLayout['id']) => request<Schemas['WholeLayout']>('GET', `/layouts/${id}`),
+  saveLayout: (name: string, document: object) => request<KeptLayout>('POST', '/layouts', { name, document }),
+  deleteLayout: (id: KeptLayout['id']) => command('DELETE', `/layouts/${id}`),
+  ownPanels: () => request<OwnPanel[]>('GET', '/panels'),
+  ownPanel: (name: OwnPanel['name']) =>
+    request<Schemas['OwnPanelScript']>('GET', `/panels/own/${encodeURIComponent(name)}`),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

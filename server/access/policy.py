@@ -88,6 +88,13 @@ OPERATIONS: dict[str, Need] = {
     "keepScenario": Need.OPERATOR,
     "startScenario": Need.OPERATOR,
     "cancelScenario": Need.OPERATOR,
+    "listLayouts": Need.VIEWER,
+    "getLayout": Need.VIEWER,
+    "saveLayout": Need.OPERATOR,
+    "deleteLayout": Need.OPERATOR,
+    "listPanels": Need.VIEWER,
+    "getPanel": Need.VIEWER,
+    "getPanelFrame": Need.VIEWER,
 }
 """By `operation_id`. Where it depends on what is asked (a scenario on the robot), the route asks for more."""
 

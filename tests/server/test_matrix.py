@@ -104,6 +104,13 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/scenarios/state"): "viewer",
     ("POST", "/api/scenarios/runs"): "operator",
     ("POST", "/api/scenarios/cancel"): "operator",
+    ("GET", "/api/layouts"): "viewer",
+    ("POST", "/api/layouts"): "operator",
+    ("GET", "/api/layouts/{layout}"): "viewer",
+    ("DELETE", "/api/layouts/{layout}"): "operator",
+    ("GET", "/api/panels"): "viewer",
+    ("GET", "/api/panels/frame"): "viewer",
+    ("GET", "/api/panels/own/{panel}"): "viewer",
     # The last: whoever has asked for it has to be paired again.
     ("POST", "/api/access/sign-out"): "viewer",
 }
@@ -123,7 +130,7 @@ SAFE = {"GET", "HEAD"}
 REFUSED = {401, 403, 423}
 FAULTS_ALLOWED = {503, 504, 507}
 """There is no scene and no simulator, and an import says that it is larger than the disk."""
-ABSENT = dict.fromkeys(("session", "mark", "run", "device"), "999") | {
+ABSENT = dict.fromkeys(("session", "mark", "run", "device", "layout", "panel"), "999") | {
     "export": "0" * 16,
     "path": "x.html",
     "name": "heading",

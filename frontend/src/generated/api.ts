@@ -620,6 +620,54 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/layouts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The layouts that are kept
+         * @description By name.
+         */
+        get: operations["listLayouts"];
+        put?: never;
+        /**
+         * Keep a layout
+         * @description Keep it under its name, over one of that name.
+         */
+        post: operations["saveLayout"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/layouts/{layout}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A layout
+         * @description With its document as it was kept, which the page reads.
+         */
+        get: operations["getLayout"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a layout
+         * @description Delete it for good; pages that show it go on showing it.
+         */
+        delete: operations["deleteLayout"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/link/frames": {
         parameters: {
             query?: never;
@@ -632,6 +680,66 @@ export interface paths {
          * @description Asked of the runtime at each call; it costs nothing where nobody calls.
          */
         get: operations["getLinkFrames"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One's own panels
+         * @description Those in the folder `panels` of the data folder, by name.
+         */
+        get: operations["listPanels"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/frame": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Where one's own panels run
+         * @description A page with an origin of its own, which hears samples and can ask nobody for anything.
+         */
+        get: operations["getPanelFrame"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/own/{panel}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A panel's script
+         * @description As text, which the page hands to a frame.
+         */
+        get: operations["getPanel"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2010,6 +2118,21 @@ export interface components {
             wanted: components["schemas"]["Wanted"];
         };
         /**
+         * KeptLayout
+         * @description A layout by its name.
+         */
+        KeptLayout: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
+        };
+        /**
          * Known
          * @description Somebody who is signed in; device 0 is the shell of the robot's computer.
          */
@@ -2028,6 +2151,21 @@ export interface components {
              * @enum {string}
              */
             role: "viewer" | "operator";
+        };
+        /**
+         * LayoutDocument
+         * @description Where the panels of Operate stand.
+         */
+        LayoutDocument: {
+            /**
+             * Format
+             * @constant
+             */
+            format: "mucat-layout";
+            /** Panels */
+            panels: components["schemas"]["PlacedPanel"][];
+            /** Version */
+            version: number;
         };
         /**
          * Line
@@ -2319,6 +2457,15 @@ export interface components {
             topics?: string[] | null;
         };
         /**
+         * NewLayout
+         * @description A layout that is to be kept under a name.
+         */
+        NewLayout: {
+            document: components["schemas"]["LayoutDocument"];
+            /** Name */
+            name: string;
+        };
+        /**
          * NewMark
          * @description A moment to be marked: s since the session's start, or null for now.
          */
@@ -2375,6 +2522,29 @@ export interface components {
             words: string;
         };
         /**
+         * OwnPanel
+         * @description A panel by the name of its file; `problem` says why it cannot be shown.
+         */
+        OwnPanel: {
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @default
+             */
+            problem: string;
+        };
+        /**
+         * OwnPanelScript
+         * @description What a panel's file holds: an ES module.
+         */
+        OwnPanelScript: {
+            /** Name */
+            name: string;
+            /** Script */
+            script: string;
+        };
+        /**
          * Pace
          * @description How often the board sends a topic on this line: s between two samples.
          */
@@ -2424,6 +2594,25 @@ export interface components {
         Place: {
             /** Here */
             here: boolean;
+        };
+        /**
+         * PlacedPanel
+         * @description A panel and where it stands, in columns and rows of the grid from its upper left corner.
+         */
+        PlacedPanel: {
+            chart?: components["schemas"]["ShownChart"] | null;
+            /** Height */
+            height: number;
+            /** Id */
+            id: string;
+            /** Panel */
+            panel: string;
+            /** Width */
+            width: number;
+            /** X */
+            x: number;
+            /** Y */
+            y: number;
         };
         /**
          * Problem
@@ -3036,6 +3225,16 @@ export interface components {
             detected?: number | null;
         };
         /**
+         * ShownChart
+         * @description What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds.
+         */
+        ShownChart: {
+            /** Seconds */
+            seconds: number;
+            /** Signals */
+            signals: string[];
+        };
+        /**
          * Signal
          * @description One number that a session holds over time; `name` is topic and column with a dot between them.
          */
@@ -3445,6 +3644,25 @@ export interface components {
             signals: string[];
             /** @description what is drawn; everything without */
             view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
+         * WholeLayout
+         * @description The same with its document, which may be of another version of the program.
+         */
+        WholeLayout: {
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
         };
     };
     responses: never;
@@ -4935,6 +5153,218 @@ export interface operations {
             };
         };
     };
+    listLayouts: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"][];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    saveLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLayout"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WholeLayout"];
+                };
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     getLinkFrames: {
         parameters: {
             query?: never;
@@ -4964,6 +5394,104 @@ export interface operations {
             };
             /** @description The runtime did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listPanels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanel"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanelFrame: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanel: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                panel: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanelScript"];
+                };
+            };
+            /** @description There is no such panel, or it cannot be read */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -116,8 +116,12 @@ export class RowRing<K extends keyof Rows> {
 
   /** The newest row as an object. */
   latest(): Rows[K] | null {
-    if (this.#length === 0) return null;
-    const place = this.place(this.#length - 1);
+    return this.#length === 0 ? null : this.row(this.#length - 1);
+  }
+
+  /** The row of this age order as an object; 0 is the oldest. */
+  row(order: number): Rows[K] {
+    const place = this.place(order);
     const row: Record<string, number | number[]> = { time: this.time[place] ?? NaN };
     for (const { field, columns } of this.#sources) {
       const numbers = columns.map((column) => column[place] ?? NaN);

@@ -1,0 +1,35 @@
+import { describe, expect, it } from 'vitest';
+import { timeToAlarm } from '../src/panels/battery';
+
+/** A ring's columns: a voltage each second. */
+function measured(volts: number[]) {
+  const time = Float64Array.from(volts, (_, second) => 1000 + second);
+  return [{ length: volts.length, time, place: (order: number) => order, firstSince: () => 0, end: volts.length, revision: 0 }, Float64Array.from(volts)] as const;
+}
+
+const falling = (seconds: number, from: number, slope: number) => Array.from({ length: seconds }, (_, at) => from + slope * at);
+
+describe('timeToAlarm', () => {
+  it('tells when a falling voltage meets the alarm', () => {
+    // From 7.2 V by 1 mV a second: at 7.0 V after 200 s, so 800 s more to 6.2 V.
+    expect(timeToAlarm(...measured(falling(201, 7.2, -0.001)))).toBeCloseTo(800, 3);
+  });
+
+  it('sees through noise', () => {
+    const noisy = falling(300, 7.2, -0.001).map((volts, at) => volts + (at % 2 === 0 ? 0.02 : -0.02));
+    expect(timeToAlarm(...measured(noisy))).toBeCloseTo(701, -2);
+  });
+
+  it('is over where the alarm is near or past', () => {
+    expect(timeToAlarm(...measured(falling(100, 6.25, -0.001)))).toBe(0);
+  });
+
+  it.each([
+    ['nothing came', []],
+    ['too little came', falling(30, 7.2, -0.001)],
+    ['it does not fall', falling(200, 7.2, 0)],
+    ['it rises', falling(200, 7.2, 0.001)],
+  ])('says nothing where %s', (_, volts) => {
+    expect(timeToAlarm(...measured(volts))).toBeNull();
+  });
+});

@@ -1,0 +1,1 @@
+"""Layouts of panels, which people keep under names."""

@@ -1,0 +1,85 @@
+"""A layout of panels as a document, the same in the database, in files and in the page (panels/layout.ts)."""
+
+from itertools import combinations
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+VERSION = 1
+COLUMNS = 24
+ROWS_MOST = 96
+PANELS_MOST = 40
+SIGNALS_MOST = 12
+
+PanelName = Annotated[str, Field(pattern=r"^(own/)?[A-Za-z0-9][A-Za-z0-9 _-]{0,59}$")]
+Word = Annotated[str, Field(min_length=1, max_length=60)]
+
+
+class ShownChart(BaseModel):
+    """What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds."""
+
+    model_config = ConfigDict(extra="forbid")
+    signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST)]
+    seconds: Annotated[float, Field(ge=1, le=3600, allow_inf_nan=False)]
+
+
+class PlacedPanel(BaseModel):
+    """A panel and where it stands, in columns and rows of the grid from its upper left corner."""
+
+    model_config = ConfigDict(extra="forbid")
+    id: Word
+    panel: PanelName
+    x: Annotated[int, Field(ge=0, lt=COLUMNS)]
+    y: Annotated[int, Field(ge=0, lt=ROWS_MOST)]
+    width: Annotated[int, Field(ge=1, le=COLUMNS)]
+    height: Annotated[int, Field(ge=1, le=ROWS_MOST)]
+    chart: ShownChart | None = None
+
+    def overlaps(self, other: "PlacedPanel") -> bool:
+        """Whether both take some of the same room."""
+        return (
+            self.x < other.x + other.width
+            and other.x < self.x + self.width
+            and self.y < other.y + other.height
+            and other.y < self.y + self.height
+        )
+
+
+class LayoutDocument(BaseModel):
+    """Where the panels of Operate stand."""
+
+    model_config = ConfigDict(extra="forbid")
+    format: Literal["mucat-layout"]
+    version: int
+    panels: Annotated[list[PlacedPanel], Field(max_length=PANELS_MOST)]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _know_the_version(cls, document: Any) -> Any:
+        # Before anything else: what another version says of its panels need mean nothing here.
+        if isinstance(document, dict) and document.get("format") == "mucat-layout":
+            version = document.get("version")
+            if version != VERSION or isinstance(version, bool):
+                raise _wrong(
+                    f"This layout is of version {str(version)[:20]}; this program reads version {VERSION}. "
+                    "Arrange the panels here, and save them anew."
+                )
+        return document
+
+    @model_validator(mode="after")
+    def _stand_apart(self) -> Self:
+        if len({one.id for one in self.panels}) < len(self.panels):
+            raise _wrong("Two of its panels have the same id.")
+        for one in self.panels:
+            if one.x + one.width > COLUMNS or one.y + one.height > ROWS_MOST:
+                raise _wrong(f"{one.panel} does not fit into {COLUMNS} columns and {ROWS_MOST} rows.")
+        for one, other in combinations(self.panels, 2):
+            if one.overlaps(other):
+                raise _wrong(f"{one.panel} and {other.panel} lie over each other.")
+        return self
+
+
+def _wrong(words: str) -> PydanticCustomError:
+    # A text of pydantic's own is a template, in which braces mean something.
+    return PydanticCustomError("layout", "{words}", {"words": words})

@@ -1,0 +1,59 @@
+"""The scripts in the folder of one's own panels; who may write there is who may write the data folder."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import BaseModel
+
+SCRIPT_BYTES_MAX = 200_000
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]{0,39}")
+
+
+class UnknownPanel(LookupError):  # noqa: N818 - it says what happened
+    """There is no such panel."""
+
+
+class OwnPanel(BaseModel):
+    """A panel by the name of its file; `problem` says why it cannot be shown."""
+
+    name: str
+    problem: str = ""
+
+
+class OwnPanelScript(BaseModel):
+    """What a panel's file holds: an ES module."""
+
+    name: str
+    script: str
+
+
+def list_panels(folder: Path) -> Sequence[OwnPanel]:
+    """All `*.js` of the folder, by name; none where there is no such folder."""
+    return [OwnPanel(name=file.stem, problem=_problem(file)) for file in sorted(folder.glob("*.js"))]
+
+
+def read_panel(folder: Path, name: str) -> OwnPanelScript:
+    """The panel of this name. Raises UnknownPanel, with what is wrong."""
+    # Looked up in the folder's own list: no name that is asked for becomes a path.
+    for file in folder.glob("*.js"):
+        if file.stem != name:
+            continue
+        if problem := _problem(file):
+            raise UnknownPanel(problem)
+        return OwnPanelScript(name=name, script=file.read_text(encoding="utf-8"))
+    raise UnknownPanel(f"There is no panel “{name}” in {folder} any more, or not yet.")
+
+
+def _problem(file: Path) -> str:
+    if not NAME.fullmatch(file.stem):
+        return f"{file.name} needs another name: up to 40 letters without accents, digits, spaces, - and _."
+    try:
+        if file.stat().st_size > SCRIPT_BYTES_MAX:
+            return f"{file.name} has more than {SCRIPT_BYTES_MAX // 1000} kB."
+        file.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        return f"{file.name} is not a text in UTF-8."
+    except OSError as problem:
+        return f"{file.name} cannot be read: {problem.strerror}."
+    return ""
