@@ -15,6 +15,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
+from robot_runtime.control.experiments import Experiments
 from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.supervisor import Supervisor
@@ -81,7 +82,8 @@ class Core:
             for packet, period in periods(config.link.baud).items()
         ]
         self.supervisor = Supervisor(clock, self.line, self.tell, loop, heartbeat)
-        self.control = ControlNode(self.bus, clock, self._navigate)
+        self.experiments = Experiments(clock, lambda told: self.bus.publish_document("experiment", told))
+        self.control = ControlNode(self.bus, clock, self._navigate, self.experiments.guide)
         self.vision = Vision(
             config.vision,
             clock,
@@ -115,6 +117,7 @@ class Core:
         self.look()
         try:
             mode = self.supervisor.mode
+            self.experiments.tick(mode)
             self.control.tick(mode == "automatic")
             if mode == "manual":
                 self.control.command(self.supervisor.pilot.command())

@@ -6,6 +6,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import SET_POINT
 from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.experiment import Wanted
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
 from robot_runtime.errors import Refused
@@ -23,11 +24,18 @@ class ControlNode:
 
     Meanwhile it may steer towards a light beacon.
 
-    `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread, since each change is one assignment that the next tick picks up.
+    `send` takes the command to the board. `guide` says what an experiment wants of a loop of this value.
+    `tick` belongs to the control loop; the rest may be called from any thread, since each change is one
+    assignment that the next tick picks up.
     """
 
-    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None]) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        clock: Clock,
+        send: Callable[[Navigation], None],
+        guide: Callable[[str, float], Wanted | None] = lambda _loop, _value: None,
+    ) -> None:
         self.controllers = {cls.name: cls() for cls in CONTROLLERS}
         self.controller: Controller = self.controllers[CONTROLLERS[0].name]
         self.set_point_default = 0.5
@@ -38,6 +46,7 @@ class ControlNode:
         self._bus = bus
         self._clock = clock
         self._send = send
+        self._guide = guide
         self._depth: tuple[float, float] | None = None
         self._seen = float("-inf")
         self._ticked: float | None = None
@@ -80,7 +89,10 @@ class ControlNode:
     def tick(self, armed: bool) -> None:
         """Decide, and send the command where the robot is armed and steers itself."""
         now = self._clock.now()
-        self._choose_set_point(now)
+        guided = None
+        if armed and self._depth is not None:
+            guided = self._guide("depth", self._depth[1])
+        self._choose_set_point(now, guided)
         if self._depth is None:
             return
         time, depth = self._depth
@@ -88,7 +100,7 @@ class ControlNode:
             self.controller.start()
             self._towards_light.start()
         seconds = now - (self._ticked or now)
-        output = self.controller.step(self.set_point, depth, seconds) if armed else 0.0
+        output = self._output(depth, seconds, guided) if armed else 0.0
         self._ticked = now if armed else None
         if armed:
             surge, yaw = self._course(now, seconds)
@@ -109,12 +121,21 @@ class ControlNode:
         fresh = now - time <= BEACON_STALE
         return self._towards_light.step(fresh and right, fresh and left, seconds)
 
-    def _choose_set_point(self, now: float) -> None:
+    def _output(self, depth: float, seconds: float, guided: Wanted | None) -> float:
+        if guided is not None and guided.output is not None:
+            # Whatever it knew before is over when it takes over again.
+            self.controller.start()
+            return guided.output
+        return self.controller.step(self.set_point, depth, seconds)
+
+    def _choose_set_point(self, now: float, guided: Wanted | None) -> None:
         seen = now - self._seen <= VISION_STALE
         wanted = self.set_point_detected if seen else self.set_point_default
+        if guided is not None:
+            wanted = guided.set_point
         if wanted != self.set_point:
             self.set_point = wanted
-            because = f": {self.colour} is seen" if seen else ""
+            because = ": an experiment" if guided is not None else f": {self.colour} is seen" if seen else ""
             self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
 
     def _take_depth(self, _: str, time: float, record: bytes) -> None:
