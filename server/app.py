@@ -37,6 +37,7 @@ from server.routes import (
     sessions,
     simulator,
     storage,
+    tuning,
 )
 from server.routes.problems import EVERYWHERE
 from server.security import Guard
@@ -46,6 +47,7 @@ from server.sessions.recorder import RecordingRefused
 from server.sessions.recording import RecordingError
 from server.settings import Settings
 from server.store import StoreError
+from server.tuning.runs import UnknownRun
 
 
 def create_app(
@@ -91,13 +93,14 @@ def create_app(
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(UnknownDevice, _absent)
+    app.add_exception_handler(UnknownRun, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
-    for module in (access, *robots, *kept, comm_tests, scenarios):
+    for module in (access, *robots, *kept, comm_tests, scenarios, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app

@@ -87,6 +87,13 @@ OPERATIONS: dict[str, Need] = {
     "keepScenario": Need.OPERATOR,
     "startScenario": Need.OPERATOR,
     "cancelScenario": Need.OPERATOR,
+    "getTuningState": Need.VIEWER,
+    "listTuningRuns": Need.VIEWER,
+    "getTuningRun": Need.VIEWER,
+    "startTuningRun": Need.CONTROL,
+    "stopTuningRun": Need.CONTROL,
+    "renameTuningRun": Need.OPERATOR,
+    "deleteTuningRun": Need.OPERATOR,
 }
 """By `operation_id`. Where it depends on what is asked (a scenario on the robot), the route asks for more."""
 
