@@ -185,6 +185,7 @@ class TuningLab:
         active.phase, active.since, active.progress = told["phase"], told["since"], told["progress"]
         active.cycles, active.text = told["cycles"], told["text"]
         active.starts.setdefault(active.phase, active.since)
+        active.began = min(active.starts.values())
         if told["phase"] in OVER:
             self._end(active)
         self.announce()
@@ -200,7 +201,7 @@ class TuningLab:
             from server.tuning.measuring import measure_run
 
             found, curve, problem = await asyncio.to_thread(
-                measure_run, active.wanted, active.gathering, active.starts, active.began, state, problem
+                measure_run, active.wanted, active.gathering, active.starts, state, problem
             )
             state = "failed" if problem and state == "complete" else state
             await self.runs.end(active.run, state, problem, found, curve)

@@ -16,20 +16,18 @@ def measure_run(
     wanted: StepStart | RelayStart,
     gathering: Gathering,
     starts: Mapping[str, float],
-    began: float,
     state: RunState,
     problem: str,
 ) -> tuple[dict[str, Any], Curve, str]:
     """What was found, the curve, and why nothing was found.
 
-    `starts` says when each phase began, `began` when the run did (s, steady clock). Only a run that is
-    complete is measured.
+    `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
     """
-    ended = starts.get(state, float("inf"))
+    began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
     if wanted.kind == "relay":
         return _relay(wanted, gathering, starts, began, ended, problem)
     step = starts.get("running", began)
-    curve = gathering.curve.between(step - LEAD if "running" in starts else began, ended, step)
+    curve = gathering.curve.between(max(began, step - LEAD), ended, step)
     if state != "complete":
         return {}, curve, problem
     figures = measure_response(curve, gathering, wanted.loop, step, ended)
