@@ -10,7 +10,7 @@ from robot_runtime.core import Core
 from robot_runtime.errors import Refused
 from robot_runtime.samples import Mode
 
-CHANGING = ("controller", "set_points", "steering")
+CHANGING = ("controller", "loop", "set_points", "steering")
 """What would change under an experiment what it measures."""
 
 
@@ -27,6 +27,7 @@ class Commands:
             "acknowledge": self._acknowledge,
             "lease": self._lease,
             "controller": self._controller,
+            "loop": self._loop,
             "set_points": self._set_points,
             "steering": self._steering,
             "card": self._card,
@@ -79,10 +80,21 @@ class Commands:
         self._robot.supervisor.pilot.change_lease(epoch)
 
     def _controller(self, question: Mapping[str, Any]) -> None:
-        gains = question.get("gains") or {}
-        if not isinstance(gains, dict):
-            raise Refused("gains must be numbers by name")
-        self._robot.control.choose(_text(question, "name"), gains)
+        self._robot.control.choose(_text(question, "name"), _gains(question))
+
+    def _loop(self, question: Mapping[str, Any]) -> None:
+        name, on = _text(question, "name"), question.get("on")
+        if on is not None and not isinstance(on, bool):
+            raise Refused(f"on is {on!r}; it must be true or false")
+        if on and name == "depth" and (reasons := self._robot.supervisor.watch.depth_refusals()):
+            raise Refused(" ".join(reasons))
+        self._robot.control.set_loop(
+            name,
+            on=on,
+            set_point=None if question.get("set_point") is None else _number(question, "set_point", 0.0),
+            controller=None if question.get("controller") is None else _text(question, "controller"),
+            gains=_gains(question),
+        )
 
     def _set_points(self, question: Mapping[str, Any]) -> None:
         control = self._robot.control
@@ -107,7 +119,13 @@ class Commands:
         mode = self._robot.supervisor.mode
         if mode != "automatic":
             raise Refused(f"The robot is {mode}. An experiment needs it armed, in automatic.")
-        self._robot.experiments.begin(*read_experiment(question, self._robot.clock))
+        control, clock = self._robot.control, self._robot.clock
+        number, loop, experiment = read_experiment(question, control.loops, clock)
+        if loop is control.heading and control.steering == "beacons":
+            raise Refused("The heading follows the beacons. Choose the course “stay” first.")
+        if loop.measured is None:
+            raise Refused(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+        self._robot.experiments.begin(number, loop, experiment)
 
     def _end_experiment(self, _: Mapping[str, Any]) -> None:
         self._robot.experiments.stop("It was stopped.")
@@ -127,6 +145,13 @@ def _mode(question: Mapping[str, Any]) -> Mode:
     if mode not in modes:
         raise Refused(f"mode is {mode!r}; it must be automatic or manual")
     return modes[mode]
+
+
+def _gains(question: Mapping[str, Any]) -> dict[str, Any]:
+    gains = question.get("gains") or {}
+    if not isinstance(gains, dict):
+        raise Refused("gains must be numbers by name")
+    return gains
 
 
 def _text(question: Mapping[str, Any], name: str) -> str:

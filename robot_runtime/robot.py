@@ -54,9 +54,9 @@ class Robot(Core):
             messages=messages,
             heartbeat=heartbeat,
         )
-        watch, pilot = self.supervisor.watch, self.supervisor.pilot
+        watch = self.supervisor.watch
         messages.subscribe(HEARTBEAT, lambda *_: watch.see_server())
-        messages.subscribe(PILOT, lambda _, payload: pilot.take(payload))
+        messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def answer(self) -> None:
         """From now on do what the other processes ask, and answer their queries, which change nothing."""

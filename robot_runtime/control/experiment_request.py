@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import SET_POINT, Range
+from robot_runtime.config import Range
 from robot_runtime.control.experiment import (
     Experiment,
     RelayExperiment,
@@ -13,10 +13,9 @@ from robot_runtime.control.experiment import (
     StepExperiment,
     StepSettings,
 )
+from robot_runtime.control.loop import ControlLoop
 from robot_runtime.errors import Refused
 
-LOOPS: Mapping[str, Range] = {"depth": SET_POINT}
-"""What the set point of each loop may be."""
 SETTLE, DURATION = Range(0, 120), Range(2, 300)
 """s."""
 AMPLITUDE, CYCLES = Range(0.1, 1.0), Range(3, 20)
@@ -24,20 +23,23 @@ HYSTERESIS_SHARE = 0.25
 """Of the way between the limits: what the relay may wait beyond the set point at most."""
 
 
-def read_experiment(question: Mapping[str, Any], clock: Clock) -> tuple[int, str, Experiment]:
+def read_experiment(
+    question: Mapping[str, Any], loops: Mapping[str, ControlLoop], clock: Clock
+) -> tuple[int, ControlLoop, Experiment]:
     """Its number, its loop, and itself. Raises Refused with what is wrong."""
-    number, loop, kind = question.get("number"), question.get("loop"), question.get("kind")
+    number, name, kind = question.get("number"), question.get("loop"), question.get("kind")
     if type(number) is not int:
         raise Refused(f"number is {number!r}; it must be a whole number")
-    if not isinstance(loop, str) or loop not in LOOPS:
-        raise Refused(f"there is no loop {loop!r}; there are {', '.join(LOOPS)}")
+    loop = loops.get(str(name))
+    if loop is None:
+        raise Refused(f"there is no loop {name!r}; there are {', '.join(loops)}")
     make = {"step": _step, "relay": _relay}.get(str(kind))
     if make is None:
         raise Refused(f"there is no experiment {kind!r}; there are step and relay")
-    return number, loop, make(question, LOOPS[loop], clock.now())
+    return number, loop, make(question, loop.limits, clock)
 
 
-def _step(question: Mapping[str, Any], loop: Range, now: float) -> Experiment:
+def _step(question: Mapping[str, Any], loop: Range, clock: Clock) -> Experiment:
     low, high = _limits(question)
     settings = StepSettings(
         start=_between(question, "start", loop),
@@ -52,10 +54,10 @@ def _step(question: Mapping[str, Any], loop: Range, now: float) -> Experiment:
         raise Refused("start and target are the same; a step leads from one to the other")
     _require_within("start", settings.start, low, high)
     _require_within("target", settings.target, low, high)
-    return StepExperiment(settings, now)
+    return StepExperiment(settings, clock)
 
 
-def _relay(question: Mapping[str, Any], loop: Range, now: float) -> Experiment:
+def _relay(question: Mapping[str, Any], loop: Range, clock: Clock) -> Experiment:
     low, high = _limits(question)
     cycles = _between(question, "cycles", CYCLES)
     if cycles != round(cycles):
@@ -70,7 +72,7 @@ def _relay(question: Mapping[str, Any], loop: Range, now: float) -> Experiment:
         high=high,
     )
     _require_within("set_point", settings.set_point, low, high)
-    return RelayExperiment(settings, now)
+    return RelayExperiment(settings, clock)
 
 
 def _limits(question: Mapping[str, Any]) -> tuple[float, float]:

@@ -44,13 +44,16 @@ class Pilot:
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 
-    def take(self, payload: bytes) -> None:
-        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1)."""
+    def take(self, payload: bytes) -> bool:
+        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
+
+        Whether it counts.
+        """
         try:
             lease, sequence, taken, axes = _read(json.loads(payload))
         except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
             self.dropped["invalid"] += 1
-            return
+            return False
         now = self._clock.now()
         if lease != self.lease:
             self.dropped["lease"] += 1
@@ -61,10 +64,17 @@ class Pilot:
         else:
             self._sequence = sequence
             self.taken, self._command = min(taken, now), Navigation(**dict(zip(AXES, axes, strict=True)))
+            return True
+        return False
+
+    @property
+    def quiet(self) -> bool:
+        """Whether the newest input is too old to count."""
+        return not self._clock.now() - self.taken <= PATIENCE
 
     def command(self) -> Navigation:
         """The newest input; neutral where that is too old."""
-        return self._command if self._clock.now() - self.taken <= PATIENCE else NEUTRAL
+        return NEUTRAL if self.quiet else self._command
 
 
 def _read(words: Any) -> tuple[int, int, float, list[float]]:

@@ -226,9 +226,7 @@ def _name(wanted: StepStart | RelayStart, force: Force) -> str:
 
 def _in_force(state: dict[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
     """The loop's controller, and what its PID's gains may be. Raises Refused where there is no such loop."""
-    depth = {"name": "depth", "controller": state["controller"], "controllers": state["controllers"]}
-    loops = state.get("loops") or [depth]
-    one = next((one for one in loops if one["name"] == loop), None)
+    one = next((one for one in state["loops"] if one["name"] == loop), None)
     if one is None:
         raise Refused(f"This robot's runtime steers no loop {loop!r}.")
     choices = {choice["name"]: choice for choice in one["controllers"]}

@@ -73,7 +73,7 @@ class Flight:
         """An input of the pilot's, as the server passes it on."""
         self._sequence = int(self.now / 0.1) + 1
         words = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
-        self.supervisor.pilot.take(json.dumps(words).encode())
+        self.robot.take_pilot(json.dumps(words).encode())
 
     def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
         arming = self.supervisor.begin_arming(mode, alone)

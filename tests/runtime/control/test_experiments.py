@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.clock import SimulatedClock
 from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
 from robot_runtime.errors import Refused
 from robot_runtime.samples import Experiment
@@ -74,15 +75,20 @@ def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
         progress = [one.progress for one in lab.told]
         assert progress == sorted(progress)
         flight.run(0.2)
-        assert flight.robot.control.set_point == 0.6
-        assert flight.robot.control.controller.name == "pid"
+        assert flight.robot.control.depth.wanted == 0.6
+        assert flight.robot.control.depth.lent is None
 
 
 def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
     wanted = StepSettings(start=0.4, target=0.7, tolerance=0.01, settle=5.0, duration=2.0, low=0.0, high=1.0)
-    experiment = StepExperiment(wanted, now=10.0)
-    swinging = [experiment.step(10.0 + 0.1 * tick, 0.4 + 0.05 * (-1) ** tick).set_point for tick in range(60)]
-    assert swinging.index(0.7) == pytest.approx(50, abs=1)
+    clock = SimulatedClock(10.0)
+    experiment = StepExperiment(wanted, clock)
+    set_points = []
+    for tick in range(60):
+        experiment.look(0.4 + 0.05 * (-1) ** tick)
+        set_points.append(experiment.loan.set_point)
+        clock.forward(0.1)
+    assert set_points.index(0.7) == pytest.approx(50, abs=1)
 
 
 def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
@@ -106,15 +112,16 @@ def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
     wanted = RelaySettings(
         set_point=1.0, amplitude=0.4, hysteresis=0.005, cycles=4, duration=300.0, low=0.0, high=2.0
     )
-    experiment = RelayExperiment(wanted, now=0.0)
-    time, position, speed = 0.0, 0.9, 0.0
+    clock = SimulatedClock(0.0)
+    experiment = RelayExperiment(wanted, clock)
+    position, speed = 0.9, 0.0
     while not experiment.over:
-        output = experiment.step(time, position).output
-        assert output is not None
+        experiment.look(position)
+        output = experiment.command(1.0 - position)
         for _ in range(10):
             speed += 0.005 * (output - load - 2.0 * speed)
             position += 0.005 * speed
-        time += 0.05
+        clock.forward(0.05)
     assert (experiment.phase, experiment.text) == ("complete", "")
     assert experiment.bias == pytest.approx(load, abs=0.4 * 0.1)
 
@@ -188,7 +195,7 @@ def test_what_cannot_be_is_refused() -> None:
         for wanted, why in WRONG:
             with pytest.raises(Refused, match=why):
                 flight.command("experiment", **wanted)
-        assert flight.robot.experiments.loop is None
+        flight.robot.experiments.require_none()
 
 
 def test_nothing_else_changes_meanwhile() -> None:
@@ -198,6 +205,7 @@ def test_nothing_else_changes_meanwhile() -> None:
         for name, question in (
             ("experiment", STEP),
             ("controller", {"name": "bang_bang"}),
+            ("loop", {"name": "depth", "gains": {"kp": 1.0}}),
             ("set_points", {"default": 1.0}),
             ("steering", {"by": "beacons"}),
         ):
