@@ -4,10 +4,14 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robot_runtime.control.experiment_request import read_experiment
 from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.core import Core
 from robot_runtime.errors import Refused
 from robot_runtime.samples import Mode
+
+CHANGING = ("controller", "loop", "set_points", "steering")
+"""What would change under an experiment what it measures."""
 
 
 class Commands:
@@ -28,7 +32,11 @@ class Commands:
             "steering": self._steering,
             "card": self._card,
             "vision": self._vision,
+            "experiment": self._experiment,
+            "end_experiment": self._end_experiment,
         }
+        for name in CHANGING:
+            handlers[name] = self._without_experiment(handlers[name])
         self.do = {name: self._announcing(handler) for name, handler in handlers.items()}
 
     def _announcing(
@@ -37,6 +45,15 @@ class Commands:
         def handle(question: Mapping[str, Any]) -> None:
             handler(question)
             self._robot.announce()
+
+        return handle
+
+    def _without_experiment(
+        self, handler: Callable[[Mapping[str, Any]], None]
+    ) -> Callable[[Mapping[str, Any]], None]:
+        def handle(question: Mapping[str, Any]) -> None:
+            self._robot.experiments.require_none()
+            handler(question)
 
         return handle
 
@@ -97,6 +114,21 @@ class Commands:
             raise Refused(f"no colour is named {colour!r}; there are {', '.join(self._robot.vision.colours)}")
         self._robot.vision.rate = rate
         self._robot.vision.colour = self._robot.control.colour = colour
+
+    def _experiment(self, question: Mapping[str, Any]) -> None:
+        mode = self._robot.supervisor.mode
+        if mode != "automatic":
+            raise Refused(f"The robot is {mode}. An experiment needs it armed, in automatic.")
+        control, clock = self._robot.control, self._robot.clock
+        number, loop, experiment = read_experiment(question, control.loops, clock)
+        if loop is control.heading and control.steering == "beacons":
+            raise Refused("The heading follows the beacons. Choose the course “stay” first.")
+        if loop.measured is None:
+            raise Refused(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+        self._robot.experiments.begin(number, loop, experiment)
+
+    def _end_experiment(self, _: Mapping[str, Any]) -> None:
+        self._robot.experiments.stop("It was stopped.")
 
 
 def read_arming(question: Mapping[str, Any]) -> tuple[Mode, float]:

@@ -16,6 +16,7 @@ from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
+from robot_runtime.control.experiments import Experiments
 from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
@@ -99,6 +100,7 @@ class Core:
             clock, self.line, self.tell, loop, heartbeat, lambda mode: self.control.change_mode(mode)
         )
         self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
+        self.experiments = Experiments(clock, lambda told: self.bus.publish_document("experiment", told))
         self.vision = Vision(
             config.vision,
             clock,
@@ -133,6 +135,7 @@ class Core:
         try:
             if self.control.depth.on and (reasons := self.supervisor.watch.depth_refusals()):
                 self.control.let_go(self.control.depth, reasons[0])
+            self.experiments.tick(self.supervisor.mode)
             self.control.tick()
             if self.supervisor.mode == "test":
                 self._check_fins()

@@ -198,3 +198,22 @@ class State(Document):
         default=0,
         metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
     )
+
+
+ExperimentKind = Literal["step", "relay"]
+ExperimentPhase = Literal["settling", "balancing", "running", "complete", "stopped", "failed"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Experiment(Document):
+    """How an experiment on a loop goes; sent at every change and twice a second, and once at its end."""
+
+    number: int = field(metadata={"meaning": "as whoever began it named it"})
+    kind: ExperimentKind
+    loop: str
+    phase: ExperimentPhase
+    since: float = field(metadata={"meaning": "s, steady clock; when this phase began"})
+    progress: float = field(metadata={"meaning": "share that is done, 0 to 1"})
+    cycles: int = field(metadata={"meaning": "of the relay, that count so far"})
+    bias: float = field(metadata={"meaning": "of the relay: the mean command that balances the load"})
+    text: str = field(metadata={"meaning": "why it ended; empty where nothing special happened"})

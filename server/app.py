@@ -41,6 +41,7 @@ from server.routes import (
     sessions,
     simulator,
     storage,
+    tuning,
 )
 from server.routes.problems import EVERYWHERE
 from server.security import Guard
@@ -50,6 +51,7 @@ from server.sessions.recorder import RecordingRefused
 from server.sessions.recording import RecordingError
 from server.settings import Settings
 from server.store import StoreError
+from server.tuning.runs import UnknownRun
 
 
 def create_app(
@@ -97,13 +99,14 @@ def create_app(
     app.add_exception_handler(UnknownDevice, _absent)
     app.add_exception_handler(UnknownLayout, _absent)
     app.add_exception_handler(UnknownPanel, _absent)
+    app.add_exception_handler(UnknownRun, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
-    for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels):
+    for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
     return app

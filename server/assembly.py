@@ -45,6 +45,8 @@ from server.sessions.session import new_row
 from server.sessions.tidying import Tidying
 from server.settings import Settings
 from server.store import Store, StoreError
+from server.tuning.lab import TuningLab
+from server.tuning.runs import Runs as TuningRuns
 
 if TYPE_CHECKING:
     from server.comparison.comparing import Comparer
@@ -100,6 +102,15 @@ class Assembly:
             self._live, Simulated(settings, self.store, self.notices), self.hub.tell
         )
         self.bridge.on_stop = self.scenarios.see_stop
+        self.tuning = TuningLab(
+            TuningRuns(self.store),
+            self.bridge,
+            self.watch,
+            self.clock,
+            self.hub.tell,
+            self.notices.tell,
+            self._scenario_on,
+        )
 
     @cached_property
     def comparer(self) -> "Comparer":
@@ -130,6 +141,7 @@ class Assembly:
             await self.imports.recover()
             self.jobs.open()
             await self.lab.runs.mark_interrupted()
+            await self.tuning.runs.mark_interrupted()
             await import_samples(self.lab.runs)
             self.access.open()
             await self.bridge.open()
@@ -144,6 +156,7 @@ class Assembly:
                 for name in SIMULATION:
                     await self.parts.pause(name, SIMULATION_ELSEWHERE)
             self.scenarios.announce()
+            self.tuning.announce()
             tasks += [
                 asyncio.create_task(work)
                 for work in (
@@ -156,6 +169,7 @@ class Assembly:
                     self.desk.run(),
                     self.telling.run(),
                     self.inspection.run(),
+                    self.tuning.run(),
                     self._tell_health(),
                 )
             ]
@@ -164,6 +178,7 @@ class Assembly:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self.tuning.close()
             await self.scenarios.close()
             await self.lab.close()
             await self.parts.stop()
@@ -189,15 +204,22 @@ class Assembly:
         for block in blocks:
             self.recorder.add(block)
             self.watch.see(block)
+            self.tuning.see(block)
             if block.topic.name == "state":
                 self.telling.see_run(self.bridge.run)
                 if self.settings.sessions.record_at_arming:
                     self.arming.see(block)
 
-    def _board_occupied(self) -> str | None:
-        run, session = self.scenarios.active, self.recorder.session
+    def _scenario_on(self) -> str | None:
+        run = self.scenarios.active
         if run is not None and run.place == "live":
             return f"The scenario “{run.scenario.title}” is being run. Cancel it first."
+        return None
+
+    def _board_occupied(self) -> str | None:
+        session = self.recorder.session
+        if (scenario := self._scenario_on()) is not None:
+            return scenario
         # What arming has begun ends by itself: lending the board disarms the robot.
         if session is None or session.origin == "arming":
             return None

@@ -200,8 +200,9 @@ class ProfileRow(SQLModel, table=True):
 class TuningRunRow(SQLModel, table=True):
     """A step response or a relay experiment, and what came of it. Time is UTC (s since 1970).
 
-    Kinds: "step", "relay". States: "running", "complete", "stopped", "failed". `settings` (what was asked),
-    `parameters` (in force then) and `figures` are JSON; `curve` is what was measured.
+    Kinds: "step", "relay". States: "running", "complete", "stopped", "failed", "interrupted". `settings`
+    (what was asked), `parameters` (the controller in force, and what a PID's gains may be) and `figures` are
+    JSON; `curve` is what was measured, in zlib.
     """
 
     __tablename__ = "tuning_run"

@@ -95,6 +95,13 @@ OPERATIONS: dict[str, Need] = {
     "listPanels": Need.VIEWER,
     "getPanel": Need.VIEWER,
     "getPanelFrame": Need.VIEWER,
+    "getTuningState": Need.VIEWER,
+    "listTuningRuns": Need.VIEWER,
+    "getTuningRun": Need.VIEWER,
+    "startTuningRun": Need.CONTROL,
+    "stopTuningRun": Need.CONTROL,
+    "renameTuningRun": Need.OPERATOR,
+    "deleteTuningRun": Need.OPERATOR,
 }
 """By `operation_id`. Where it depends on what is asked (a scenario on the robot), the route asks for more."""
 

@@ -12,6 +12,7 @@ from server.comparison.moments import History, Span
 from server.comparison.samples import Samples, Series, read_topic
 from server.comparison.step_response import StepResponse, measure_step
 from server.comparison.strokes import count_strokes
+from server.comparison.tracking import effort, rms
 from server.sessions.recording import Recording
 from server.store import Reader
 
@@ -105,9 +106,8 @@ def _depth_figures(
     inside = wanted.mask(depth.times)
     if inside.any():
         errors = _held(set_point, depth.times[inside]) - depth.values[inside]
-        rms = float(np.sqrt(np.mean(errors**2)))
         found["rmse"] = Figure(
-            value=rms, mark=FigureMark(start=wanted.spans[0].start, end=wanted.spans[-1].end)
+            value=rms(errors), mark=FigureMark(start=wanted.spans[0].start, end=wanted.spans[-1].end)
         )
     return found
 
@@ -193,7 +193,7 @@ def _effort(output: Series, wanted: Range) -> Figure:
     inside = wanted.mask(output.times)
     if not inside.any():
         return Figure(value=None, words="There is no command in this range.")
-    return Figure(value=100 * float(np.abs(output.values[inside]).mean()))
+    return Figure(value=100 * effort(output.values[inside]))
 
 
 def _strokes(recording: Recording, spans: Sequence[Span]) -> Figure:

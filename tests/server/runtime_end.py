@@ -16,6 +16,7 @@ from robot_runtime.topics import Block, Kind
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
     *("controller", "loop", "set_points", "steering", "card", "vision"),
+    *("experiment", "end_experiment"),
 )
 
 

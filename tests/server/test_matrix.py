@@ -111,6 +111,13 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/panels"): "viewer",
     ("GET", "/api/panels/frame"): "viewer",
     ("GET", "/api/panels/own/{panel}"): "viewer",
+    ("GET", "/api/tuning/state"): "viewer",
+    ("GET", "/api/tuning/runs"): "viewer",
+    ("POST", "/api/tuning/runs"): "control",
+    ("POST", "/api/tuning/stop"): "control",
+    ("GET", "/api/tuning/runs/{run}"): "viewer",
+    ("PATCH", "/api/tuning/runs/{run}"): "operator",
+    ("DELETE", "/api/tuning/runs/{run}"): "operator",
     # The last: whoever has asked for it has to be paired again.
     ("POST", "/api/access/sign-out"): "viewer",
 }

@@ -1412,6 +1412,98 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/tuning/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The runs on a loop
+         * @description Newest first, without their curves; and what the figures of a step response are.
+         */
+        get: operations["listTuningRuns"];
+        put?: never;
+        /**
+         * Begin a run
+         * @description On the armed robot, in automatic. Afterwards the loop goes on as before.
+         */
+        post: operations["startTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/runs/{run}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One run
+         * @description With its curve, and of a relay experiment with the gains that the rules propose.
+         */
+        get: operations["getTuningRun"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a run
+         * @description For good; refused while it runs.
+         */
+        delete: operations["deleteTuningRun"];
+        options?: never;
+        head?: never;
+        /**
+         * Name a run
+         * @description Call it otherwise.
+         */
+        patch: operations["renameTuningRun"];
+        trace?: never;
+    };
+    "/api/tuning/state": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What runs
+         * @description The run that is on, and the one that ended last, as on the live socket.
+         */
+        get: operations["getTuningState"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop the run that is on
+         * @description The robot stays armed, and goes on as before the run. What was measured so far is kept.
+         */
+        post: operations["stopTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -1451,6 +1543,47 @@ export interface components {
             session: number | null;
             /** Title */
             title: string;
+        };
+        /**
+         * ActiveTuning
+         * @description The run that is on.
+         */
+        ActiveTuning: {
+            /**
+             * Began
+             * @description s, steady clock
+             */
+            began: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "settling" | "balancing" | "running" | "complete" | "stopped" | "failed";
+            /** Progress */
+            progress: number;
+            /** Run */
+            run: number;
+            /** Settings */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Since
+             * @description s, steady clock, when its phase began
+             */
+            since: number;
         };
         /**
          * Alarm
@@ -2002,6 +2135,20 @@ export interface components {
             unit: string;
         };
         /**
+         * Force
+         * @description The controller in force, with its gains.
+         */
+        Force: {
+            /** Controller */
+            controller: string;
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Title */
+            title: string;
+        };
+        /**
          * Gain
          * @description One number of a controller that may be tuned.
          */
@@ -2166,6 +2313,49 @@ export interface components {
             panels: components["schemas"]["PlacedPanel"][];
             /** Version */
             version: number;
+        };
+        /**
+         * LimitCycleFound
+         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
+         */
+        LimitCycleFound: {
+            /**
+             * Amplitude
+             * @description d: of the command, either way from the bias
+             */
+            amplitude: number;
+            /**
+             * Asymmetry
+             * @description share of the cycle by which its halves differ; 0: none
+             */
+            asymmetry: number;
+            /**
+             * Bias
+             * @description mean command, which balances the load
+             */
+            bias: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Period
+             * @description ultimate period, s
+             */
+            period: number;
+            /**
+             * Remarks
+             * @description what makes these figures doubtful
+             */
+            remarks: string[];
+            /**
+             * Swing
+             * @description a: half of the height from peak to peak
+             */
+            swing: number;
+            /**
+             * Ultimate Gain
+             * @description command for each unit of the loop
+             */
+            ultimate_gain: number;
         };
         /**
          * Line
@@ -2623,6 +2813,29 @@ export interface components {
             detail: string;
         };
         /**
+         * Proposal
+         * @description Gains by a named rule.
+         */
+        Proposal: {
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Known For */
+            known_for: string;
+            /**
+             * Problem
+             * @description why these cannot be set; empty where they can
+             */
+            problem: string;
+            /** Rule */
+            rule: string;
+            /** Source */
+            source: string;
+            /** Title */
+            title: string;
+        };
+        /**
          * QueuedRun
          * @description A run that waits for its turn.
          */
@@ -2681,6 +2894,58 @@ export interface components {
              * @description s, steady clock
              */
             until: number;
+        };
+        /**
+         * RelayStart
+         * @description A relay in the place of a loop's controller.
+         */
+        RelayStart: {
+            /**
+             * Amplitude
+             * @description d, share of the most command
+             */
+            amplitude: number;
+            /**
+             * Cycles
+             * @description that are measured
+             */
+            cycles: number;
+            /**
+             * Duration
+             * @description s after which it gives up
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * Hysteresis
+             * @description ε, in the loop's unit
+             */
+            hysteresis: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "relay";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Set Point
+             * @description m, of an angle rad
+             */
+            set_point: number;
         };
         /**
          * Run
@@ -3342,6 +3607,58 @@ export interface components {
             vision_rate: number;
         };
         /**
+         * StepStart
+         * @description A step of a loop's set point.
+         */
+        StepStart: {
+            /**
+             * Duration
+             * @description s from the step on
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "step";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Settle
+             * @description s for which the start is held at most
+             */
+            settle: number;
+            /**
+             * Start
+             * @description m, of an angle rad
+             */
+            start: number;
+            /**
+             * Target
+             * @description m, of an angle rad
+             */
+            target: number;
+            /**
+             * Tolerance
+             * @description how near to the start counts as settled
+             */
+            tolerance: number;
+        };
+        /**
          * Storage
          * @description Bytes of the disk that holds the data folder, and the rules by which sessions go by themselves.
          */
@@ -3511,6 +3828,164 @@ export interface components {
             text: string;
             /** Time */
             time: number;
+        };
+        /**
+         * TuningCurve
+         * @description The loop's ticks, in its unit. Times in s: since the step, or since the relay took over.
+         */
+        TuningCurve: {
+            /** Outputs */
+            outputs: number[];
+            /** Set Points */
+            set_points: number[];
+            /** Times */
+            times: number[];
+            /** Values */
+            values: number[];
+        };
+        /**
+         * TuningName
+         * @description What a run is to be called.
+         */
+        TuningName: {
+            /** Name */
+            name: string;
+        };
+        /**
+         * TuningRun
+         * @description A run, without its curve.
+         */
+        TuningRun: {
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRunDetail
+         * @description A run with everything that is known of it.
+         */
+        TuningRunDetail: {
+            curve: components["schemas"]["TuningCurve"];
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Proposals
+             * @description of a relay experiment: gains of a PID by several rules
+             */
+            proposals: components["schemas"]["Proposal"][];
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRuns
+         * @description The runs on a loop, newest first, and what their figures are.
+         */
+        TuningRuns: {
+            /** Figures */
+            figures: components["schemas"]["FigureMeaning"][];
+            /** Runs */
+            runs: components["schemas"]["TuningRun"][];
+        };
+        /**
+         * TuningStarted
+         * @description The run that has begun.
+         */
+        TuningStarted: {
+            /** Run */
+            run: number;
+        };
+        /**
+         * TuningState
+         * @description What runs, and what ended last since the server started.
+         */
+        TuningState: {
+            active: components["schemas"]["ActiveTuning"] | null;
+            last: components["schemas"]["TuningRun"] | null;
         };
         /**
          * View
@@ -7526,6 +8001,392 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Storage"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listTuningRuns: {
+        parameters: {
+            query?: {
+                loop?: "depth" | "heading" | "pitch" | "roll";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRuns"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StepStart"] | components["schemas"]["RelayStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningStarted"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    renameTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TuningName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningState: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningState"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stopTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */

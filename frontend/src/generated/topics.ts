@@ -399,6 +399,7 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
+  experiment: 22,
   picture: 32,
   observer: 33,
   thumbnail: 34,
@@ -512,10 +513,25 @@ export interface RobotEvent {
   text: string;
 }
 
+/** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */
+export interface Experiment {
+  time: number;
+  number: number;
+  kind: 'step' | 'relay';
+  loop: string;
+  phase: 'settling' | 'balancing' | 'running' | 'complete' | 'stopped' | 'failed';
+  since: number;
+  progress: number;
+  cycles: number;
+  bias: number;
+  text: string;
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
+  experiment: Experiment;
 }

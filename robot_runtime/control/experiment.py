@@ -1,0 +1,227 @@
+"""Experiments on one loop, tick by tick: a step of its set point, or a relay in its controller's place.
+
+The loop is lent to them, and nothing of its own is changed: afterwards it goes on as it was.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from robot_runtime.clock import Clock
+from robot_runtime.control.controllers import Controller
+from robot_runtime.control.controllers.base import GainLimits
+from robot_runtime.control.loop import Loan
+from robot_runtime.samples import ExperimentKind, ExperimentPhase
+
+SETTLED_SECONDS = 2.0
+"""s for which the value has to have stayed about the start before the step."""
+MARGIN = 0.1
+"""Share of the way between the limits by which the value has to be within them before they count."""
+BALANCED = 0.1
+"""Share of a cycle by which its halves may differ for the relay to count as balanced."""
+BALANCING_MOST = 6
+"""Cycles after which it goes on unbalanced: the bias is at its limit then, or the water is not still."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepSettings:
+    """From `start` to `target` and `duration` (s) there.
+
+    The start is held until the value stays within `tolerance` of it, and for `settle` (s) at most. Values in
+    the loop's unit; those beyond `low` and `high` end it.
+    """
+
+    start: float
+    target: float
+    tolerance: float
+    settle: float
+    duration: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelaySettings:
+    """`cycles` of a relay of ±`amplitude` (share of the most) about `set_point`.
+
+    It switches `hysteresis` beyond the set point, and gives up after `duration` (s). Values in the loop's
+    unit; those beyond `low` and `high` end it.
+    """
+
+    set_point: float
+    amplitude: float
+    hysteresis: float
+    cycles: int
+    duration: float
+    low: float
+    high: float
+
+
+class Experiment(ABC):
+    """Base of both: `look` before each tick until it is `over`; `text` says why where it did not complete."""
+
+    kind: ClassVar[ExperimentKind]
+
+    def __init__(self, clock: Clock, low: float, high: float) -> None:
+        self.phase: ExperimentPhase = "settling"
+        self.phase_since = self._began = clock.now()
+        self.progress = 0.0
+        """Share that is done, as far as that is known."""
+        self.text = ""
+        self.cycles = 0
+        """Of a relay, that count."""
+        self.bias = 0.0
+        """Of a relay: the mean command, which balances the load."""
+        self.middle = (low + high) / 2
+        self._clock = clock
+        self._low, self._high = low, high
+        self._inside = False
+
+    @property
+    @abstractmethod
+    def loan(self) -> Loan:
+        """What the loop is to do from now on."""
+
+    @property
+    def over(self) -> bool:
+        """Whether it has ended."""
+        return self.phase in ("complete", "stopped", "failed")
+
+    def look(self, value: float) -> None:
+        """The loop's value is this."""
+        if self._inside and not self._low <= value <= self._high:
+            span = f"{self._low:g} to {self._high:g}"
+            self.end("failed", f"It ended at {value:.2f}, which is beyond the limits ({span}).")
+        # It may begin at a limit: at the surface, for one.
+        margin = MARGIN * (self._high - self._low)
+        self._inside = self._inside or self._low + margin <= value <= self._high - margin
+        self._look(value)
+
+    def end(self, phase: ExperimentPhase, text: str = "") -> None:
+        """It is over; the first reason counts."""
+        if not self.over:
+            self.text = text
+            self._enter(phase)
+
+    @abstractmethod
+    def _look(self, value: float) -> None:
+        """The same."""
+
+    def _enter(self, phase: ExperimentPhase) -> None:
+        self.phase, self.phase_since = phase, self._clock.now()
+
+
+class StepExperiment(Experiment):
+    """A step of the set point."""
+
+    kind = "step"
+
+    def __init__(self, settings: StepSettings, clock: Clock) -> None:
+        super().__init__(clock, settings.low, settings.high)
+        self._settings = settings
+        self._away = self._began
+
+    @property
+    def loan(self) -> Loan:
+        """Another set point for the loop's own controller."""
+        return Loan(set_point=self._settings.start if self.phase == "settling" else self._settings.target)
+
+    def _look(self, value: float) -> None:
+        wanted, now = self._settings, self._clock.now()
+        if abs(value - wanted.start) > wanted.tolerance:
+            self._away = now
+        if self.phase == "settling":
+            waited = now - self._began
+            self.progress = 0.5 * min(waited / wanted.settle, 1.0) if wanted.settle else 0.5
+            if waited >= wanted.settle or now - self._away >= SETTLED_SECONDS:
+                self._enter("running")
+        if self.phase == "running":
+            self.progress = 0.5 + 0.5 * min((now - self.phase_since) / wanted.duration, 1.0)
+            if now - self.phase_since >= wanted.duration:
+                self.end("complete")
+
+
+class RelayExperiment(Experiment):
+    """A relay in the controller's place (Åström and Hägglund, Automatica 20, 1984).
+
+    A load, here buoyancy, makes one half of each cycle longer than the other, and period and amplitude wrong
+    (Hang, Åström and Ho, IEE Proceedings-D 140, 1993). The mean command over a cycle is what balances it: it
+    becomes the relay's bias, until the halves are alike. Only then cycles count.
+    """
+
+    kind = "relay"
+
+    def __init__(self, settings: RelaySettings, clock: Clock) -> None:
+        super().__init__(clock, settings.low, settings.high)
+        self._settings = settings
+        self._loan = Loan(_Relay(self), settings.set_point)
+        self._side = 0.0
+        self._switched = self._began
+        self._forth = 0.0
+        self._balancing = 0
+
+    @property
+    def loan(self) -> Loan:
+        """The relay, about its set point."""
+        return self._loan
+
+    def command(self, error: float) -> float:
+        """The relay's command, -1 to 1, where the set point is so far away."""
+        side = self._side or (1.0 if error > 0 else -1.0)
+        if error * side < -self._settings.hysteresis:
+            side = -side
+        if self._side and side != self._side:
+            self._side = side
+            self._switch()
+        self._side = side
+        return self.bias + side * self._settings.amplitude
+
+    def _look(self, value: float) -> None:  # noqa: ARG002 - the relay sees what is newer
+        wanted = self._settings
+        if self._clock.now() - self._began >= wanted.duration:
+            words = f"There were {self.cycles} of {wanted.cycles} cycles within {wanted.duration:g} s."
+            self.end("failed", words)
+
+    def _switch(self) -> None:
+        """It has turned over: after each second half a cycle is whole."""
+        now = self._clock.now()
+        half, self._switched = now - self._switched, now
+        if self.phase == "settling":
+            # The way there was no half.
+            self._enter("balancing")
+        elif self._side < 0:
+            self._forth = half
+        elif self._forth:
+            self._complete((self._forth - half) / (self._forth + half))
+            self._forth = 0.0
+
+    def _complete(self, asymmetry: float) -> None:
+        if self.phase == "balancing":
+            self._balancing += 1
+            if abs(asymmetry) <= BALANCED or self._balancing >= BALANCING_MOST:
+                self._enter("running")
+            else:
+                room = 1.0 - self._settings.amplitude
+                self.bias = min(max(self.bias + self._settings.amplitude * asymmetry, -room), room)
+        elif self.phase == "running":
+            self.cycles += 1
+            self.progress = self.cycles / self._settings.cycles
+            if self.cycles >= self._settings.cycles:
+                self.end("complete")
+
+
+class _Relay(Controller):
+    """An experiment's relay, as the loop knows controllers."""
+
+    name = "relay"
+    title = "Relay"
+    limits: ClassVar[Mapping[str, GainLimits]] = {}
+
+    def __init__(self, experiment: RelayExperiment) -> None:
+        super().__init__()
+        self._experiment = experiment
+
+    def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
+        """Full amplitude towards the set point, from the bias."""
+        return self._experiment.command(set_point - measured)

@@ -1,0 +1,86 @@
+"""The experiment that runs, one at a time: begun by a command, looked after before each tick."""
+
+import threading
+from collections.abc import Callable
+
+from robot_runtime.clock import Clock
+from robot_runtime.control.attitude import wrapped
+from robot_runtime.control.experiment import Experiment
+from robot_runtime.control.loop import ControlLoop
+from robot_runtime.errors import Refused
+from robot_runtime.samples import Experiment as Told
+from robot_runtime.samples import Mode
+
+TELL_EVERY = 0.5
+"""s."""
+_LEFT: dict[Mode, str] = {
+    "manual": "The pilot took over.",
+    "failsafe": "The robot was stopped for a fault; its alarms tell more.",
+}
+
+
+class Experiments:
+    """`tell` takes each document. `tick` belongs to the control loop, the rest to any thread."""
+
+    def __init__(self, clock: Clock, tell: Callable[[Told], None]) -> None:
+        self._clock = clock
+        self._tell = tell
+        self._lock = threading.Lock()
+        self._running: tuple[int, ControlLoop, Experiment] | None = None
+        self._told: tuple[object, ...] = ()
+        self._due = 0.0
+
+    def require_none(self) -> None:
+        """Raises Refused while one runs: what it measures must not change meanwhile."""
+        running = self._running
+        if running is not None:
+            raise Refused(f"An experiment runs on the {running[1].name}. Wait for its end, or stop it first.")
+
+    def begin(self, number: int, loop: ControlLoop, experiment: Experiment) -> None:
+        """Run it from the next tick on. Raises Refused while another runs."""
+        with self._lock:
+            self.require_none()
+            self._running = number, loop, experiment
+
+    def stop(self, text: str) -> None:
+        """End what runs, if anything does."""
+        running = self._running
+        if running is not None:
+            running[2].end("stopped", text)
+
+    def tick(self, mode: Mode) -> None:
+        """Let it see its loop, and lend it that; end it where the robot does not steer itself any more."""
+        running = self._running
+        if running is None:
+            return
+        number, loop, experiment = running
+        if mode != "automatic":
+            experiment.end("stopped", _LEFT.get(mode, "The robot was disarmed."))
+        elif loop.measured is not None and not experiment.over:
+            near = experiment.middle
+            experiment.look(loop.measured if loop.name == "depth" else near + wrapped(loop.measured - near))
+        loop.lent = None if experiment.over else experiment.loan
+        self._tell_changes(number, loop, experiment)
+        if experiment.over:
+            self._running = None
+
+    def _tell_changes(self, number: int, loop: ControlLoop, experiment: Experiment) -> None:
+        now = self._clock.now()
+        changed = (number, experiment.phase, experiment.cycles, experiment.bias)
+        if changed == self._told and now < self._due:
+            return
+        self._told, self._due = changed, now + TELL_EVERY
+        self._tell(
+            Told(
+                time=now,
+                number=number,
+                kind=experiment.kind,
+                loop=loop.name,
+                phase=experiment.phase,
+                since=experiment.phase_since,
+                progress=experiment.progress,
+                cycles=experiment.cycles,
+                bias=experiment.bias,
+                text=experiment.text,
+            )
+        )

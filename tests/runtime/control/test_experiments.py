@@ -1,0 +1,213 @@
+"""Experiments on the depth: a step and a relay, on a robot in simulated water, and what ends them."""
+
+from typing import Any
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
+from robot_runtime.errors import Refused
+from robot_runtime.samples import Experiment
+from tests.runtime.control.flight import Flight
+
+STEP: dict[str, Any] = {
+    "number": 3,
+    "kind": "step",
+    "loop": "depth",
+    "start": 0.4,
+    "target": 0.7,
+    "tolerance": 0.03,
+    "settle": 20.0,
+    "duration": 6.0,
+    "low": 0.0,
+    "high": 1.2,
+}
+RELAY: dict[str, Any] = {
+    "number": 4,
+    "kind": "relay",
+    "loop": "depth",
+    "set_point": 0.6,
+    "amplitude": 0.5,
+    "hysteresis": 0.01,
+    "cycles": 3,
+    "duration": 120.0,
+    "low": 0.0,
+    "high": 1.2,
+}
+
+
+class Lab:
+    """A flight whose experiments are told."""
+
+    def __init__(self, flight: Flight) -> None:
+        self.flight = flight
+        self.told: list[Experiment] = []
+        flight.robot.bus.on_document("experiment", self._hear)
+
+    def begin(self, wanted: dict[str, Any]) -> None:
+        self.flight.command("experiment", **wanted)
+
+    def until_over(self, limit: float) -> Experiment:
+        self.flight.until(lambda: bool(self.told) and self.told[-1].phase in OVER, limit)
+        return self.told[-1]
+
+    def phases(self) -> list[str]:
+        return list(dict.fromkeys(one.phase for one in self.told))
+
+    def _hear(self, _: str, document: object) -> None:
+        assert isinstance(document, Experiment)
+        self.told.append(document)
+
+
+OVER = ("complete", "stopped", "failed")
+
+
+def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
+    with Flight() as flight:
+        lab = Lab(flight)
+        flight.arm()
+        lab.begin(STEP)
+        end = lab.until_over(30.0)
+        assert (end.number, end.kind, end.loop, end.phase, end.text) == (3, "step", "depth", "complete", "")
+        assert lab.phases() == ["settling", "running", "complete"]
+        began = next(one.since for one in lab.told if one.phase == "running")
+        assert end.since - began == pytest.approx(6.0, abs=0.11)
+        progress = [one.progress for one in lab.told]
+        assert progress == sorted(progress)
+        flight.run(0.2)
+        assert flight.robot.control.depth.wanted == 0.6
+        assert flight.robot.control.depth.lent is None
+
+
+def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
+    wanted = StepSettings(start=0.4, target=0.7, tolerance=0.01, settle=5.0, duration=2.0, low=0.0, high=1.0)
+    clock = SimulatedClock(10.0)
+    experiment = StepExperiment(wanted, clock)
+    set_points = []
+    for tick in range(60):
+        experiment.look(0.4 + 0.05 * (-1) ** tick)
+        set_points.append(experiment.loan.set_point)
+        clock.forward(0.1)
+    assert set_points.index(0.7) == pytest.approx(50, abs=1)
+
+
+def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
+    with Flight() as flight:
+        lab = Lab(flight)
+        flight.arm()
+        lab.begin(RELAY)
+        end = lab.until_over(120.0)
+        assert end.phase == "complete", end.text
+        assert lab.phases() == ["settling", "balancing", "running", "complete"]
+        assert end.cycles == 3
+        # The robot is buoyant: to stay it has to push down.
+        assert 0.05 < end.bias < 0.3
+        flight.run(0.2)
+        assert abs(flight.sent[-1][1].z) < 1.0
+
+
+@pytest.mark.parametrize("load", [-0.2, 0.0, 0.15])
+def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
+    """On an integrator with friction and a constant load, where the answer is known."""
+    wanted = RelaySettings(
+        set_point=1.0, amplitude=0.4, hysteresis=0.005, cycles=4, duration=300.0, low=0.0, high=2.0
+    )
+    clock = SimulatedClock(0.0)
+    experiment = RelayExperiment(wanted, clock)
+    position, speed = 0.9, 0.0
+    while not experiment.over:
+        experiment.look(position)
+        output = experiment.command(1.0 - position)
+        for _ in range(10):
+            speed += 0.005 * (output - load - 2.0 * speed)
+            position += 0.005 * speed
+        clock.forward(0.05)
+    assert (experiment.phase, experiment.text) == ("complete", "")
+    assert experiment.bias == pytest.approx(load, abs=0.4 * 0.1)
+
+
+@pytest.mark.parametrize(
+    ("end", "phase", "text"),
+    [
+        (lambda flight: flight.command("stop"), "stopped", "The robot was disarmed."),
+        (lambda flight: flight.command("mode", mode="manual"), "stopped", "The pilot took over."),
+        (lambda flight: flight.command("end_experiment"), "stopped", "It was stopped."),
+        (lambda flight: flight.cut(on=True), "stopped", "stopped for a fault"),
+    ],
+)
+def test_whatever_ends_the_steering_ends_the_experiment(end: Any, phase: str, text: str) -> None:
+    with Flight() as flight:
+        lab = Lab(flight)
+        flight.arm()
+        lab.begin(STEP)
+        flight.run(3.0)
+        end(flight)
+        over = lab.until_over(2.0)
+        assert over.phase == phase
+        assert text in over.text
+        flight.run(0.5)
+        assert lab.told[-1] is over
+
+
+def test_it_ends_beyond_its_limits() -> None:
+    with Flight() as flight:
+        lab = Lab(flight)
+        flight.arm()
+        lab.begin(RELAY | {"amplitude": 1.0, "high": 0.65, "set_point": 0.6, "hysteresis": 0.05})
+        over = lab.until_over(30.0)
+        assert over.phase == "failed"
+        assert "beyond the limits (0 to 0.65)" in over.text
+
+
+def test_a_relay_without_cycles_gives_up() -> None:
+    with Flight() as flight:
+        lab = Lab(flight)
+        flight.arm()
+        lab.begin(RELAY | {"duration": 5.0})
+        over = lab.until_over(10.0)
+        assert (over.phase, over.text) == ("failed", "There were 0 of 3 cycles within 5 s.")
+
+
+NAN = float("nan")
+WRONG = [
+    (STEP | {"loop": "depths"}, "no loop 'depths'"),
+    (STEP | {"kind": "sine"}, "no experiment 'sine'"),
+    (STEP | {"target": NAN}, "target is nan"),
+    (STEP | {"target": 11.0, "high": 20.0}, "between 0 and 10"),
+    (STEP | {"target": 1.3}, "between the limits"),
+    (STEP | {"target": 0.4}, "are the same"),
+    (STEP | {"duration": 0.5}, "between 2 and 300"),
+    (STEP | {"duration": "long"}, "must be a number"),
+    (STEP | {"high": -1.0}, "must be apart"),
+    (STEP | {"number": 1.5}, "whole number"),
+    (RELAY | {"amplitude": 1.1}, "between 0.1 and 1"),
+    (RELAY | {"amplitude": True}, "must be a number"),
+    (RELAY | {"cycles": 3.5}, "whole number"),
+    (RELAY | {"hysteresis": 0.5}, "hysteresis is 0.5"),
+]
+
+
+def test_what_cannot_be_is_refused() -> None:
+    with Flight() as flight:
+        with pytest.raises(Refused, match="The robot is disarmed"):
+            flight.command("experiment", **STEP)
+        flight.arm()
+        for wanted, why in WRONG:
+            with pytest.raises(Refused, match=why):
+                flight.command("experiment", **wanted)
+        flight.robot.experiments.require_none()
+
+
+def test_nothing_else_changes_meanwhile() -> None:
+    with Flight() as flight:
+        flight.arm()
+        flight.command("experiment", **STEP)
+        for name, question in (
+            ("experiment", STEP),
+            ("controller", {"name": "bang_bang"}),
+            ("loop", {"name": "depth", "gains": {"kp": 1.0}}),
+            ("set_points", {"default": 1.0}),
+            ("steering", {"by": "beacons"}),
+        ):
+            with pytest.raises(Refused, match="An experiment runs on the depth"):
+                flight._commands[name](question)
