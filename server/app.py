@@ -17,6 +17,7 @@ from server.access.secret import TOKEN_PREFIX, make_token
 from server.assembly import Assembly
 from server.comparison.shapes import NoSessionError
 from server.control.lease import NotInControl
+from server.download import CopyFailed
 from server.layouts.library import UnknownLayout
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
@@ -24,6 +25,7 @@ from server.panels.own import UnknownPanel
 from server.processes.parts import Command
 from server.routes import (
     access,
+    backup,
     comm_tests,
     compare,
     control,
@@ -102,10 +104,11 @@ def create_app(
     app.add_exception_handler(UnknownRun, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
+    app.add_exception_handler(CopyFailed, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, simulator, scene, link, live, control)
-    kept = (sessions, marks, replay, storage, compare, exports)
+    kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_router(Page(settings.page)))
@@ -130,6 +133,10 @@ async def _refused(_: Request, problem: Exception) -> JSONResponse:
 
 async def _not_in_control(_: Request, problem: Exception) -> JSONResponse:
     return _tell(423, str(problem))
+
+
+async def _no_room(_: Request, problem: Exception) -> JSONResponse:
+    return _tell(507, str(problem))
 
 
 async def _absent(_: Request, problem: Exception) -> JSONResponse:

@@ -20,6 +20,7 @@ from server.comm_tests.runs import Runs
 from server.comm_tests.shipped import import_samples
 from server.control.desk import Desk
 from server.control.telling import Telling
+from server.download import Downloads
 from server.exports.imports import Imports
 from server.exports.jobs import Jobs
 from server.layouts.library import Layouts
@@ -70,7 +71,12 @@ class Assembly:
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.telling = Telling(self.bridge.tell_lease)
-        self.desk = Desk(self.clock, self._tell_control, self.bridge.drive)
+        self.desk = Desk(
+            self.clock,
+            self._tell_control,
+            self.bridge.drive,
+            lambda text: self.notices.tell("control", "info", text),
+        )
         self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
@@ -86,6 +92,7 @@ class Assembly:
         self.jobs = Jobs(settings.data, self.store)
         self.imports = Imports(settings.data, self.store)
         self.layouts = Layouts(self.store)
+        self.downloads = Downloads(settings.data)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
         self._live = Live(
@@ -139,6 +146,7 @@ class Assembly:
         try:
             left = await self.recorder.recover()
             await self.imports.recover()
+            self.downloads.recover()
             self.jobs.open()
             await self.lab.runs.mark_interrupted()
             await self.tuning.runs.mark_interrupted()

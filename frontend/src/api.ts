@@ -2,9 +2,9 @@
 import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
 import type { State } from './generated/topics';
-import { command, request, send, upload } from './http';
+import { command, download, request, send, upload } from './http';
 
-export type { Answer } from './http';
+export type { Answer, Downloaded } from './http';
 
 type Schemas = components['schemas'];
 export type Part = Schemas['PartHealth'];
@@ -121,6 +121,7 @@ export const api = {
     request<Mark>('PATCH', `/sessions/${id}/markers/${mark}`, said),
   removeMark: (id: Session['id'], mark: Mark['id']) => command('DELETE', `/sessions/${id}/markers/${mark}`),
   thumbnail: (id: Session['id'], time: number) => `/api/sessions/${id}/thumbnail?time=${time}`,
+  backup: (progress: (received: number, total: number) => void) => download('/backup', progress),
   storage: () => request<Storage>('GET', '/storage'),
   startSession: (name: string, note: string) => request<Session>('POST', '/sessions', { name, note }),
   stopSession: (id: Session['id']) => request<Session>('POST', `/sessions/${id}/stop`),

@@ -81,6 +81,33 @@ export function upload<T>(path: string, file: File, progress: (share: number) =>
   });
 }
 
+export interface Downloaded {
+  readonly blob: Blob;
+  readonly name: string;
+}
+
+/** A file; `progress` is told of its bytes. It may take as long as it takes: a large one is copied first. */
+export async function download(path: string, progress: (received: number, total: number) => void): Promise<Answer<Downloaded>> {
+  try {
+    const response = await fetch(`/api${path}`);
+    if (!response.ok || response.body === null) return refused(response.status, await response.text());
+    const total = Number(response.headers.get('Content-Length'));
+    const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition') ?? '')?.[1] ?? 'download';
+    let received = 0;
+    const counted = new TransformStream<Uint8Array, Uint8Array>({
+      transform(piece, passed) {
+        progress((received += piece.byteLength), total);
+        passed.enqueue(piece);
+      },
+    });
+    // The browser may keep a blob on the disk, which it does not with pieces that are gathered here.
+    const blob = await new Response(response.body.pipeThrough(counted)).blob();
+    return { value: { blob, name } };
+  } catch {
+    return { problem: 'The download was broken off. Look whether the server runs and whether this device is in its network.' };
+  }
+}
+
 function describe(status: number, text: string): string {
   try {
     const { detail } = JSON.parse(text) as { detail?: unknown };

@@ -11,7 +11,7 @@ interface Sent {
 }
 
 const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser' } as const;
-const ME = { signed_in: true, robot: 'turtle', identity: PERSON, pairing_open: false };
+const ME = { signed_in: true, robot: 'turtle', identity: PERSON, pairing_open: false, operators_only: ['startSession'] };
 const NOBODY = { ...ME, signed_in: false, identity: null };
 let answers: Record<string, () => Response>;
 let sent: Sent[];

@@ -14,6 +14,7 @@ const message = (said: Partial<ControlMessage> = {}): ControlMessage => ({
   holder: null,
   request: null,
   refused: null,
+  seats: [],
   ...said,
 });
 

@@ -186,7 +186,7 @@ describe('Live', () => {
 
 describe('a page that has a seat', () => {
   const control = (holder: number | null) =>
-    ({ op: 'control', epoch: 3, holder: holder === null ? null : { seat: holder, name: 'x' }, request: null, refused: null }) as const;
+    ({ op: 'control', epoch: 3, holder: holder === null ? null : { seat: holder, name: 'x' }, request: null, refused: null, seats: [] }) as const;
   const calls: { address: string; headers: Record<string, string> }[] = [];
   const drives = () => server().sent.map((text) => JSON.parse(text) as { op: string; axes: number[]; lease: number }).filter(({ op }) => op === 'drive');
 

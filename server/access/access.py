@@ -1,9 +1,7 @@
 """Who may come in: pairing, signing in by cookie or token, roles, and the end of all that."""
 
-import os
 from collections.abc import Callable
 from hmac import compare_digest
-from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
@@ -14,6 +12,7 @@ from server.access.codes import Codes, TooManyTries
 from server.access.devices import Device, Devices
 from server.access.identity import SHELL, Identity, Role
 from server.access.secret import digest
+from server.durable import write_whole
 from server.settings import Settings
 from server.store import Store
 
@@ -58,7 +57,7 @@ class Access:
     def open(self) -> None:
         """Know who was paired, and give the shell of this computer its token. Raises StoreError, OSError."""
         self.devices.load()
-        _write_private(self._token_file, self._token)
+        write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
     def identify(self, connection: HTTPConnection) -> Identity | None:
         """Who asks. What is said to be a token must be one: a cookie beside it is not looked at."""
@@ -167,12 +166,3 @@ class Access:
 
 def _with_article(role: Role) -> str:
     return "an operator" if role == "operator" else "a viewer"
-
-
-def _write_private(path: Path, text: str) -> None:
-    """For the eyes of this user alone, from the first byte on."""
-    part = path.with_suffix(".part")
-    part.unlink(missing_ok=True)
-    with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(text + "\n")
-    part.replace(path)

@@ -29,5 +29,5 @@ class Identity:
         return identity
 
 
-SHELL = Identity(device=0, name="shell", role="operator", kind="shell")
+SHELL = Identity(device=0, name="the shell of this computer", role="operator", kind="shell")
 """Whoever can read this computer's data folder."""

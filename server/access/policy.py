@@ -64,6 +64,7 @@ OPERATIONS: dict[str, Need] = {
     "getTimeline": Need.VIEWER,
     "listSignals": Need.VIEWER,
     "getStorage": Need.VIEWER,
+    "downloadBackup": Need.OPERATOR,
     "compareSessions": Need.VIEWER,
     "compareLines": Need.VIEWER,
     "getComparisonReport": Need.VIEWER,

@@ -35,6 +35,7 @@ class Me(BaseModel):
     robot: str
     identity: Known | None
     pairing_open: bool
+    operators_only: list[str] = Field(description="operations that viewers are refused, by their names")
 
 
 class Pairing(BaseModel):

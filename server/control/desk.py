@@ -1,6 +1,7 @@
 """The desk at which the robot is driven: its seats, who has the control, and what the driver sends.
 
-Everybody hears of each change through `tell`. Roles count here too: a viewer's seat never has the control.
+Everybody hears of each change through `tell`, and `note` has it in a sentence, for the record. Roles count
+here too: a viewer's seat never has the control.
 """
 
 import asyncio
@@ -12,30 +13,47 @@ from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from server.access.identity import Identity
 from server.control.driving import Drive, Driving
-from server.control.lease import Lease, NotInControl
+from server.control.lease import Lease, NotInControl, What
 from server.control.seats import Seat, Seats
-from server.control.shapes import Asking, ControlState, Holder, RefusedSeat
+from server.control.shapes import Asking, ControlState, Holder, RefusedSeat, Seated
+
+WORDS: dict[What, str] = {
+    "taken": "{seat} took control.",
+    "asked": "{seat} asked {holder} for control.",
+    "withdrawn": "{seat} asks for control no longer.",
+    "refused": "{holder} kept control, for which {seat} had asked.",
+    "handed": "{holder} handed control over to {seat}.",
+    "passed": "Control passed from {holder} to {seat}, who had asked for it.",
+    "released": "{holder} gave control back. Nobody has it now.",
+    "left": "{holder} left, and nobody has control now.",
+}
 
 
 class Desk:
     """`tell` gets `{op: "control", ...}`, `publish` the bytes of a driving command."""
 
     def __init__(
-        self, clock: Clock, tell: Callable[[dict[str, Any]], None], publish: Callable[[bytes], None]
+        self,
+        clock: Clock,
+        tell: Callable[[dict[str, Any]], None],
+        publish: Callable[[bytes], None],
+        note: Callable[[str], None],
     ) -> None:
         self.seats = Seats(clock)
         # The steady clock never runs back while the computer is up, and nobody changes the holder a thousand
         # times a second: so the first epoch of a restarted server is above all those of the last one.
-        self.lease = Lease(clock, int(clock.now() * 1000))
+        self.lease = Lease(clock, int(clock.now() * 1000), self._note)
         self.driving = Driving(clock, publish)
         self._clock = clock
         self._tell = tell
+        self._write = note
         self._news = asyncio.Event()
 
     @contextmanager
     def page(self, identity: Identity) -> Iterator[Seat]:
         """A page's seat, which ends with its socket."""
         seat = self.seats.open_page(identity)
+        self.announce()
         try:
             yield seat
         finally:
@@ -108,6 +126,7 @@ class Desk:
             if request is None or asking is None
             else Asking(seat=request.seat, name=asking, until=request.until),
             refused=None if refused is None else RefusedSeat(seat=refused.seat, until=refused.until),
+            seats=[_seated(seat) for seat in self.seats],
         )
 
     def settle(self) -> None:
@@ -144,6 +163,14 @@ class Desk:
         self.lease.forget(seat.number)
         self.seats.close(seat.number)
 
+    def _note(self, what: What, seat: int | None, holder: int | None) -> None:
+        self._write(WORDS[what].format(seat=f"“{self._name(seat)}”", holder=f"“{self._name(holder)}”"))
+
     def _name(self, number: int | None) -> str | None:
         seat = None if number is None else self.seats.get(number)
         return None if seat is None else seat.identity.name
+
+
+def _seated(seat: Seat) -> Seated:
+    who = seat.identity
+    return Seated(seat=seat.number, name=who.name, role=who.role, kind=who.kind)

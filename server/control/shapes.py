@@ -2,6 +2,8 @@
 
 from pydantic import BaseModel, Field
 
+from server.access.identity import Kind, Role
+
 
 class Holder(BaseModel):
     """Who has control."""
@@ -25,6 +27,15 @@ class RefusedSeat(BaseModel):
     until: float = Field(description="s, steady clock")
 
 
+class Seated(BaseModel):
+    """One page or program that is there; those of operators may have control."""
+
+    seat: int
+    name: str
+    role: Role
+    kind: Kind
+
+
 class Driven(BaseModel):
     """Driving commands since the server started: how many reached the robot, and how many were dropped."""
 
@@ -43,6 +54,7 @@ class ControlState(BaseModel):
     holder: Holder | None
     request: Asking | None
     refused: RefusedSeat | None
+    seats: list[Seated] = Field(description="all that there are, the oldest first")
 
 
 class Control(ControlState):

@@ -29,8 +29,8 @@ FAULTS = {
         "alarm",
         "The robot's runtime says nothing.",
         "It hangs, or the computer is overloaded.",
-        "The board stops the fins by itself after 1 s. Press STOP, and end the runtime, which is then "
-        "started again.",
+        "The board stops the fins by itself after 1 s. After 10 s the runtime is ended and started again, "
+        "disarmed; nothing is to be done.",
     ),
     "runtime_down": Fault("alarm", "", _PART, _LOGS),
     "board_down": Fault("alarm", "", _PART, _LOGS),

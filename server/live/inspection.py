@@ -13,6 +13,8 @@ from server.store import Store
 PERIOD = 0.25
 SILENT_SECONDS = 1.5
 """The runtime sends its state every second, if nothing else; the water sends 20 times as often."""
+HUNG_SECONDS = 10.0
+"""For which a running runtime may say nothing before it is ended; the board has disarmed long before that."""
 STARTING_SECONDS = 10.0
 """For which a process that has just been started may be silent; a Raspberry Pi Zero takes its time."""
 DISK_LOW_BYTES = 500_000_000
@@ -35,6 +37,8 @@ class Inspection:
         self._store = store
         self._alarms = alarms
         self._looked = clock.now()
+        self._silent = 0.0
+        """s; for which this server, itself awake, has heard nothing of the runtime, beyond what is normal."""
 
     async def run(self) -> None:
         """Look for ever."""
@@ -52,7 +56,12 @@ class Inspection:
         for name, fault in DOWN.items():
             part = self._parts.get(name)
             see(fault, part is not None and part.state == "failed")
-        see("runtime_silent", self._is_silent("runtime"))
+        see("runtime_silent", silent := self._is_silent("runtime"))
+        self._silent = self._silent + self._looked - before if silent else 0.0
+        runtime = self._parts.get("runtime")
+        if runtime is not None and self._silent > HUNG_SECONDS - SILENT_SECONDS:
+            self._silent = 0.0
+            runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
         see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
         disk = shutil.disk_usage(self._settings.data.path)
         see("disk_low", disk.free < min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total))

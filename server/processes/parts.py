@@ -84,6 +84,7 @@ class Part:
         self._see_down = see_down
         self._process: Process | AdoptedProcess | None = None
         self._backoff = Backoff()
+        self._hung = ""
 
     @property
     def pid(self) -> int | None:
@@ -138,6 +139,9 @@ class Part:
         finally:
             trimming.cancel()
         self._let_go()
+        if self._hung:
+            words, self._hung = self._hung, ""
+            return words, True
         last = self._log.last(LINES_TOLD, self._logged_before)
         words = describe_status(status) + (f". Its last words: {last}" if last else "")
         return words, status is None or status < 0
@@ -181,6 +185,12 @@ class Part:
             async with asyncio.timeout(TERM_SECONDS):
                 await self._process.wait()
         self._let_go()
+
+    def end_hung(self, problem: str) -> None:
+        """End a process that no longer listens; `problem` goes on after its name. It is started again."""
+        if self._process is not None:
+            self._hung = problem
+            self._process.signal(signal.SIGKILL)
 
     async def pause(self, why: str) -> None:
         """End the process on purpose; `why` is a sentence."""

@@ -10,6 +10,7 @@ from server.access.codes import CODE_SECONDS, TooManyTries, WrongCode
 from server.access.devices import Device
 from server.access.identity import IDENTITY, Identity
 from server.access.links import pairing_link, qr_svg
+from server.access.policy import OPERATIONS, Need
 from server.access.shapes import (
     DeviceChanges,
     DeviceShape,
@@ -150,6 +151,7 @@ def _me(request: Request, identity: Identity | None) -> Me:
         robot=Assembly.of(request).settings.robot,
         identity=known,
         pairing_open=Access.of(request).codes.any_valid,
+        operators_only=[name for name, need in OPERATIONS.items() if known and need >= Need.OPERATOR],
     )
 
 

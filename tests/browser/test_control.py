@@ -34,7 +34,7 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         expect(request).to_be_visible()
         page.get_by_role("button", name="STOP").click()
         request.get_by_role("button", name="Keep").click()
-        expect(other.get_by_role("status").filter(has_text="keeps control")).to_be_visible()
+        expect(other.get_by_role("status").filter(has_text="Control stays with")).to_be_visible()
         expect(control(page)).to_have_accessible_name(MINE)
 
         control(page).click()
@@ -47,6 +47,16 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         page.get_by_role("button", name="Ask for control").click()
         other.get_by_role("button", name="Hand over", exact=True).click()
         expect(control(page)).to_have_accessible_name(MINE)
+        expect(page.get_by_text("handed control over to").last).to_be_attached()
+
+        # Nobody has asked.
+        page.get_by_role("button", name=re.compile("^Hand control over to")).click()
+        expect(control(other)).to_have_accessible_name(MINE)
+        page.keyboard.press("Escape")
+        control(other).click()
+        other.get_by_role("button", name=re.compile("^Hand control over to")).click()
+        expect(control(page)).to_have_accessible_name(MINE)
+        other.keyboard.press("Escape")
 
         ask(other)
         expect(request).to_be_visible()

@@ -21,7 +21,8 @@ from server.settings import DataFolder
 from tests.proofs.watching import Fins, Viewer, wait
 from tests.stack import Stack
 
-Blow = Literal["kill", "stop"]
+Blow = Literal["kill", "stop", "hang"]
+"""Ended; stopped for a while; stopped until somebody ends it."""
 
 NEUTRAL, DISARMED = 0.5, 1.015
 """s of silence after which the chip alone has brought the fins to rest, and taken their power: it looks every
@@ -55,12 +56,14 @@ class Outage:
     @property
     def name(self) -> str:
         """One word."""
-        return f"{self.victim}_{'killed' if self.blow == 'kill' else 'hung'}"
+        words = {"kill": "killed", "stop": "hung", "hang": "hung_for_good"}
+        return f"{self.victim}_{words[self.blow]}"
 
 
 OUTAGES = (
     Outage("runtime", "kill", "runtime_down", NEUTRAL, DISARMED),
     Outage("runtime", "stop", "runtime_silent", NEUTRAL, DISARMED, lasts=3.0),
+    Outage("runtime", "hang", "runtime_silent", NEUTRAL, DISARMED),
     Outage("server", "kill", "server_restarted"),
     Outage("server", "stop", "server_silent", HEARTBEAT, HEARTBEAT, lasts=5.5),
     Outage("keeper", "kill", None),
@@ -127,6 +130,12 @@ class World:
             victim.kill()
             self._see(outcome, since)
             since_up = wait(lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}")
+        elif outage.blow == "hang":
+            victim.suspend()
+            self._see(outcome, since)
+            since_up = since = wait(
+                lambda: self.is_replaced(outage.victim, victim.pid), f"a new {outage.victim}"
+            )
         else:
             victim.suspend()
             self._see(outcome, since)

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+from typing import Any
 
 from alembic import command
 from alembic.config import Config
@@ -14,6 +15,8 @@ from server.settings import Settings
 from tests.server.blocks import depth_block
 
 ROWS = depth_block(0, 10).payload
+SOMETHING: dict[str, Any] = {"INTEGER": 1, "BOOLEAN": True, "FLOAT": 1.5, "VARCHAR": "µ", "BLOB": b"\x00\xff"}
+"""For a column of each type; the 1 also leads to the first row of any other table."""
 
 
 def upgrade_to(settings: Settings, revision: str) -> None:
@@ -45,3 +48,26 @@ def make_session(database: sqlite3.Connection) -> None:
         (first, last, data),
     )
     database.commit()
+
+
+def fill_tables(database: sqlite3.Connection) -> None:
+    """Put a row into every table that has none, with something in each of its columns; committed."""
+    for table, rows in read_tables(database).items():
+        if not rows:
+            columns = [(name, kind) for _, name, kind, *_ in database.execute(f"PRAGMA table_info({table})")]
+            names, marks = ", ".join(name for name, _ in columns), ", ".join("?" * len(columns))
+            values = [SOMETHING[kind] for _, kind in columns]
+            database.execute(f"INSERT INTO {table} ({names}) VALUES ({marks})", values)
+    database.commit()
+
+
+def read_tables(database: sqlite3.Connection) -> dict[str, list[dict[str, Any]]]:
+    """What is in each table, but for Alembic's own."""
+    tables = database.execute(
+        "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%' "
+        "AND name != 'alembic_version'"
+    ).fetchall()
+    database.row_factory = sqlite3.Row
+    found = {name: [dict(row) for row in database.execute(f"SELECT * FROM {name}")] for (name,) in tables}
+    database.row_factory = None
+    return found

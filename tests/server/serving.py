@@ -5,7 +5,7 @@ The client of it has a seat, and control, which lasts while it asks something ev
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -96,6 +96,16 @@ async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIt
             finally:
                 server.should_exit = True
                 await running
+
+
+def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: Command) -> None:
+    """Let `scenario` be played with the server of these settings."""
+
+    async def run() -> None:
+        async with serve(settings, commands) as served:
+            await scenario(served)
+
+    asyncio.run(run())
 
 
 async def next_text(socket: ClientConnection, op: str) -> dict[str, Any]:

@@ -64,6 +64,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
     ("GET", "/api/storage"): "viewer",
+    ("GET", "/api/backup"): "operator",
     ("GET", "/api/sessions"): "viewer",
     ("POST", "/api/sessions"): "operator",
     ("GET", "/api/sessions/{session}"): "viewer",

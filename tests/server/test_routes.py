@@ -5,7 +5,6 @@ import json
 import shutil
 import sys
 import zipfile
-from collections.abc import Awaitable, Callable
 from typing import Any
 
 import pytest
@@ -15,16 +14,8 @@ from server.openapi import main as print_openapi
 from server.processes.parts import Command
 from server.settings import Settings
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
-from tests.server.serving import Served, serve
+from tests.server.serving import Served, play, serve
 from tests.server.waiting import until
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: Command) -> None:
-    async def run() -> None:
-        async with serve(settings, commands) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 def test_health_names_every_part_and_its_words(settings: Settings) -> None:

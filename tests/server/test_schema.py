@@ -7,7 +7,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import create_engine, pool
-from sqlmodel import SQLModel
+from sqlmodel import SQLModel, select
 
 import server.models  # noqa: F401 - declares the tables
 from migrations import HEAD
@@ -16,7 +16,9 @@ from server.sessions.catalogue import Catalogue
 from server.sessions.recording import Recording
 from server.settings import Settings, SetupError
 from server.store import Store
-from tests.server.older import ROWS, make_session, upgrade_to
+from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
+
+OLDER = [one.revision for one in ScriptDirectory(schema._scripts()).walk_revisions() if one.revision != HEAD]
 
 
 def test_the_newest_revision_is_the_one_the_server_wants() -> None:
@@ -81,7 +83,7 @@ def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
         schema.prepare(settings.data)
 
 
-@pytest.mark.parametrize("revision", ["0001", "0002", "0003"])
+@pytest.mark.parametrize("revision", OLDER)
 def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings, revision: str) -> None:
     upgrade_to(settings, revision)
     with closing(sqlite3.connect(settings.data.database)) as database:
@@ -105,6 +107,28 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+@pytest.mark.parametrize("revision", OLDER)
+def test_an_upgrade_keeps_every_value_of_every_table_and_the_models_read_them(
+    settings: Settings, revision: str
+) -> None:
+    upgrade_to(settings, revision)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+        fill_tables(database)
+        before = read_tables(database)
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        after = read_tables(database)
+        assert database.execute("PRAGMA foreign_key_check").fetchall() == []
+    for table, rows in before.items():
+        assert len(rows) == 1
+        assert after[table] == [after[table][0] | rows[0]], table
+    with closing(Store(settings.data.database)) as store, store.read() as reader:
+        for model in SQLModel.__subclasses__():
+            if model.__tablename__ in before:
+                assert len(reader.exec(select(model)).all()) == 1
 
 
 def describe(database: Path) -> list[tuple[str, ...]]:

@@ -1,7 +1,11 @@
 import { createContext } from 'svelte';
 import { api } from '../api';
+import type { operations } from '../generated/api';
 import { onSignedOut } from '../http';
 import type { Identity, Me } from './shapes';
+
+/** what the server can be asked for, by the names in its interface */
+export type Operation = keyof operations;
 
 /** ms between two looks while the server does not answer */
 const LOOK_AGAIN = 2000;
@@ -16,6 +20,7 @@ export class Access {
   reason = $state('');
   /** the server has not answered so far */
   silent = $state(false);
+  #operatorsOnly: ReadonlySet<string> = new Set();
 
   constructor() {
     onSignedOut((why) => this.leave(why));
@@ -77,7 +82,14 @@ export class Access {
     return 'value' in answer ? answer.value : null;
   }
 
+  /** Why this is not for who uses this page, in words; null where it is. What needs control says so by itself. */
+  refusal(operation: Operation): string | null {
+    if (this.identity?.role !== 'viewer' || !this.#operatorsOnly.has(operation)) return null;
+    return 'Viewers may watch and STOP. This needs an operator.';
+  }
+
   #take(me: Me): void {
+    this.#operatorsOnly = new Set(me.operators_only);
     this.robot = me.robot;
     this.identity = me.identity;
     this.state = me.signed_in ? 'in' : 'out';

@@ -148,6 +148,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/backup": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download a copy of the database
+         * @description Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile.
+         */
+        get: operations["downloadBackup"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/comm-tests/cancel": {
         parameters: {
             query?: never;
@@ -1850,6 +1870,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * ControlState
@@ -1864,6 +1889,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * Controller
@@ -2568,6 +2598,11 @@ export interface components {
          */
         Me: {
             identity: components["schemas"]["Known"] | null;
+            /**
+             * Operators Only
+             * @description operations that viewers are refused, by their names
+             */
+            operators_only: string[];
             /** Pairing Open */
             pairing_open: boolean;
             /** Robot */
@@ -3212,6 +3247,26 @@ export interface components {
              * @description s after its last use
              */
             lasts: number;
+            /** Seat */
+            seat: number;
+        };
+        /**
+         * Seated
+         * @description One page or program that is there; those of operators may have control.
+         */
+        Seated: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
             /** Seat */
             seat: number;
         };
@@ -4504,6 +4559,53 @@ export interface operations {
             };
             /** @description The database does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadBackup: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The database at one moment; `mucat restore` puts it back */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.sqlite3": unknown;
+                };
+            };
+            /** @description Another one is being copied or downloaded */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be copied */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };

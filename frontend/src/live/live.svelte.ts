@@ -92,11 +92,6 @@ export class Live {
     return this.control === null;
   }
 
-  /** Why nothing can be changed from here at all, in words; null where it can. */
-  get watching(): string | null {
-    return this.control?.you?.role === 'viewer' ? 'Viewers may watch and STOP. This needs an operator.' : null;
-  }
-
   /** Why the robot cannot be commanded from here, in words; null where it can. STOP always can. */
   get barred(): string | null {
     return this.control === null ? 'This is a replay: nothing can be commanded here.' : this.control.barred;

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import sqlite3
-from collections.abc import Awaitable, Callable
 from contextlib import closing, suppress
 from typing import Any
 
@@ -15,16 +14,8 @@ from robot_runtime.topics import read_blocks
 from server.access.devices import Devices
 from server.settings import Settings
 from tests.server.access.browsers import browser, new_code
-from tests.server.serving import Served, next_text, serve
+from tests.server.serving import Served, next_text, play, serve
 from tests.server.waiting import until
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 async def closing_of(socket: ClientConnection) -> tuple[int, str]:
@@ -48,7 +39,13 @@ def test_nobody_comes_in_without_a_sign_in(settings: Settings) -> None:
             with pytest.raises(InvalidStatus):
                 await stranger.connect()
             me = (await stranger.api.get("/access/me")).json()
-            assert me == {"signed_in": False, "robot": "tested", "identity": None, "pairing_open": False}
+            assert me == {
+                "signed_in": False,
+                "robot": "tested",
+                "identity": None,
+                "pairing_open": False,
+                "operators_only": [],
+            }
 
     play(settings, scenario)
 
@@ -304,9 +301,9 @@ def test_what_happens_is_told_without_secrets(settings: Settings) -> None:
             told = await notices(socket, 5)
             assert [event["text"] for event in told] == [
                 "“tablet” was paired as viewer.",
-                "“shell” made a token for “script”, as viewer.",
-                "“shell” made “tablet” an operator.",
-                "“shell” revoked the access of “script”.",
+                "“the shell of this computer” made a token for “script”, as viewer.",
+                "“the shell of this computer” made “tablet” an operator.",
+                "“the shell of this computer” revoked the access of “script”.",
                 "“tablet” signed out.",
             ]
             assert not [one for one in secrets if one in json.dumps(told)]

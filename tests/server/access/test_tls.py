@@ -23,7 +23,7 @@ def test_pages_shell_and_sockets_talk_by_tls_and_nothing_talks_without(encrypted
     async def scenario(served: Served) -> None:
         port = served.settings.port
         me = (await served.api.get("/access/me")).json()
-        assert me["identity"]["name"] == "shell"
+        assert me["identity"]["name"] == "the shell of this computer"
         async with served.connect() as socket:
             assert (await next_text(socket, "hello"))["robot"] == "tested"
         code = (await served.api.post("/access/codes", json={})).json()

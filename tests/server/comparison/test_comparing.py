@@ -1,7 +1,6 @@
 """Whole comparisons of recorded sessions, as the interface gives them."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
 from contextlib import closing
 from typing import Any
 
@@ -17,7 +16,7 @@ from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block
 from tests.server.comparison.dives import ARMED, DISARMED, FLAPS, STARTED_STEADY, STEPPED, WN, dive, record
-from tests.server.serving import Served, serve
+from tests.server.serving import Served, play
 
 DEPTH = ["depth.depth", "control.set_point"]
 RISE = (3.889720 - 0.531812) / WN
@@ -160,14 +159,6 @@ def test_lines_are_of_the_signals_that_a_session_has(store: Store, settings: Set
     assert line.time[0] == pytest.approx(0.5, abs=1e-3)
     assert max(high for high in line.high if high is not None) == pytest.approx(1.0, abs=1e-3)
     assert one.series["state.set_point"].high == [0.5, 0.5, 0.5]
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 def test_over_http(settings: Settings) -> None:

@@ -21,7 +21,11 @@ class Seen:
         self.clock = SimulatedClock(1000.0)
         self.told: list[dict[str, Any]] = []
         self.driven: list[dict[str, Any]] = []
-        self.desk = Desk(self.clock, self.told.append, lambda data: self.driven.append(json.loads(data)))
+        self.noted: list[str] = []
+        self.desk = Desk(self.clock, self.told.append, self._drive, self.noted.append)
+
+    def _drive(self, data: bytes) -> None:
+        self.driven.append(json.loads(data))
 
     def drive(self, **changes: Any) -> Drive:
         """A command that would pass, but for the changes."""

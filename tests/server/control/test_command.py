@@ -6,8 +6,8 @@ import pytest
 from server.control.command import in_control
 from server.running import announce
 from server.settings import Settings, SetupError
-from tests.server.control.test_control import free, open_page, play
-from tests.server.serving import Served
+from tests.server.control.test_control import free, open_page
+from tests.server.serving import Served, play
 from tests.server.waiting import until
 
 
@@ -48,12 +48,12 @@ def test_it_asks_who_has_control_and_says_so(settings: Settings) -> None:
                 await until(lambda: desk.lease.request is not None, "the request")
                 await page.ask(answer)
                 if answer == "/control/refuse":
-                    with pytest.raises(SetupError, match="Control stays with shell"):
+                    with pytest.raises(SetupError, match="Control stays with the shell of this computer"):
                         await waiting
                     assert served.runtime.asked == []
                 else:
                     await waiting
                     assert served.runtime.asked == [("arm", {})]
-                assert said == ["Control is with shell, who has 10 s to refuse ..."]
+                assert said == ["Control is with the shell of this computer, who has 10 s to refuse ..."]
 
     play(settings, with_address(scenario))

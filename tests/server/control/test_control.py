@@ -1,17 +1,17 @@
 """Control over HTTP and the live socket: who may what, who is told, what reaches the runtime."""
 
-import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
 import httpx
 from websockets.asyncio.client import ClientConnection
 
+from server.sessions.recording import Recording
 from server.settings import Settings
 from tests.server.blocks import state_block
-from tests.server.serving import Served, next_text, serve
+from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until
 
 SCENARIO = """
@@ -20,14 +20,6 @@ title = "A short one"
 duration = 3
 seed = 7
 """
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 class Page:
@@ -72,6 +64,24 @@ async def open_page(served: Served) -> AsyncIterator[Page]:
 
 async def free(served: Served) -> None:
     (await served.api.post("/control/release")).raise_for_status()
+
+
+def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        session = (await served.api.post("/sessions", json={"name": "x", "note": ""})).json()["id"]
+        async with open_page(served) as anna:
+            (await served.api.post("/control/hand-over", json={"seat": anna.seat})).raise_for_status()
+        (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
+        assembly = served.assembly
+        recording = Recording(assembly.store, assembly.catalogue.row(session))
+        texts = [one["text"] for one in recording.documents("notice")]
+        shell = "“the shell of this computer”"
+        assert texts[-2:] == [
+            f"{shell} handed control over to {shell}.",
+            f"{shell} left, and nobody has control now.",
+        ]
+
+    play(settings, scenario)
 
 
 def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(settings: Settings) -> None:

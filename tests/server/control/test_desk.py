@@ -18,7 +18,12 @@ def test_everybody_is_told_of_every_change() -> None:
     with desk.page(ANNA) as anna, desk.page(BEN) as ben:
         desk.take(anna)
         holder = {"seat": anna.number, "name": "Anna"}
-        first = {"op": "control", "epoch": 1_000_001, "holder": holder, "request": None, "refused": None}
+        seats = [
+            {"seat": one.number, "name": one.identity.name, "role": "operator", "kind": "browser"}
+            for one in (anna, ben)
+        ]
+        nothing = {"request": None, "refused": None}
+        first = {"op": "control", "epoch": 1_000_001, "holder": holder, **nothing, "seats": seats}
         assert seen.told[-1] == first
         desk.take(ben)
         request = {"seat": ben.number, "name": "Ben", "until": 1010.0}
@@ -28,7 +33,43 @@ def test_everybody_is_told_of_every_change() -> None:
         desk.hand_over(anna, ben.number)
         theirs = {"seat": ben.number, "name": "Ben"}
         assert seen.told[-1] == first | {"epoch": 1_000_002, "holder": theirs}
-    assert seen.told[-1] == first | {"epoch": 1_000_003, "holder": None}
+        assert seen.noted == [
+            "“Anna” took control.",
+            "“Ben” asked “Anna” for control.",
+            "“Anna” kept control, for which “Ben” had asked.",
+            "“Anna” handed control over to “Ben”.",
+        ]
+    assert seen.told[-1] == first | {"epoch": 1_000_003, "holder": None, "seats": []}
+    assert seen.noted[4:] == ["“Ben” left, and nobody has control now."]
+
+
+def test_a_viewer_s_page_is_named_among_the_seats_too() -> None:
+    seen = Seen()
+    with seen.desk.page(VERA) as vera:
+        assert seen.told[-1]["seats"] == [
+            {"seat": vera.number, "name": "Vera", "role": "viewer", "kind": "browser"}
+        ]
+
+
+def test_what_is_given_back_and_no_longer_wanted_is_noted() -> None:
+    seen = Seen()
+    desk = seen.desk
+    with desk.page(ANNA) as anna, desk.page(BEN) as ben:
+        desk.take(anna)
+        desk.take(ben)
+        desk.release(ben)
+        desk.take(ben)
+        desk.release(anna)
+        desk.release(ben)
+        desk.release(ben)
+    assert seen.noted == [
+        "“Anna” took control.",
+        "“Ben” asked “Anna” for control.",
+        "“Ben” asks for control no longer.",
+        "“Ben” asked “Anna” for control.",
+        "Control passed from “Anna” to “Ben”, who had asked for it.",
+        "“Ben” gave control back. Nobody has it now.",
+    ]
 
 
 def test_a_server_that_was_started_again_begins_above_what_the_last_one_reached() -> None:
@@ -38,7 +79,7 @@ def test_a_server_that_was_started_again_begins_above_what_the_last_one_reached(
             seen.desk.take(anna)
             seen.desk.release(anna)
     seen.clock.forward(1.5)
-    assert Desk(seen.clock, seen.told.append, print).lease.epoch > seen.desk.lease.epoch
+    assert Desk(seen.clock, seen.told.append, print, print).lease.epoch > seen.desk.lease.epoch
 
 
 def test_a_viewer_neither_takes_nor_is_given_control() -> None:
@@ -143,10 +184,11 @@ def test_who_is_signed_out_or_made_a_viewer_has_no_seat_and_no_control_any_more(
 
 def test_what_only_time_brings_is_told_on_time() -> None:
     told: list[dict[str, Any]] = []
+    noted: list[str] = []
 
     async def run() -> None:
         clock = SteadyClock()
-        desk = Desk(clock, told.append, print)
+        desk = Desk(clock, told.append, print, noted.append)
         task = asyncio.create_task(desk.run())
         with desk.page(ANNA) as anna, desk.page(BEN) as ben:
             desk.take(anna)
@@ -162,3 +204,4 @@ def test_what_only_time_brings_is_told_on_time() -> None:
         await asyncio.gather(task, return_exceptions=True)
 
     asyncio.run(run())
+    assert noted[2] == "Control passed from “Anna” to “Ben”, who had asked for it."

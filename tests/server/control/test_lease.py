@@ -15,13 +15,13 @@ def clock() -> SimulatedClock:
 @pytest.fixture
 def lease(clock: SimulatedClock) -> Lease:
     """Anna has it."""
-    lease = Lease(clock, 7)
+    lease = Lease(clock, 7, lambda *_: None)
     lease.take(ANNA)
     return lease
 
 
 def test_free_control_is_taken_at_once_and_again_without_a_change(clock: SimulatedClock) -> None:
-    lease = Lease(clock, 7)
+    lease = Lease(clock, 7, lambda *_: None)
     assert (lease.holder, lease.epoch) == (None, 7)
     lease.take(ANNA)
     lease.take(ANNA)

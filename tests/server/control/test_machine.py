@@ -19,7 +19,7 @@ from hypothesis.stateful import (
 
 from robot_runtime.errors import Refused
 from server.access.identity import Identity, Role
-from server.control.lease import ANSWER_SECONDS, NotInControl, Waiting
+from server.control.lease import ANSWER_SECONDS, NotInControl, Waiting, What
 from server.control.seats import Seat
 from tests.server.control.people import Seen
 
@@ -39,6 +39,16 @@ class AtTheDesk(RuleBasedStateMachine):
         self.pages: dict[int, AbstractContextManager[Seat]] = {}
         self.asked: dict[int, float] = {}
         self.epoch, self.holder = self.desk.lease.epoch, self.desk.lease.holder
+        self.noted: int | None = None
+        self.write = self.desk.lease._changed
+        self.desk.lease._changed = self.note
+
+    def note(self, what: What, seat: int | None, holder: int | None) -> None:
+        """Each note begins where the last one has ended."""
+        assert holder == self.noted
+        if what not in ("asked", "withdrawn", "refused"):
+            self.noted = seat
+        self.write(what, seat, holder)
 
     def identity(self, device: int) -> Identity:
         return Identity(device, f"Person {device}", self.roles[device], "browser")
@@ -171,6 +181,11 @@ class AtTheDesk(RuleBasedStateMachine):
         if lease.holder != self.holder:
             assert lease.epoch > self.epoch
         self.epoch, self.holder = lease.epoch, lease.holder
+
+    @invariant()
+    def who_reads_the_notes_knows_who_has_it(self) -> None:
+        assert self.noted == self.desk.lease.holder
+        assert "“None”" not in "".join(self.seen.noted)
 
     @invariant()
     def who_asks_is_there_and_is_not_the_holder_and_waits_no_longer_than_said(self) -> None:

@@ -1,9 +1,7 @@
-import asyncio
 import hashlib
 import os
 import sys
 import zipfile
-from collections.abc import Awaitable, Callable
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -20,7 +18,7 @@ from server.settings import Settings
 from server.store import Store
 from tests.server.blocks import debug_block, depth_block
 from tests.server.exports.test_tables import record
-from tests.server.serving import Served, serve
+from tests.server.serving import Served, play
 from tests.server.waiting import until
 
 
@@ -29,14 +27,6 @@ def session(settings: Settings) -> int:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
         return record(store, settings, [depth_block(0, 5000), debug_block(0, "a", "b")])
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 async def start(api: AsyncClient, session: int, **wanted: Any) -> dict[str, Any]:

@@ -6,7 +6,8 @@ import pytest
 
 from robot_runtime.samples import Alarm
 from server.live.alarms import FAULTS, Alarms
-from server.live.inspection import DOWN, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Inspection
+from server.live.inspection import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Inspection
+from server.processes.parts import Part
 from server.settings import Settings
 from server.store import Store
 from tests.server.live.test_health import Bench
@@ -104,6 +105,38 @@ def test_a_server_that_was_held_up_does_not_blame_the_others(room: Room) -> None
     assert room.active() == set()
     room.spend(1.0, all=room.hear)
     assert room.told == []
+
+
+def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended: list[str] = []
+    monkeypatch.setattr(
+        Part, "end_hung", lambda part, problem: ended.append(f"{part.command.name} {problem}")
+    )
+    heard = room.clock.now()
+    while not ended:
+        room.spend(PERIOD)
+    assert HUNG_SECONDS <= room.clock.now() - heard <= HUNG_SECONDS + 2 * PERIOD
+    assert ended == ["runtime said nothing for 10 s, and was ended"]
+    room.spend(HUNG_SECONDS - SILENT_SECONDS - PERIOD)
+    assert len(ended) == 1
+    room.spend(PERIOD, all=room.hear)
+    room.spend(HUNG_SECONDS - PERIOD)
+    assert len(ended) == 1
+
+
+def test_a_server_that_is_held_up_again_and_again_ends_nobody(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended: list[Part] = []
+    monkeypatch.setattr(Part, "end_hung", lambda part, _: ended.append(part))
+    for _ in range(20):
+        room.clock.forward(30.0)
+        room.inspection.look()
+        room.spend(2 * PERIOD)
+        room.spend(PERIOD, all=room.hear)
+    assert ended == []
 
 
 @pytest.mark.parametrize("name", DOWN)

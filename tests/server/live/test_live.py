@@ -1,7 +1,7 @@
 import asyncio
 import json
 import socket as sockets
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -15,17 +15,9 @@ from server.routes.live import NONSENSE_MAX
 from server.settings import Settings
 from server.web import MESSAGE_BYTES_MAX
 from tests.server.blocks import debug_block, depth_block, picture_block
-from tests.server.serving import Served, next_text, serve
+from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until
 from tests.shell import shell_headers
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 async def read_until(socket: ClientConnection, condition: Callable[[list[Block]], object]) -> list[Block]:
@@ -89,11 +81,18 @@ def test_news_about_health_and_recording(settings: Settings) -> None:
             while (await next_text(page, "session"))["recording"] is not None:
                 pass
         async with served.connect() as page:
-            blocks = await read_until(page, lambda blocks: len(numbers(blocks, "notice")) >= 2)
-            texts = [json.loads(one.payload)[0]["text"] for one in blocks if one.topic.name == "notice"]
-            assert texts == ["Recording of “Dive” has begun.", "Recording of “Dive” has ended."]
+            blocks = await read_until(page, lambda blocks: len(said_of_recording(blocks)) == 2)
+            assert said_of_recording(blocks) == [
+                "Recording of “Dive” has begun.",
+                "Recording of “Dive” has ended.",
+            ]
 
     play(settings, scenario)
+
+
+def said_of_recording(blocks: list[Block]) -> list[str]:
+    events = [json.loads(one.payload)[0] for one in blocks if one.topic.name == "notice"]
+    return [event["text"] for event in events if event["kind"] == "recording"]
 
 
 def test_ping_and_stop(settings: Settings) -> None:

@@ -101,6 +101,25 @@ def test_what_is_killed_is_told_by_its_signal_and_is_another_process_afterwards(
     run(crew, scenario)
 
 
+def test_what_hangs_is_ended_told_why_and_started_again(tmp_path: Path) -> None:
+    crew = Crew(tmp_path, program("engine", "import time; time.sleep(600)"))
+
+    async def scenario() -> None:
+        await until(lambda: crew.part("engine").pid, "the start")
+        first = crew.process("engine")
+        first.suspend()
+        crew.part("engine").end_hung("said nothing, and was ended")
+        await until(lambda: crew.part("engine").pid not in (None, first.pid), "the next start")
+        assert crew.told == [
+            ("engine", "The part engine said nothing, and was ended. It is started again at once.")
+        ]
+        crew.process("engine").kill()
+        await until(lambda: len(crew.told) > 1, "the news")
+        assert "was ended by signal SIGKILL" in crew.told[1][1]
+
+    run(crew, scenario)
+
+
 @pytest.mark.parametrize(
     ("killed", "wanted"),
     [(False, [0, 0.01, 0.02, 0.04, 0.04, 0, 0.01]), (True, [0, 0.01, 0.02, 0.02, 0.02, 0, 0.01])],

@@ -1,23 +1,13 @@
 """Sessions found, written about, marked, deleted and taken back, over HTTP as the page does it."""
 
-import asyncio
-from collections.abc import Awaitable, Callable
 from typing import Any
 
 import pytest
 
 from server.settings import Settings
 from tests.server.blocks import depth_block, state_block, thumbnail_block
-from tests.server.serving import Served, next_text, serve
+from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until
-
-
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
-    async def run() -> None:
-        async with serve(settings) as served:
-            await scenario(served)
-
-    asyncio.run(run())
 
 
 async def record(served: Served, name: str, note: str = "") -> int:

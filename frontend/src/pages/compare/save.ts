@@ -1,6 +1,7 @@
 /** Charts as files, dark on white, whatever the page's theme. */
 import type { Comparison } from '../../api';
 import { loadPlotly } from '../../charts/plotly';
+import { saveAs } from '../../files';
 import { sessionColour } from './colours';
 import { drawPicture, type Finer, type Look, type View } from './figure';
 
@@ -54,14 +55,5 @@ export async function saveCharts(comparison: Comparison, finer: Finer, view: Vie
     format === 'svg'
       ? new Blob([text], { type: 'image/svg+xml' })
       : new Blob([Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))], { type: 'image/png' });
-  download(blob, `comparison_${comparison.sessions.map(({ id }) => id).join('_')}.${format}`);
-}
-
-function download(blob: Blob, name: string): void {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  // The download has begun by the next turn of the event loop.
-  setTimeout(() => URL.revokeObjectURL(link.href));
+  saveAs(blob, `comparison_${comparison.sessions.map(({ id }) => id).join('_')}.${format}`);
 }

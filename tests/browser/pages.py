@@ -1,0 +1,73 @@
+"""Every page that there is, and how to come to it: for what looks at all of them."""
+
+import re
+from dataclasses import dataclass
+
+from playwright.sync_api import Page, expect
+
+from tests.proofs.watching import wait
+from tests.stack import Stack
+
+SESSIONS = ("Dive to half a metre", "Half a metre with PID")
+"""{first} and {second} in the addresses."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One page. `address` follows the # and may name {first} and {second}, two sessions, and {run}, a test's;
+    `shows` is in the heading or the label that says that it is there."""
+
+    name: str
+    address: str
+    shows: str
+
+
+PAGES = (
+    View("operate", "operate", "Camera"),
+    View("tune-response", "tune/response", "Tune"),
+    View("tune-relay", "tune/relay", "Tune"),
+    View("tune-parameters", "tune/parameters", "Tune"),
+    View("tune-vision", "tune/vision", "Tune"),
+    View("scenarios", "scenarios", "New run"),
+    View("comm-tests", "comm-tests", "Runs"),
+    View("comm-test", "comm-tests/runs/{run}", "Every cell"),
+    View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Side by side"),
+    View("sessions", "sessions", "Recorded"),
+    View("session", "sessions/{first}", "Take it home"),
+    View("sessions-compare", "sessions/compare/{first},{second}", "Over time"),
+    View("replay", "replay/{first}/0.5", "of Dive to half"),
+    View("system", "system", "Parts"),
+    View("people", "people", "Browsers and programs"),
+)
+
+
+def fill(stack: Stack) -> None:
+    """See to it that there are two sessions to look at."""
+    there = {session["name"] for session in stack.api.get("/sessions").json()}
+    for name in SESSIONS:
+        if name in there:
+            continue
+        session = stack.api.post("/sessions", json={"name": name}).raise_for_status().json()["id"]
+        stack.api.post(f"/sessions/{session}/markers", json={"text": "here"}).raise_for_status()
+        wait(lambda: samples(stack, session) > 0, "samples")  # noqa: B023 - it is called here
+        stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+
+
+def samples(stack: Stack, session: int) -> int:
+    """How many it holds."""
+    return int(stack.api.get(f"/sessions/{session}").json()["samples"])
+
+
+def show(page: Page, stack: Stack, view: View) -> None:
+    """Go there, and wait until it has what it is to show."""
+    there = {one["name"]: one["id"] for one in stack.api.get("/sessions").json()}
+    first, second = (there[name] for name in SESSIONS)
+    run = stack.api.get("/comm-tests/runs").json()[0]["id"]
+    page.goto(f"{stack.url}/#/{view.address.format(first=first, second=second, run=run)}")
+    expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
+    settle(page)
+
+
+def settle(page: Page) -> None:
+    """Wait until nothing says that it is on its way."""
+    expect(page.get_by_text(re.compile("being (fetched|read|compared|checked)"))).to_have_count(0)

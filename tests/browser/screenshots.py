@@ -1,0 +1,101 @@
+"""`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot at work.
+
+For docs/pages.md: look at them before they are committed.
+"""
+
+import re
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
+from tests.browser.conftest import DESKTOP, PHONE
+from tests.browser.pages import PAGES, SESSIONS, settle, show
+from tests.browser.people import somebody
+from tests.browser.test_swim import wait_for_depth
+from tests.proofs.watching import wait
+from tests.stack import Stack
+
+SIZES = {"desktop": (DESKTOP, 1.0), "phone": (PHONE, 1.5)}
+"""The window, and dots for each of its pixels."""
+QUALITY = 62
+"""Of the JPEG: letters stay sharp, and a picture takes less than 90 kB."""
+CONTROLLERS = ("bang_bang", "pid")
+DEPTH = 0.5
+
+
+def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
+    """Record a dive from the surface."""
+    stack.api.put("/robot/controller", json={"name": controller}).raise_for_status()
+    session = stack.api.post("/sessions", json={"name": name, "note": "still water"}).json()["id"]
+    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    wait_for_depth(watcher, DEPTH - 0.1, DEPTH)
+    stack.api.post(f"/sessions/{session}/markers", json={"text": "nearly there"}).raise_for_status()
+    wait_for_depth(watcher, DEPTH, 1.0)
+    wait_for_depth(watcher, 0.0, DEPTH)
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    stack.api.post("/robot/stop").raise_for_status()
+    stack.api.patch(f"/sessions/{session}", json={"tags": ["pool"]}).raise_for_status()
+    wait_for_depth(watcher, -0.1, 0.05)
+
+
+def prepare(stack: Stack, watcher: Page) -> None:
+    """Two sessions that can be compared, and a robot that swims and records."""
+    stack.api.put("/robot/set-points", json={"default": DEPTH}).raise_for_status()
+    for name, controller in zip(SESSIONS, CONTROLLERS, strict=True):
+        dive(stack, watcher, name, controller)
+    stack.api.post("/sessions", json={"name": "Hovering", "note": ""}).raise_for_status()
+    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    stack.api.put("/robot/card", json={"colour": "green"}).raise_for_status()
+    wait_for_depth(watcher, DEPTH - 0.05, 1.0)
+
+
+def take(browser: Browser, stack: Stack, folder: Path) -> None:
+    """Write NAME-SIZE-THEME.jpg for every page."""
+    for size, (window, dots) in SIZES.items():
+        for theme in ("dark", "sunlight"):
+            context = browser.new_context(
+                viewport={"width": window["width"], "height": window["height"]},
+                device_scale_factor=dots,
+                has_touch=size == "phone",
+                reduced_motion="reduce",
+            )
+            sign_in(context, stack.url, stack.data)
+            context.add_init_script(f"localStorage.setItem('mucat-theme', '{theme}')")
+            page = context.new_page()
+            page.goto(stack.url)
+            expect(page.get_by_role("button", name=re.compile("^Control: this page"))).to_be_visible()
+            for view in PAGES:
+                show(page, stack, view)
+                draw(page)
+                path = folder / f"{view.name}-{size}-{theme}.jpg"
+                path.write_bytes(page.screenshot(type="jpeg", quality=QUALITY))
+                print(f"{path}: {path.stat().st_size / 1000:.0f} kB")  # noqa: T201 - it is run from a shell
+            context.close()
+
+
+def draw(page: Page) -> None:
+    """Wait until pictures and charts are there."""
+    settle(page)
+    expect(page.get_by_text(re.compile("being drawn"))).to_have_count(0)
+    page.wait_for_function("[...document.images].every(one => one.complete)")
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def main(folder: Path) -> None:
+    """Start a robot, let it swim, and look."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix="mucat-") as data, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+        with Stack(Path(data) / "data") as stack:
+            # A viewer, who leaves control to what prepares it.
+            with somebody(browser, stack, "viewer") as watcher:
+                prepare(stack, watcher)
+            take(browser, stack, folder)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
