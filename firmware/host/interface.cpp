@@ -98,7 +98,7 @@ void firmware_mix(const int8_t* command, float* directions, float* amplitudes) {
   memcpy(&navigation, command, sizeof navigation);
   FinDemand demands[kFinCount];
   for (uint8_t i = 0; i < kFinCount; ++i) demands[i] = {directions[i], 0};
-  mix(navigation, demands);
+  mix(navigation, Parameters().value(kFinsAmplitude), demands);
   for (uint8_t i = 0; i < kFinCount; ++i) {
     directions[i] = demands[i].direction;
     amplitudes[i] = demands[i].amplitude;
@@ -112,10 +112,10 @@ FinLaw* law_create(float angle) {
 }
 void law_destroy(FinLaw* law) { delete law; }
 float law_step(FinLaw* law, float direction, float amplitude, uint16_t phase) {
-  return law->step({direction, amplitude}, phase);
+  return law->step({direction, amplitude}, phase, Parameters().value(kFinsTurnRate) * kTickSeconds);
 }
 bool law_flapping(const FinLaw* law) { return law->flapping(); }
-uint16_t law_phase_per_tick() { return kPhasePerTick; }
+uint16_t law_phase_per_tick() { return phase_per_tick(Parameters().value(kFinsFrequency)); }
 uint16_t law_fin_phase(uint8_t fin) { return kFinPhase[fin]; }
 
 int16_t firmware_wrap_counts(int16_t counts) { return wrap_counts(counts); }
@@ -128,7 +128,7 @@ float firmware_angle_from_counts(uint8_t fin, int16_t counts) {
 PositionLoop* loop_create() { return new PositionLoop; }
 void loop_destroy(PositionLoop* loop) { delete loop; }
 int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t wanted, int16_t measured) {
-  return loop->step(kFinCalibration[fin], wanted, measured);
+  return loop->step(kFinCalibration[fin], wanted, measured, gain_from_thousandths(Parameters()[kFinsGain]));
 }
 
 // ---- sensors ----

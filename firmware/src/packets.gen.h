@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xdad8308fUL;
+constexpr uint32_t kDefinitionsHash = 0xc4f263b5UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;
@@ -196,6 +196,14 @@ struct __attribute__((packed)) Sense {
 };
 static_assert(sizeof(Sense) == 22, "Sense has another size");
 
+// Host to board: a value to take. Board to host, in answer: the value in force, taken or not.
+struct __attribute__((packed)) Parameter {
+  static constexpr uint8_t kType = 0x12;
+  uint8_t number;  // place in CHIP_PARAMETERS
+  uint16_t value;  // in the parameter's own unit; x 0.001
+};
+static_assert(sizeof(Parameter) == 3, "Parameter has another size");
+
 // Payload bytes of a type of fixed length; -1 for an unknown one or one that carries text.
 inline int8_t payload_bytes(uint8_t type) {
   switch (type) {
@@ -214,11 +222,12 @@ inline int8_t payload_bytes(uint8_t type) {
     case RequestResult::kType: return 0;
     case TestResult::kType: return 10;
     case Sense::kType: return 22;
+    case Parameter::kType: return 3;
     default: return -1;
   }
 }
 
 // Whether a packet of this type is repeated until it is acknowledged.
-constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType; }
+constexpr bool is_reliable(uint8_t type) { return type == Start::kType || type == Debug::kType || type == TestMsg::kType || type == RequestResult::kType || type == TestResult::kType || type == Parameter::kType; }
 
 }  // namespace mucat

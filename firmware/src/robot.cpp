@@ -54,7 +54,7 @@ void Robot::handle(const Message& message) {
       say_disarmed(arming_.stop());
       lowering_ = false;
       // Not at the next tick: now.
-      fins_.step(Motion::kOff);
+      fins_.step(Motion::kOff, parameters_);
       break;
     case Hello::kType:
       greet(unpack<Hello>(message));
@@ -67,6 +67,10 @@ void Robot::handle(const Message& message) {
       break;
     case Sense::kType:
       feel(unpack<Sense>(message));
+      break;
+    case Parameter::kType:
+      // By other definitions its number may mean something else.
+      if (!arming_.definitions_differ()) parameters_.take(unpack<Parameter>(message), armed());
       break;
     default:
       break;  // a heartbeat has done its work by coming; the rest is the board's own to say
@@ -95,7 +99,7 @@ void Robot::tick(uint8_t ticks) {
   say_disarmed(arming_.tick(now));
   watch_battery(now);
   // First of all that takes long: a command waits no longer for its effect than it must.
-  fins_.step(motion(now));
+  fins_.step(motion(now), parameters_);
   sensors_.step(ticks, !armed());
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
@@ -107,12 +111,21 @@ void Robot::tick(uint8_t ticks) {
     slot_ = (slot_ + 1) % kSlots;
   }
   // Before a host has greeted, nobody reads: what the start has to say waits for it.
-  if (arming_.greeted()) link_.step(now);
+  if (!arming_.greeted()) return;
+  answer_parameters();
+  link_.step(now);
+}
+
+// What the queue has no room for is answered in a later tick.
+void Robot::answer_parameters() {
+  for (Parameter answer; parameters_.next(&answer) && link_.queue(answer);) {
+    parameters_.answered(answer.number);
+  }
 }
 
 void Robot::watch_battery(uint32_t now_ms) {
   const uint16_t millivolts = sensors_.battery_millivolts();
-  if (!battery_alarm_.update(millivolts, now_ms)) return;
+  if (!battery_alarm_.update(millivolts, parameters_[kBatteryAlarm], now_ms)) return;
   DebugLine line(DebugLevel::kError);
   line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
   link_.say(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));

@@ -5,6 +5,7 @@
 #include "fins/fins.h"
 #include "link/link.h"
 #include "packets.gen.h"
+#include "parameters.h"
 #include "safety/arming.h"
 #include "sensors/sensors.h"
 
@@ -21,6 +22,7 @@ class Robot {
   void handle(const Message& message);
   void greet(const Hello& hello);
   void arm(const Start& start);
+  void answer_parameters();
   void tick(uint8_t ticks);
   void watch_battery(uint32_t now_ms);
   Motion motion(uint32_t now_ms);
@@ -35,6 +37,7 @@ class Robot {
   Link link_;
   Arming arming_;
   Fins fins_;
+  Parameters parameters_;
   Sensors sensors_;
   BatteryAlarm battery_alarm_;
   uint32_t lowering_since_ms_ = 0;

@@ -18,6 +18,7 @@ def main() -> int:
     only_check = parser.parse_args().check
     files = {
         "firmware/src/packets.gen.h": cpp.header(),
+        "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
         "docs/safety.md": safety.weave((ROOT / "docs/safety.md").read_text(encoding="utf-8")),

@@ -1,8 +1,9 @@
-"""The firmware's packet header."""
+"""The firmware's headers: packets, and what may be tuned."""
 
 from enum import IntEnum, IntFlag
 
 from robot_runtime.packets import (
+    CHIP_PARAMETERS,
     DEFINITIONS_HASH,
     FIN_COUNT,
     FRAME_BYTES_MAX,
@@ -28,6 +29,46 @@ constexpr uint8_t kFinCount = %d;
 constexpr uint8_t kFrameBytesMax = %d;
 constexpr uint8_t kNotReady = %d;
 """
+
+_PARAMETERS = """\
+// Written by `make generate` from robot_runtime/packets/chip_parameters.py. Do not edit.
+#pragma once
+#include <stdint.h>
+
+#include "board/flash.h"
+
+namespace mucat {
+
+enum ParameterNumber : uint8_t {
+%s};
+constexpr uint8_t kParameterCount = %d;
+
+// In thousandths of the unit.
+struct ParameterLimits {
+  uint16_t initial;
+  uint16_t minimum;
+  uint16_t maximum;
+  bool while_armed;
+};
+
+const ParameterLimits kParameterLimits[kParameterCount] PROGMEM = {
+%s};
+
+}  // namespace mucat
+"""
+
+
+def parameters() -> str:
+    """The whole text of parameters.gen.h."""
+    numbers = "".join(
+        f"  k{_camel(one.name.replace('.', '_'))},  // {one.meaning}; {one.unit or 'a ratio'}\n"
+        for one in CHIP_PARAMETERS
+    )
+    rows = ""
+    for one in CHIP_PARAMETERS:
+        limits = (round(value * 1000) for value in (one.default, one.minimum, one.maximum))
+        rows += f"    {{{', '.join(map(str, limits))}, {str(one.while_armed).lower()}}},\n"
+    return _PARAMETERS % (numbers, len(CHIP_PARAMETERS), rows)
 
 
 def header() -> str:

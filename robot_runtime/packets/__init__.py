@@ -1,5 +1,6 @@
 """Every packet of the serial line, defined once; other languages get theirs from here."""
 
+from robot_runtime.packets.chip_parameters import CHIP_PARAMETERS, ChipParameter
 from robot_runtime.packets.definitions import (
     DEFINITIONS_HASH,
     FIN_COUNT,
@@ -17,6 +18,7 @@ from robot_runtime.packets.definitions import (
     Motor,
     Navigation,
     Packet,
+    Parameter,
     RequestResult,
     ResetCause,
     Sense,
@@ -32,6 +34,7 @@ from robot_runtime.packets.definitions import (
 )
 
 __all__ = [
+    "CHIP_PARAMETERS",
     "DEFINITIONS_HASH",
     "FIN_COUNT",
     "FRAME_BYTES_MAX",
@@ -39,6 +42,7 @@ __all__ = [
     "PACKETS",
     "Acknowledge",
     "Beacon",
+    "ChipParameter",
     "Debug",
     "DebugLevel",
     "Depth",
@@ -48,6 +52,7 @@ __all__ = [
     "Motor",
     "Navigation",
     "Packet",
+    "Parameter",
     "RequestResult",
     "ResetCause",
     "Sense",

@@ -11,6 +11,7 @@ from enum import IntEnum, IntFlag
 from hashlib import sha256
 from typing import Annotated, ClassVar, TypeVar, dataclass_transform
 
+from robot_runtime.packets.chip_parameters import CHIP_PARAMETERS
 from robot_runtime.packets.layout import LayoutError, Record, Text, Wire, record
 
 FIN_COUNT = 4
@@ -265,6 +266,17 @@ class Sense(Packet):
     battery: Annotated[float, Wire("H", scale=0.001, unit="V", meaning="battery")]
 
 
+# What may be tuned while the board runs.
+
+
+@_packet(0x12, reliable=True)
+class Parameter(Packet):
+    """Host to board: a value to take. Board to host, in answer: the value in force, taken or not."""
+
+    number: Annotated[int, Wire("B", meaning="place in CHIP_PARAMETERS")]
+    value: Annotated[float, Wire("H", scale=0.001, meaning="in the parameter's own unit")]
+
+
 def encode(packet: Packet) -> bytes:
     """Type byte and payload. Raises LayoutError where a value cannot be written."""
     return bytes([packet.type]) + packet.to_bytes()
@@ -289,6 +301,7 @@ def canonical() -> str:
         lines.append(f"{type_:02x} {cls.__name__} reliable={cls.reliable:d} " + " ".join(fields))
     enums: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, SensorFault, ResetCause)
     lines += [f"{enum.__name__} " + " ".join(f"{one.name}={one.value}" for one in enum) for enum in enums]
+    lines += [str(one) for one in CHIP_PARAMETERS]
     return "\n".join(lines)
 
 

@@ -26,7 +26,7 @@ void Fins::start() {
   for (uint8_t i = 0; i < kFinCount; ++i) drive_bridge(i, 0);
 }
 
-void Fins::step(Motion motion) {
+void Fins::step(Motion motion, const Parameters& parameters) {
   read_encoders();
   const bool was_powered = powered();
   if (motion == Motion::kOff) {
@@ -40,14 +40,17 @@ void Fins::step(Motion motion) {
     power(true);
     return;  // an H-bridge needs some milliseconds of power before it answers
   }
-  if (!mixed_) mix(command_, demands_);
+  if (!mixed_) mix(command_, parameters.value(kFinsAmplitude), demands_);
   mixed_ = true;
-  phase_ += kPhasePerTick;
+  phase_ += phase_per_tick(parameters.value(kFinsFrequency));
+  const float turn = parameters.value(kFinsTurnRate) * kTickSeconds;
+  const int16_t gain = gain_from_thousandths(parameters[kFinsGain]);
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    wanted_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i]);
+    wanted_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
     const FinCalibration& fin = kFinCalibration[i];
     const bool blind = encoder_faults_ & 1 << i;
-    drive(i, blind ? 0 : loops_[i].step(fin, counts_from_angle(fin, wanted_[i]), counts_[i]));
+    const int16_t wanted = counts_from_angle(fin, wanted_[i]);
+    drive(i, blind ? 0 : loops_[i].step(fin, wanted, counts_[i], gain));
   }
   ask_bridges();
 }

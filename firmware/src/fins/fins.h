@@ -5,6 +5,7 @@
 #include "fins/fin_law.h"
 #include "fins/position_loop.h"
 #include "packets.gen.h"
+#include "parameters.h"
 
 namespace mucat {
 
@@ -25,7 +26,7 @@ class Fins {
     mixed_ = false;
   }
   // One tick of 10 ms.
-  void step(Motion motion);
+  void step(Motion motion, const Parameters& parameters);
 
   // No fin flaps, and none is told to.
   bool neutral() const;

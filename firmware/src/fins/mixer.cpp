@@ -28,7 +28,7 @@ float share(int8_t command, int8_t sign) {
 
 }  // namespace
 
-void mix(const Navigation& command, FinDemand (&demands)[kFinCount]) {
+void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCount]) {
   constexpr float kFull = 127.0f;
   float along[kFinCount];
   float down[kFinCount];
@@ -44,7 +44,7 @@ void mix(const Navigation& command, FinDemand (&demands)[kFinCount]) {
     if (length[i] > largest) largest = length[i];
   }
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    demands[i].amplitude = kAmplitudeMax * length[i] / largest;
+    demands[i].amplitude = amplitude * length[i] / largest;
     if (length[i] > 0) demands[i].direction = atan2f(-down[i], along[i]);
   }
 }

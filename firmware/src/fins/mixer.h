@@ -8,15 +8,13 @@
 
 namespace mucat {
 
-// Peak to peak, at a command of 1.
-constexpr float kAmplitudeMax = 1.6f;
-
 struct FinDemand {
   float direction;  // rad, the angle about which the fin flaps
   float amplitude;  // rad, peak to peak
 };
 
-// A fin that is to push nothing keeps its direction, so that a command of nought does not turn fins.
-void mix(const Navigation& command, FinDemand (&demands)[kFinCount]);
+// `amplitude` is what a command of 1 gives. A fin that is to push nothing keeps its direction, so that a command
+// of nought does not turn fins.
+void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCount]);
 
 }  // namespace mucat

@@ -7,13 +7,9 @@
 namespace mucat {
 namespace {
 
-// Eighths of a drive step per count of error, and per count that the error changed in a tick. The first gives
-// full drive at 64 counts (22°); the second keeps a motor that needs 30 ms to reach its speed from
-// overshooting, and pushes a flapping fin ahead. Within the dead zone (1°) the fin is left alone, so that it
-// does not hunt.
-constexpr int16_t kErrorGain = 5;
-constexpr int16_t kChangeGain = 8;
-constexpr int16_t kGainUnit = 8;
+// A drive step for each count that the error changed in a tick keeps a motor that needs 30 ms to reach its
+// speed from overshooting, and pushes a flapping fin ahead. Within the dead zone (1°) the fin is left alone, so
+// that it does not hunt.
 constexpr int16_t kDeadZone = 3;
 // The H-bridge gives nothing below 6: from 2 on it gets that, so that a fin does not stop short.
 constexpr int16_t kDriveNone = 2;
@@ -38,13 +34,14 @@ float angle_from_counts(const FinCalibration& fin, int16_t counts) {
   return turned * (2 * kPi / kCountsPerTurn);
 }
 
-int8_t PositionLoop::step(const FinCalibration& fin, int16_t wanted, int16_t measured) {
+int8_t PositionLoop::step(const FinCalibration& fin, int16_t wanted, int16_t measured, int16_t gain) {
   const int16_t error = fin.encoder_sign * wrap_counts(wanted - measured);
   const int16_t change = restarted_ ? 0 : wrap_counts(error - last_error_);
   last_error_ = error;
   restarted_ = false;
   if (magnitude(error) <= kDeadZone) return 0;
-  const int16_t drive = (kErrorGain * error + kChangeGain * change) / kGainUnit;
+  const int16_t drive =
+      (static_cast<int32_t>(gain) * error + static_cast<int32_t>(change) * kGainUnit) / kGainUnit;
   const int16_t size = magnitude(drive);
   if (size < kDriveNone) return 0;
   const int16_t limited = size < kDriveMin ? kDriveMin : size > kDriveMax ? kDriveMax : size;

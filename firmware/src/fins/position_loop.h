@@ -9,6 +9,10 @@ namespace mucat {
 constexpr int16_t kCountsPerTurn = 1024;
 constexpr int8_t kDriveMax = 40;
 
+// A drive step for each count of error.
+constexpr int16_t kGainUnit = 256;
+inline int16_t gain_from_thousandths(uint16_t gain) { return gain * 32 / 125; }
+
 // Into -512 to 511.
 int16_t wrap_counts(int16_t counts);
 // The encoder's counts at a fin angle (rad).
@@ -20,8 +24,8 @@ class PositionLoop {
  public:
   // Forgets how the fin moved: to be called where the loop was not stepped for a while.
   void restart() { restarted_ = true; }
-  // One tick: the H-bridge command, within ±kDriveMax, for these counts.
-  int8_t step(const FinCalibration& fin, int16_t wanted, int16_t measured);
+  // One tick: the H-bridge command, within ±kDriveMax, for these counts. `gain` is in units of kGainUnit.
+  int8_t step(const FinCalibration& fin, int16_t wanted, int16_t measured, int16_t gain);
 
  private:
   int16_t last_error_ = 0;

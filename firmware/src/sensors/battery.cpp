@@ -6,7 +6,6 @@ namespace {
 constexpr uint32_t kFullScaleMillivolts = 2 * 5000UL;
 constexpr uint16_t kCountsMax = 1023;
 
-constexpr uint16_t kAlarmMillivolts = 6200;
 // Below this no battery is connected to the divider: the chip itself would not run on it.
 constexpr uint16_t kSensedMillivolts = 3000;
 constexpr uint32_t kAlarmMs = 20000;
@@ -17,8 +16,8 @@ uint16_t battery_millivolts(uint16_t counts) {
   return (counts * kFullScaleMillivolts + kCountsMax / 2) / kCountsMax;
 }
 
-bool BatteryAlarm::update(uint16_t millivolts, uint32_t now_ms) {
-  const bool low = millivolts < kAlarmMillivolts && millivolts >= kSensedMillivolts;
+bool BatteryAlarm::update(uint16_t millivolts, uint16_t alarm_millivolts, uint32_t now_ms) {
+  const bool low = millivolts < alarm_millivolts && millivolts >= kSensedMillivolts;
   if (low && !low_) since_ms_ = now_ms;
   low_ = low;
   if (on_ || !low || now_ms - since_ms_ < kAlarmMs) return false;

@@ -7,12 +7,12 @@ namespace mucat {
 // mV from the converter's counts (0 to 1023 for 5 V) behind a divider of two equal resistors.
 uint16_t battery_millivolts(uint16_t counts);
 
-// Below 6.20 V for 20 s: alarm, until the next reset, for a flat battery recovers as soon as nothing draws on
+// Below a voltage for 20 s: alarm, until the next reset, for a flat battery recovers as soon as nothing draws on
 // it.
 class BatteryAlarm {
  public:
   // True once, when the alarm begins.
-  bool update(uint16_t millivolts, uint32_t now_ms);
+  bool update(uint16_t millivolts, uint16_t alarm_millivolts, uint32_t now_ms);
   bool on() const { return on_; }
 
  private:

@@ -1,0 +1,34 @@
+#include "parameters.h"
+
+namespace mucat {
+namespace {
+
+static_assert(kParameterCount <= 8, "more parameters than bits that say which to answer");
+
+uint16_t read(const uint16_t& in_flash) { return pgm_read_word(&in_flash); }
+
+}  // namespace
+
+Parameters::Parameters() {
+  for (uint8_t i = 0; i < kParameterCount; ++i) values_[i] = read(kParameterLimits[i].initial);
+}
+
+void Parameters::take(const Parameter& wanted, bool armed) {
+  if (wanted.number >= kParameterCount) return;
+  const ParameterLimits& limits = kParameterLimits[wanted.number];
+  const bool in_range = wanted.value >= read(limits.minimum) && wanted.value <= read(limits.maximum);
+  const bool now = !armed || pgm_read_byte(&limits.while_armed);
+  if (in_range && now) values_[wanted.number] = wanted.value;
+  unanswered_ |= 1 << wanted.number;
+}
+
+bool Parameters::next(Parameter* answer) const {
+  for (uint8_t i = 0; i < kParameterCount; ++i) {
+    if (!(unanswered_ >> i & 1)) continue;
+    *answer = Parameter{i, values_[i]};
+    return true;
+  }
+  return false;
+}
+
+}  // namespace mucat

@@ -1,0 +1,29 @@
+// What may be tuned while the board runs. A reset forgets it: the host says it anew after each greeting.
+#pragma once
+#include <stdint.h>
+
+#include "packets.gen.h"
+#include "parameters.gen.h"
+
+namespace mucat {
+
+class Parameters {
+ public:
+  Parameters();
+  // In thousandths of its unit.
+  uint16_t operator[](ParameterNumber number) const { return values_[number]; }
+  float value(ParameterNumber number) const { return values_[number] * 0.001f; }
+  // Takes a value within its limits, and where the board is armed only what may change then. It is answered
+  // either way.
+  void take(const Parameter& wanted, bool armed);
+
+  // The next one to be answered; false where there is none. It stays the next until it is answered.
+  bool next(Parameter* answer) const;
+  void answered(uint8_t number) { unanswered_ &= ~(1 << number); }
+
+ private:
+  uint16_t values_[kParameterCount];
+  uint8_t unanswered_ = 0;
+};
+
+}  // namespace mucat
