@@ -13,8 +13,8 @@ struct FinDemand {
   float amplitude;  // rad, peak to peak
 };
 
-// `amplitude` is what a command of 1 gives. A fin that is to push nothing keeps its direction, so that a command
-// of nought does not turn fins.
+// `amplitude` is what a command of 1 gives. A fin that is to push nothing keeps its direction, so that a
+// command of nought does not turn fins.
 void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCount]);
 
 }  // namespace mucat

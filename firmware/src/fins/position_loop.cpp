@@ -8,8 +8,8 @@ namespace mucat {
 namespace {
 
 // A drive step for each count that the error changed in a tick keeps a motor that needs 30 ms to reach its
-// speed from overshooting, and pushes a flapping fin ahead. Within the dead zone (1°) the fin is left alone, so
-// that it does not hunt.
+// speed from overshooting, and pushes a flapping fin ahead. Within the dead zone (1°) the fin is left alone,
+// so that it does not hunt.
 constexpr int16_t kDeadZone = 3;
 // The H-bridge gives nothing below 6: from 2 on it gets that, so that a fin does not stop short.
 constexpr int16_t kDriveNone = 2;
