@@ -33,6 +33,15 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
+export type TuningState = Schemas['TuningState'];
+export type TuningRun = Schemas['TuningRun'];
+export type TuningRunDetail = Schemas['TuningRunDetail'];
+export type TuningRuns = Schemas['TuningRuns'];
+export type TuningStart = Schemas['StepStart'] | Schemas['RelayStart'];
+export type ActiveTuning = Schemas['ActiveTuning'];
+export type Proposal = Schemas['Proposal'];
+export type LimitCycle = Schemas['LimitCycleFound'];
+export type LoopName = TuningRun['loop'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
@@ -154,5 +163,12 @@ export const api = {
   checkScenario: (text: string) => request<ScenarioCheck>('POST', '/scenarios/check', { text }),
   startScenario: (start: ScenarioStart) => request<Schemas['ScenarioStarted']>('POST', '/scenarios/runs', start),
   cancelScenario: () => command('POST', '/scenarios/cancel'),
+  tuningRuns: (loop: LoopName) => request<TuningRuns>('GET', `/tuning/runs?loop=${loop}`),
+  tuningRun: (id: TuningRun['id']) => request<TuningRunDetail>('GET', `/tuning/runs/${id}`),
+  startTuning: (wanted: TuningStart) => order('POST', '/tuning/runs', wanted),
+  stopTuning: () => order('POST', '/tuning/stop'),
+  renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
+  deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
+  loop: (name: LoopName, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };
