@@ -4,6 +4,7 @@ import type { Rings } from '../../../live/store';
 import { sessionColour } from '../../compare/colours';
 import type { CurveLine } from './curvePlot';
 import type { Loop } from './loops';
+import { runTitle } from './words';
 
 /** s before the step that a curve begins */
 export const LEAD = 3;
@@ -13,7 +14,7 @@ export function keptLine(run: TuningRunDetail, place: number, theme: 'dark' | 's
   const scaled = (values: readonly number[]) => values.map((value) => value * loop.factor);
   const { times, set_points, values, outputs } = run.curve;
   return {
-    label: run.name,
+    label: runTitle(run),
     colour: sessionColour(place, theme),
     times,
     setPoints: scaled(set_points),
