@@ -35,6 +35,15 @@ export type Course = Schemas['Course']['by'];
 export type KeptLayout = Schemas['KeptLayout'];
 export type OwnPanel = Schemas['OwnPanel'];
 export type ThesisTable = Schemas['ThesisTable'];
+export type TuningState = Schemas['TuningState'];
+export type TuningRun = Schemas['TuningRun'];
+export type TuningRunDetail = Schemas['TuningRunDetail'];
+export type TuningRuns = Schemas['TuningRuns'];
+export type TuningStart = Schemas['StepStart'] | Schemas['RelayStart'];
+export type ActiveTuning = Schemas['ActiveTuning'];
+export type Proposal = Schemas['Proposal'];
+export type LimitCycle = Schemas['LimitCycleFound'];
+export type LoopName = TuningRun['loop'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
@@ -164,5 +173,12 @@ export const api = {
   ownPanels: () => request<OwnPanel[]>('GET', '/panels'),
   ownPanel: (name: OwnPanel['name']) =>
     request<Schemas['OwnPanelScript']>('GET', `/panels/own/${encodeURIComponent(name)}`),
+  tuningRuns: (loop: LoopName) => request<TuningRuns>('GET', `/tuning/runs?loop=${loop}`),
+  tuningRun: (id: TuningRun['id']) => request<TuningRunDetail>('GET', `/tuning/runs/${id}`),
+  startTuning: (wanted: TuningStart) => order('POST', '/tuning/runs', wanted),
+  stopTuning: () => order('POST', '/tuning/stop'),
+  renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
+  deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
+  loop: (name: LoopName, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };

@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from math import degrees
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -17,6 +18,7 @@ from server.live.health import Watch
 from server.processes.parts import Tell
 from server.store import StoreError
 from server.tuning.curve import Gathering
+from server.tuning.meanings import is_angle
 from server.tuning.runs import Runs
 from server.tuning.shapes import ActiveTuning, Force, RelayStart, RunState, StepStart, TuningRun, TuningState
 
@@ -220,8 +222,12 @@ class TuningLab:
 
 def _name(wanted: StepStart | RelayStart, force: Force) -> str:
     if wanted.kind == "step":
-        return f"{force.title}, {wanted.start:g} to {wanted.target:g}"
-    return f"Relay ±{100 * wanted.amplitude:g} % at {wanted.set_point:g}"
+        return f"{force.title}, {_place(wanted.start, wanted.loop)} to {_place(wanted.target, wanted.loop)}"
+    return f"Relay ±{100 * wanted.amplitude:g} % at {_place(wanted.set_point, wanted.loop)}"
+
+
+def _place(value: float, loop: str) -> str:
+    return f"{degrees(value):.0f}°" if is_angle(loop) else f"{value:g} m"
 
 
 def _in_force(state: dict[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:

@@ -109,6 +109,7 @@ export class LiveFeed {
     else if (message.op === 'health') live.parts = message.parts;
     else if (message.op === 'session') live.recording = message.recording;
     else if (message.op === 'scenario') live.scenario = message;
+    else if (message.op === 'tuning') live.tuning = message;
     else if (message.op === 'comm_test') live.commTest.take(message.active, message.cell);
     else if (message.op === 'control') this.#control.hear(message);
     else if (message.op === 'alarms') live.serverAlarms = message.alarms;

@@ -16,7 +16,7 @@ import type { Control } from '../control/control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
-import type { Part, ScenarioState, Session } from '../api';
+import type { Part, ScenarioState, Session, TuningState } from '../api';
 import type { Hello } from './messages';
 import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
@@ -66,6 +66,8 @@ export class Live {
   readonly commTest = new CommTestWatch();
   /** null until the server has said whether a scenario runs */
   scenario = $state.raw<ScenarioState | null>(null);
+  /** null until the server has said whether an experiment runs */
+  tuning = $state.raw<TuningState | null>(null);
 
   /** counts frames in which something new is to be drawn, and the slower beat at which digits are read */
   #detected: number[] = [];

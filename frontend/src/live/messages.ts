@@ -1,5 +1,5 @@
 /** The text messages of the live socket. */
-import type { Cell, Part, ScenarioState, Session } from '../api';
+import type { Cell, Part, ScenarioState, Session, TuningState } from '../api';
 import type { ControlMessage, You } from '../control/messages';
 import type { Alarm } from '../generated/topics';
 
@@ -41,6 +41,7 @@ export type ServerMessage =
   | { op: 'session'; recording: Session | null }
   | { op: 'comm_test'; active: CommTestActive | null; cell: (Cell & { run: number }) | null }
   | ({ op: 'scenario' } & ScenarioState)
+  | ({ op: 'tuning' } & TuningState)
   | ControlMessage
   | { op: 'alarms'; alarms: Alarm[] }
   | { op: 'error'; text: string }
@@ -53,6 +54,7 @@ const OPERATIONS: ReadonlySet<unknown> = new Set<ServerMessage['op']>([
   'session',
   'comm_test',
   'scenario',
+  'tuning',
   'control',
   'alarms',
   'error',

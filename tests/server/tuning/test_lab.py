@@ -137,7 +137,7 @@ def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
             "gains": {"kp": 3.0, "ki": 0.4, "kd": 2.0},
         }
         assert kept["settings"] == STEP
-        assert kept["name"] == "PID, 0.4 to 0.7"
+        assert kept["name"] == "PID, 0.4 m to 0.7 m"
         assert kept["curve"]["times"][0] == pytest.approx(-3.0)
         assert kept["curve"]["times"][-1] == pytest.approx(6.0)
         assert kept["figures"]["rise_time"]["value"] == pytest.approx(1.2)
@@ -254,6 +254,9 @@ def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> 
         served.runtime.refusal = "No, since the runtime knows better."
         assert "the runtime knows better" in await refused(served, STEP, 409)
         served.runtime.refusal = None
+        served.assembly.tuning._occupied = lambda: "The scenario “Dive” is being run."
+        assert "The scenario “Dive”" in await refused(served, STEP, 409)
+        served.assembly.tuning._occupied = lambda: None
         nothing = await served.api.post("/tuning/stop")
         assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment runs.")
         assert (await served.api.get("/tuning/runs")).json()["runs"] == []

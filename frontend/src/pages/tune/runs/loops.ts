@@ -1,0 +1,30 @@
+/** The robot's loops as people tune them: depths in m, angles in degrees. */
+import type { LoopName } from '../../../api';
+
+export interface Loop {
+  readonly name: LoopName;
+  readonly title: string;
+  readonly unit: string;
+  /** what one of the loop's own unit is in the shown one */
+  readonly factor: number;
+  /** of set points, in the shown unit */
+  readonly least: number;
+  readonly most: number;
+  readonly decimals: number;
+  /** values grow downwards in charts */
+  readonly downwards: boolean;
+}
+
+const DEGREES = 180 / Math.PI;
+const angle = { unit: '°', factor: DEGREES, decimals: 1, downwards: false } as const;
+
+export const LOOPS: readonly Loop[] = [
+  { name: 'depth', title: 'Depth', unit: 'm', factor: 1, least: 0, most: 10, decimals: 2, downwards: true },
+  { name: 'heading', title: 'Heading', least: -180, most: 180, ...angle },
+  { name: 'pitch', title: 'Pitch', least: -28, most: 28, ...angle },
+  { name: 'roll', title: 'Roll', least: -28, most: 28, ...angle },
+];
+
+export function loopOf(name: LoopName): Loop {
+  return LOOPS.find((one) => one.name === name) ?? (LOOPS[0] as Loop);
+}

@@ -1,0 +1,96 @@
+"""Tuning from the page: a step response that is kept and laid over others, and gains from a relay."""
+
+import re
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.people import somebody
+from tests.stack import Stack
+
+RUN_MS = 60_000
+"""The emulated robot swims in real time, on a computer that has other work."""
+
+
+def hold_to_arm(page: Page) -> None:
+    page.get_by_role("button", name="Hold to arm").hover()
+    page.mouse.down()
+    expect(page.get_by_role("button", name=re.compile("^Run the"))).to_be_enabled()
+    page.mouse.up()
+
+
+def fill(page: Page, **values: str) -> None:
+    for label, value in values.items():
+        page.get_by_label(label.replace("_", " "), exact=True).fill(value)
+
+
+@pytest.fixture
+def empty(stack: Stack) -> Stack:
+    """No runs are kept."""
+    for run in stack.api.get("/tuning/runs").json()["runs"]:
+        stack.api.delete(f"/tuning/runs/{run['id']}").raise_for_status()
+    return stack
+
+
+def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
+    page = any_page
+    page.goto(f"{empty.url}/#/tune/response")
+    expect(page.get_by_text("No step response yet")).to_be_visible()
+    page.get_by_text("Limits and waiting").click()
+    fill(page, **{"from": "0.2", "to": "0.4", "measured_for": "3", "waits_at_most": "1"})
+    hold_to_arm(page)
+    page.get_by_role("button", name="Run the step").click()
+    expect(page.get_by_role("progressbar", name="Progress")).to_be_visible()
+    figures = page.get_by_role("region", name="Figures of the step responses")
+    expect(figures).to_be_visible(timeout=RUN_MS)
+    expect(figures.get_by_role("row", name=re.compile("^Effort"))).to_contain_text("100.0")
+    page.get_by_role("button", name="STOP").click()
+
+    page.reload()
+    runs = page.get_by_role("region", name="Runs", exact=True)
+    expect(runs.get_by_text("Bang-bang, output 1")).to_be_visible()
+    expect(figures).to_be_visible()
+    runs.get_by_role("button", name=re.compile("^Rename")).click()
+    runs.get_by_label("Name of the run").fill("in tap water")
+    runs.get_by_role("button", name="Save").click()
+    expect(figures.get_by_role("columnheader", name=re.compile("in tap water$"))).to_be_visible()
+    runs.get_by_role("button", name=re.compile("^Delete .* in tap water$")).click()
+    runs.get_by_role("button", name="Delete for good").click()
+    expect(page.get_by_text("No step response yet")).to_be_visible()
+
+
+def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
+    empty: Stack, page: Page, browser: Browser
+) -> None:
+    before = empty.api.get("/robot").json()["loops"][0]
+    page.goto(f"{empty.url}/#/tune/relay")
+    fill(page, **{"about": "0.3", "command_±": "100", "cycles": "3"})
+    hold_to_arm(page)
+    page.get_by_role("button", name="Run the relay").click()
+    table = page.get_by_role("region", name="Gains by rule, beside the present ones")
+    expect(table).to_be_visible(timeout=RUN_MS)
+    assert empty.api.get("/robot").json()["loops"][0] == before
+
+    with somebody(browser, empty, "viewer") as other:
+        other.goto(f"{empty.url}/#/tune/relay")
+        expect(other.get_by_role("button", name="Apply the gains by Tyreus–Luyben")).to_be_disabled()
+        expect(other.get_by_role("button", name=re.compile("^Delete"))).to_have_count(0)
+
+    row = table.get_by_role("row", name=re.compile("^Tyreus–Luyben"))
+    proposed = row.get_by_role("cell").nth(0).inner_text()
+    row.get_by_role("button", name="Apply").click()
+    expect(page.get_by_text("The PID is in force, with the gains by Tyreus–Luyben.")).to_be_visible()
+    present = table.get_by_role("row", name=re.compile("^Present gains"))
+    expect(present).to_contain_text(proposed)
+    expect(present).to_contain_text("In force now.")
+
+    page.get_by_role("button", name="Try them with a step").click()
+    expect(page.get_by_role("heading", name="Tune")).to_be_visible()
+    expect(page.get_by_text("Step response on the depth")).to_be_visible()
+    page.get_by_role("button", name="STOP").click()
+    expect(page.get_by_role("region", name="Runs", exact=True)).to_contain_text("The robot was disarmed.")
+    pid = next(one for one in before["controllers"] if one["name"] == "pid")
+    gains = {one["name"]: one["value"] for one in pid["gains"]}
+    put = {"controller": before["controller"]}
+    empty.api.put("/robot/loops/depth", json={"controller": "pid", "gains": gains}).raise_for_status()
+    empty.api.put("/robot/loops/depth", json=put).raise_for_status()
