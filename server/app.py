@@ -37,6 +37,7 @@ from server.routes import (
     sessions,
     simulator,
     storage,
+    vision,
 )
 from server.routes.problems import EVERYWHERE
 from server.security import Guard
@@ -95,7 +96,7 @@ def create_app(
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live, control)
+    robots = (health, robot, vision, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

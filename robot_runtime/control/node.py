@@ -19,7 +19,7 @@ VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
 
 
 class ControlNode:
-    """Holds the depth: the default set point, or another while the wanted colour is seen.
+    """Holds the depth: the default set point, or another while something is seen that there is one for.
 
     Meanwhile it may steer towards a light beacon.
 
@@ -39,7 +39,10 @@ class ControlNode:
         self._clock = clock
         self._send = send
         self._depth: tuple[float, float] | None = None
-        self._seen = float("-inf")
+        self._sight: Detection | None = None
+        self._used: Detection | None = None
+        self.picture_age: float | None = None
+        """s; of the last picture that a tick used, when it did first."""
         self._ticked: float | None = None
         self._towards_light = BeaconSteering()
         self._lights = (float("-inf"), False, False)
@@ -110,11 +113,17 @@ class ControlNode:
         return self._towards_light.step(fresh and right, fresh and left, seconds)
 
     def _choose_set_point(self, now: float) -> None:
-        seen = now - self._seen <= VISION_STALE
-        wanted = self.set_point_detected if seen else self.set_point_default
+        wanted, because = self.set_point_default, ""
+        sight = self._sight
+        if sight is not None and now - sight.taken <= VISION_STALE:
+            if sight.set_point is not None:
+                wanted, because = sight.set_point, f": {sight.target} is seen"
+            elif sight.colour == self.colour:
+                wanted, because = self.set_point_detected, f": {self.colour} is seen"
+        if sight is not None and sight is not self._used:
+            self._used, self.picture_age = sight, now - sight.taken
         if wanted != self.set_point:
             self.set_point = wanted
-            because = f": {self.colour} is seen" if seen else ""
             self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
 
     def _take_depth(self, _: str, time: float, record: bytes) -> None:
@@ -126,7 +135,7 @@ class ControlNode:
 
     def _take_detection(self, _: str, document: Document) -> None:
         if isinstance(document, Detection):
-            self._seen = document.taken if document.colour == self.colour else float("-inf")
+            self._sight = document
 
     def _tell(self, kind: str, text: str) -> None:
         event = Event(time=self._clock.now(), kind=kind, severity="info", text=text)

@@ -1284,6 +1284,90 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/vision": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * How the vision node looks
+         * @description All settings that may change while it looks, and what robot.toml says of them.
+         */
+        get: operations["getVision"];
+        /**
+         * Have the vision node look otherwise
+         * @description All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that.
+         */
+        put: operations["putVisionSettings"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/pick": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * The colour at a place in the picture
+         * @description A range for what is there in the newest picture. It changes nothing.
+         */
+        post: operations["pickColour"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/read": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read the settings in a robot.toml
+         * @description What its table [vision] says. It changes nothing.
+         */
+        post: operations["readVision"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/toml": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The settings as a part of robot.toml
+         * @description The table [vision], to be kept or to be put into robot.toml.
+         */
+        get: operations["downloadVision"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -1488,6 +1572,27 @@ export interface components {
             pi_delays: number[];
             /** Seconds */
             seconds: number;
+        };
+        /**
+         * ColourRange
+         * @description Lowest and highest hue, saturation and value, as OpenCV counts them; hues may run through 0.
+         */
+        ColourRange: {
+            /** Hue */
+            hue: [
+                number,
+                number
+            ];
+            /** Saturation */
+            saturation: [
+                number,
+                number
+            ];
+            /** Value */
+            value: [
+                number,
+                number
+            ];
         };
         /**
          * Compared
@@ -2356,6 +2461,28 @@ export interface components {
             text: string;
         };
         /**
+         * PickPlace
+         * @description Where somebody points in the picture.
+         */
+        PickPlace: {
+            /**
+             * Radius
+             * @description share of its width; what is nearer counts
+             * @default 0.02
+             */
+            radius: number;
+            /**
+             * X
+             * @description share of the picture's width
+             */
+            x: number;
+            /**
+             * Y
+             * @description share of its height
+             */
+            y: number;
+        };
+        /**
          * Place
          * @description Whether the simulator runs on this computer.
          */
@@ -2370,6 +2497,15 @@ export interface components {
         Problem: {
             /** Detail */
             detail: string;
+        };
+        /**
+         * Proposal
+         * @description The range that was found, and how much of the picture it holds.
+         */
+        Proposal: {
+            colour: components["schemas"]["ColourRange"];
+            /** Share */
+            share: number;
         };
         /**
          * QueuedRun
@@ -3027,6 +3163,8 @@ export interface components {
             camera: string;
             /** Card */
             card: string | null;
+            /** Cards */
+            cards?: string[];
             /** Colours */
             colours: string[];
             /** Connected */
@@ -3288,6 +3426,98 @@ export interface components {
              * @description Hz
              */
             rate?: number | null;
+        };
+        /**
+         * VisionInForce
+         * @description The settings now, and those of robot.toml.
+         */
+        VisionInForce: {
+            configured: components["schemas"]["VisionSettings"];
+            settings: components["schemas"]["VisionSettings"];
+        };
+        /**
+         * VisionSettings
+         * @description How the vision node looks, all of it; docs/vision.md explains each.
+         */
+        VisionSettings: {
+            /**
+             * Actions
+             * @description m, by colour or “marker 7”; the first goes
+             */
+            actions: {
+                [key: string]: number;
+            };
+            /**
+             * Area Max
+             * @description share of the picture
+             */
+            area_max: number;
+            /**
+             * Area Min
+             * @description share of the picture
+             */
+            area_min: number;
+            /**
+             * Aspect
+             * @description width over height
+             */
+            aspect: [
+                number,
+                number
+            ];
+            /**
+             * Circularity Min
+             * @description least 4π area over perimeter²
+             */
+            circularity_min: number;
+            /**
+             * Colour
+             * @description the wanted one, of the colours
+             */
+            colour: string;
+            /** Colours */
+            colours: {
+                [key: string]: components["schemas"]["ColourRange"];
+            };
+            /**
+             * Fill Min
+             * @description least area over that of the upright box
+             */
+            fill_min: number;
+            /**
+             * Marker Numbers
+             * @description those that count; empty: all
+             */
+            marker_numbers: number[];
+            /**
+             * Markers
+             * @description dictionary of ArUco markers
+             * @enum {string}
+             */
+            markers: "none" | "4x4_50" | "5x5_100" | "6x6_250" | "7x7_1000" | "original" | "april_36h11";
+            /**
+             * Opening
+             * @description share of the picture's width
+             */
+            opening: number;
+            /**
+             * Rate
+             * @description Hz
+             */
+            rate: number;
+            /**
+             * White Balance
+             * @enum {string}
+             */
+            white_balance: "none" | "grey_world" | "underwater";
+        };
+        /**
+         * VisionText
+         * @description robot.toml, or a piece of it with the table [vision].
+         */
+        VisionText: {
+            /** Text */
+            text: string;
         };
         /**
          * Wanted
@@ -6865,6 +7095,278 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VisionInForce"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putVisionSettings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VisionSettings"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pickColour: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PickPlace"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            /** @description There is no colour, or no picture */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VisionText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VisionSettings"];
+                };
+            };
+            /** @description There are no settings in it that can be used */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": string;
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
                 };
             };
         };

@@ -376,9 +376,12 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
+  vision: 23,
   picture: 32,
   observer: 33,
   thumbnail: 34,
+  mask: 35,
+  balanced: 36,
 } as const;
 
 /** A rectangle in the picture; each number a share of the picture's width or height. */
@@ -424,6 +427,57 @@ export interface Alarm {
   remedy: string;
 }
 
+/** A patch of the wanted colour, and what it is measured by; `refused` says why it does not count. */
+export interface Candidate {
+  box: Box;
+  area: number;
+  fill: number;
+  aspect: number;
+  circularity: number;
+  refused: string;
+}
+
+/** An ArUco marker in the picture. */
+export interface Marker {
+  number: number;
+  corners: number[];
+}
+
+/** What counts as one colour: lowest and highest hue, saturation and value, both included.
+
+    A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
+    where another one does.
+     */
+export interface ColourRange {
+  hue: [number, number];
+  saturation: [number, number];
+  value: [number, number];
+}
+
+/** Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
+
+    `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
+    fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
+    (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
+    the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
+    ConfigError on what does not go together.
+     */
+export interface VisionSettings {
+  rate: number;
+  colour: string;
+  colours: Record<string, ColourRange>;
+  area_min: number;
+  area_max: number;
+  fill_min: number;
+  aspect: [number, number];
+  circularity_min: number;
+  opening: number;
+  white_balance: 'none' | 'grey_world' | 'underwater';
+  markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
+  marker_numbers: number[];
+  actions: Record<string, number>;
+}
+
 /** The robot as a whole; sent once a second and at every change. */
 export interface State {
   time: number;
@@ -450,6 +504,7 @@ export interface State {
   vision_colour: string;
   colours: string[];
   card: string | null;
+  cards: string[];
   camera: string;
   pilot_dropped: number;
 }
@@ -462,6 +517,11 @@ export interface Detection {
   box: Box | null;
   area: number;
   processing: number;
+  candidates: Candidate[];
+  markers: Marker[];
+  target: string | null;
+  set_point: number | null;
+  latency: number | null;
 }
 
 /** A line of text that the firmware wrote; level as in DebugLevel. */
@@ -479,10 +539,17 @@ export interface RobotEvent {
   text: string;
 }
 
+/** How the vision node looks now; sent at every change, and every ten seconds. */
+export interface VisionInForce {
+  time: number;
+  settings: VisionSettings;
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
+  vision: VisionInForce;
 }
