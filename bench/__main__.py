@@ -15,6 +15,7 @@ PARTS = (
     "physics",
     "scenario",
     "camera",
+    "vision",
     "codec",
     "link",
     "corruption",

@@ -11,6 +11,7 @@ from robot_runtime.config import ConfigError, load
 from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.messages import Messages
 from robot_runtime.robot import Robot
+from robot_runtime.vision.keeping import Kept
 
 
 def main() -> int:
@@ -25,7 +26,8 @@ def main() -> int:
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
             port = options.port or config.link.port
-            robot = Robot(config, port, messages, heartbeat=options.heartbeat)
+            kept = Kept(options.data / "vision.json")
+            robot = Robot(config, port, messages, heartbeat=options.heartbeat, kept_vision=kept)
             robot.answer()
             if options.server_lock is not None:
                 watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)

@@ -4,11 +4,13 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robot_runtime.config import parse
 from robot_runtime.control.experiment_request import read_experiment
 from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.core import Core
 from robot_runtime.errors import Refused
 from robot_runtime.samples import Mode
+from robot_runtime.vision_settings import VisionSettings
 
 CHANGING = ("controller", "loop", "set_points", "steering")
 """What would change under an experiment what it measures."""
@@ -34,6 +36,7 @@ class Commands:
             "vision": self._vision,
             "experiment": self._experiment,
             "end_experiment": self._end_experiment,
+            "vision_settings": self._vision_settings,
         }
         for name in CHANGING:
             handlers[name] = self._without_experiment(handlers[name])
@@ -108,12 +111,11 @@ class Commands:
         self._robot.vision.show_card(None if question.get("colour") is None else _text(question, "colour"))
 
     def _vision(self, question: Mapping[str, Any]) -> None:
-        rate = _number(question, "rate", self._robot.vision.rate)
-        colour = question.get("colour") or self._robot.control.colour
-        if colour not in self._robot.vision.colours:
-            raise Refused(f"no colour is named {colour!r}; there are {', '.join(self._robot.vision.colours)}")
-        self._robot.vision.rate = rate
-        self._robot.vision.colour = self._robot.control.colour = colour
+        changes = {name: question[name] for name in ("rate", "colour") if question.get(name) is not None}
+        self._robot.set_vision(parse(VisionSettings, {**self._robot.vision.settings.table(), **changes}))
+
+    def _vision_settings(self, question: Mapping[str, Any]) -> None:
+        self._robot.set_vision(parse(VisionSettings, question))
 
     def _experiment(self, question: Mapping[str, Any]) -> None:
         mode = self._robot.supervisor.mode

@@ -8,29 +8,14 @@ from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from robot_runtime.ranges import SET_POINT as SET_POINT
+from robot_runtime.ranges import VISION_RATE as VISION_RATE
+from robot_runtime.ranges import ConfigError as ConfigError
+from robot_runtime.ranges import Range as Range
+from robot_runtime.vision_settings import VisionSettings
+
 T = TypeVar("T")
 
-
-class ConfigError(ValueError):
-    """A configuration that cannot be used; each of `problems` names an entry and what it may be."""
-
-    def __init__(self, *problems: str) -> None:
-        super().__init__("; ".join(problems))
-        self.problems = problems
-
-
-@dataclass(frozen=True, slots=True)
-class Range:
-    """Limits of a number, both included."""
-
-    minimum: float
-    maximum: float
-
-
-SET_POINT = Range(0, 10)
-"""m; what a wanted depth may be, in the file and later."""
-VISION_RATE = Range(2, 30)
-"""Hz; slower, and what was seen would be stale before the next look."""
 
 HIL_BAUD_MIN = 115_200
 """From here on the line carries the fins at full rate."""
@@ -93,17 +78,18 @@ class ControlConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class VisionConfig:
-    """The vision node; rate in Hz, picture size in pixels, area as a share of the picture."""
+class VisionConfig(VisionSettings):
+    """The vision node; picture size in pixels."""
 
     camera: Literal["scene", "card", "file", "pi"] = "scene"
     file: str = ""
-    rate: Annotated[float, VISION_RATE] = 4.0
     width: Annotated[int, Range(64, 1920)] = 320
     height: Annotated[int, Range(48, 1080)] = 240
-    colour: str = "yellow"
-    area_min: Annotated[float, Range(0.0001, 1)] = 0.01
-    colours: dict[str, dict[str, list[int]]] = field(default_factory=dict)
+
+    @property
+    def settings(self) -> VisionSettings:
+        """What of it may change while the node looks."""
+        return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

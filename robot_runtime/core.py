@@ -7,7 +7,7 @@ time `scenario.run` calls the same steps one after the other.
 import logging
 import threading
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -39,10 +39,12 @@ from robot_runtime.samples import (
     Pace,
     Severity,
     State,
+    VisionInForce,
 )
 from robot_runtime.topics import TOPICS, Kind
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.node import Vision
+from robot_runtime.vision_settings import VisionSettings
 
 log = logging.getLogger(__name__)
 
@@ -57,6 +59,7 @@ PUBLISH_EVERY = 0.1
 """s between two looks for what the board's own messages have not already taken along."""
 _STATE_EVERY = 1.0
 _STATISTICS_EVERY = 1.0
+_VISION_EVERY = 10.0
 
 
 class Core:
@@ -78,7 +81,7 @@ class Core:
         line: Conversation,
         outbox: Outbox,
         *,
-        picture_wanted: Callable[[], bool],
+        watched: Callable[[str], bool],
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,
         loop: InTheLoop | None = None,
@@ -106,7 +109,7 @@ class Core:
             clock,
             self._take_detection,
             outbox.send_picture,
-            picture_wanted,
+            watched,
             self.tell,
             open_camera,
             messages,
@@ -115,6 +118,7 @@ class Core:
         self._every: list[tuple[float, Callable[[], None]]] = [
             (_STATE_EVERY, self.announce),
             (_STATISTICS_EVERY, self._publish_statistics),
+            (_VISION_EVERY, self._publish_vision),
         ]
         self._due = [clock.now()] * len(self._every)
         self._configure()
@@ -208,14 +212,26 @@ class Core:
             set_point_detected=self.control.set_point_detected,
             steering=self.control.steering,
             control_rate=self.config.control.rate,
-            vision_rate=self.vision.rate,
+            vision_rate=self.vision.settings.rate,
             vision_colour=self.control.colour,
-            colours=list(self.vision.colours),
+            colours=list(self.vision.settings.colours),
             card=self.vision.card,
+            cards=self.vision.cards,
             camera=self.vision.text,
             loops=loops,
             pilot_dropped=self.supervisor.pilot.dropped.total(),
         )
+
+    def set_vision(self, settings: VisionSettings) -> None:
+        """Have the vision node look so from its next picture on, and tell of it."""
+        self.vision.settings = settings
+        self.control.colour = settings.colour
+        self._publish_vision()
+
+    def vision_settings(self) -> dict[str, Any]:
+        """How the vision node looks, and how it would by the configuration alone; for a JSON object."""
+        now, configured = self.vision.settings, self.config.vision.settings
+        return {"settings": now.table(), "configured": configured.table()}
 
     def frames(self) -> dict[str, Any]:
         """The last frames on the serial line, now and at the last fault, in words; for a JSON object."""
@@ -254,6 +270,10 @@ class Core:
 
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
+
+    def _publish_vision(self) -> None:
+        now = self.clock.now()
+        self.bus.publish_document("vision", VisionInForce(time=now, settings=self.vision.settings))
 
     def _check_fins(self) -> None:
         command = self.supervisor.fin_check.step()
@@ -301,7 +321,7 @@ class Core:
 
     def _take_detection(self, detection: Detection) -> None:
         self.supervisor.watch.see_picture(detection.taken)
-        self.bus.publish_document("detection", detection)
+        self.bus.publish_document("detection", replace(detection, latency=self.control.picture_age))
 
 
 def _describe(loop: ControlLoop) -> Loop:

@@ -70,10 +70,10 @@ class Outbox:
                 if self._watched(name):
                     self._send(name, block)
 
-    def send_picture(self, time: float, jpeg: bytes) -> None:
+    def send_picture(self, topic: str, time: float, jpeg: bytes) -> None:
         """Send a picture at once."""
         with self._sending:
-            self._send("picture", self._block("picture", 1, row(time, jpeg)))
+            self._send(topic, self._block(topic, 1, row(time, jpeg)))
 
     def _block(self, name: str, count: int, payload: bytes) -> bytes:
         first = self._next[name]

@@ -12,3 +12,7 @@ PAINTS: Mapping[str, Paint] = {
     "blue": (200, 75, 20),
 }
 """Of printed cards."""
+WHITE: Paint = (235, 238, 240)
+"""Of the card with the marker."""
+MARKER_CARD = 7
+"""Number of the marker on that card, of OpenCV's dictionary 4x4_50."""

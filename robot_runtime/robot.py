@@ -2,11 +2,12 @@
 
 import threading
 import time
+from dataclasses import asdict
 
 from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.commands import Commands
-from robot_runtime.config import Config
+from robot_runtime.config import Config, ConfigError
 from robot_runtime.control.in_the_loop import InTheLoop
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
@@ -14,10 +15,16 @@ from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.link.connection import Connection
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
+from robot_runtime.samples import Event
+from robot_runtime.vision.keeping import Kept
+from robot_runtime.vision_settings import VisionSettings
 
 
 class Robot(Core):
-    """The running robot. `run` returns after `close`. `heartbeat`: s for which no server need be heard."""
+    """The running robot. `run` returns after `close`. `heartbeat`: s for which no server need be heard.
+
+    `kept_vision` goes before the configuration's settings.
+    """
 
     def __init__(
         self,
@@ -26,6 +33,7 @@ class Robot(Core):
         messages: Messages,
         clock: Clock | None = None,
         heartbeat: float | None = None,
+        kept_vision: Kept | None = None,
     ) -> None:
         clock = clock or SteadyClock()
         self.cache = Cache(messages.run, clock)
@@ -50,10 +58,12 @@ class Robot(Core):
             self.connection,
             outbox,
             loop=self.loop,
-            picture_wanted=lambda: messages.watched("picture"),
+            watched=messages.watched,
             messages=messages,
             heartbeat=heartbeat,
         )
+        self._kept_vision = kept_vision
+        self._take_kept()
         watch = self.supervisor.watch
         messages.subscribe(HEARTBEAT, lambda *_: watch.see_server())
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
@@ -63,7 +73,22 @@ class Robot(Core):
         for name, command in Commands(self).do.items():
             self._messages.answer(f"command/{name}", command)
         self._messages.answer("query/frames", lambda _: self.frames())
+        self._messages.answer("query/vision", lambda _: self.vision_settings())
+        self._messages.answer("query/pick", lambda question: asdict(self.vision.pick(question)))
         self._messages.answer_bytes("query/blocks", self.cache.answer)
+
+    def set_vision(self, settings: VisionSettings) -> None:
+        """Have the vision node look so from its next picture on, now and after a restart."""
+        super().set_vision(settings)
+        if self._kept_vision is None:
+            return
+        try:
+            if settings == self.config.vision.settings:
+                self._kept_vision.forget()
+            else:
+                self._kept_vision.write(settings)
+        except OSError as problem:
+            self._tell_vision(f"The settings hold, but could not be kept over a restart: {problem.strerror}")
 
     def run(self) -> None:
         """Run until `close` is called; afterwards the board is disarmed and everything is closed."""
@@ -86,6 +111,18 @@ class Robot(Core):
     def close(self) -> None:
         """Ask `run` to return; may be called from a signal handler, which must take no lock."""
         self._closing = True
+
+    def _take_kept(self) -> None:
+        try:
+            settings = self._kept_vision.read() if self._kept_vision is not None else None
+        except ConfigError as problem:
+            self._tell_vision(f"What was set up last cannot be used, robot.toml's holds: {problem}")
+        else:
+            if settings is not None:
+                super().set_vision(settings)
+
+    def _tell_vision(self, text: str) -> None:
+        self.tell(Event(time=self.clock.now(), kind="vision", severity="caution", text=f"Vision: {text}."))
 
     def _control_loop(self) -> None:
         period = 1 / self.config.control.rate

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from robot_runtime.packets.layout import Record, Wire, record
+from robot_runtime.vision_settings import VisionSettings
 
 
 @record()
@@ -91,6 +92,28 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A patch of the wanted colour, and what it is measured by; `refused` says why it does not count."""
+
+    box: Box
+    area: float = field(metadata={"meaning": "share of the picture"})
+    fill: float = field(metadata={"meaning": "area over that of its box"})
+    aspect: float = field(metadata={"meaning": "the box's width over its height"})
+    circularity: float = field(metadata={"meaning": "4π area over perimeter²"})
+    refused: str = field(metadata={"meaning": "in words; empty where it counts"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Marker:
+    """An ArUco marker in the picture."""
+
+    number: int
+    corners: list[float] = field(
+        metadata={"meaning": "x and y of its four corners, clockwise, as shares of width and height"}
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Detection(Document):
     """What the vision node found in one picture: the largest patch of each wanted colour that it saw."""
 
@@ -99,6 +122,26 @@ class Detection(Document):
     box: Box | None
     area: float
     processing: float
+    candidates: list[Candidate] = field(default_factory=list)
+    markers: list[Marker] = field(default_factory=list)
+    target: str | None = field(
+        default=None, metadata={"meaning": "what is acted on: the wanted colour, or what an action names"}
+    )
+    set_point: float | None = field(
+        default=None,
+        metadata={"meaning": "m; the action for the target; null: the wanted colour's detected set point"},
+    )
+    latency: float | None = field(
+        default=None,
+        metadata={"meaning": "s; age of the last picture that the control node used, when it did first"},
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionInForce(Document):
+    """How the vision node looks now; sent at every change, and every ten seconds."""
+
+    settings: VisionSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -192,6 +235,9 @@ class State(Document):
     vision_colour: str
     colours: list[str]
     card: str | None
+    cards: list[str] = field(
+        default_factory=list, metadata={"meaning": "what can be shown to the camera; empty where nothing can"}
+    )
     camera: str
     loops: list[Loop] = field(default_factory=list)
     pilot_dropped: int = field(

@@ -17,11 +17,15 @@ BYTE_MAX = 255
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """Which picture is wanted; `card` is the blue, green and red of what is held before the camera."""
+    """Which picture is wanted.
+
+    `card` is the blue, green and red of what is held before the camera, `marked` whether it shows the marker.
+    """
 
     width: Annotated[int, Range(16, 1280)]
     height: Annotated[int, Range(16, 960)]
     card: tuple[int, int, int] | None = None
+    marked: bool = False
 
     def __post_init__(self) -> None:
         if self.card is not None and not all(0 <= part <= BYTE_MAX for part in self.card):
@@ -35,9 +39,9 @@ class Picture(NamedTuple):
     pixels: NDArray[np.uint8]
 
 
-def write_request(width: int, height: int, card: Paint | None) -> bytes:
+def write_request(width: int, height: int, card: Paint | None, marked: bool = False) -> bytes:
     """The question as bytes."""
-    question = asdict(Request(width=width, height=height, card=card))
+    question = asdict(Request(width=width, height=height, card=card, marked=marked))
     return json.dumps({name: value for name, value in question.items() if value is not None}).encode()
 
 

@@ -69,9 +69,12 @@ TOPICS: tuple[Topic, ...] = (
     Topic(19, "event", Kind.DOCUMENTS, samples.Event, "what happened, told by the runtime"),
     Topic(20, "notice", Kind.DOCUMENTS, samples.Event, "what happened, told by the server"),
     Topic(22, "experiment", Kind.DOCUMENTS, samples.Experiment, "how an experiment on a loop goes"),
+    Topic(23, "vision", Kind.DOCUMENTS, samples.VisionInForce, "how the vision node looks"),
     Topic(32, "picture", Kind.PICTURE, None, "the camera's picture as the vision node saw it"),
     Topic(33, "observer", Kind.PICTURE, None, "the simulated scene as a bystander sees it"),
     Topic(34, "thumbnail", Kind.PICTURE, None, "a small picture of the camera's, for recordings"),
+    Topic(35, "mask", Kind.PICTURE, None, "what of the picture has the wanted colour, and what of it counts"),
+    Topic(36, "balanced", Kind.PICTURE, None, "the camera's picture after the white balance"),
 )
 BY_NAME = {topic.name: topic for topic in TOPICS}
 BY_ID = {topic.id: topic for topic in TOPICS}

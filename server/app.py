@@ -44,6 +44,7 @@ from server.routes import (
     simulator,
     storage,
     tuning,
+    vision,
 )
 from server.routes.problems import EVERYWHERE
 from server.security import Guard
@@ -107,7 +108,7 @@ def create_app(
     app.add_exception_handler(CopyFailed, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live, control)
+    robots = (health, robot, vision, simulator, scene, link, live, control)
     kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

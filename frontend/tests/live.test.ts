@@ -108,8 +108,8 @@ describe('Live', () => {
       return blockBytes(OTHER_TOPICS.observer, 2, 1, 0, payload);
     };
     server().greet();
-    const first = live.observe();
-    const second = live.observe();
+    const first = live.watch('observer');
+    const second = live.watch('observer');
     expect(asked()).toEqual([['picture', 'observer']]);
     server().give(picture(101));
     expect(live.observer?.time).toBe(101);

@@ -27,8 +27,8 @@ STICK_MIDDLE = 0.05
 class ControlNode:
     """Steers the loops: all that are wanted in automatic, those that hold while the pilot drives in manual.
 
-    In automatic the depth is always held: at the default set point, or another while the wanted colour is
-    seen. Meanwhile it may swim towards a light beacon.
+    In automatic the depth is always held: at the default set point, or another while something is seen that
+    there is one for. Meanwhile it may swim towards a light beacon.
 
     `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
     thread. Whatever is changed under `changing` is changed between two ticks.
@@ -53,7 +53,10 @@ class ControlNode:
         self._sending = threading.Lock()
         self._depth: tuple[float, bytes] | None = None
         self._imu: bytes | None = None
-        self._seen = float("-inf")
+        self._sight: Detection | None = None
+        self._used: Detection | None = None
+        self.picture_age: float | None = None
+        """s; of the last picture that a tick used, when it did first."""
         self._ticked: float | None = None
         self._towards_light = BeaconSteering()
         self._course = (0.0, 0.0)
@@ -270,11 +273,17 @@ class ControlNode:
         return self._towards_light.step(fresh and right, fresh and left, seconds)
 
     def _choose_set_point(self, now: float, mode: Mode) -> None:
-        seen = now - self._seen <= VISION_STALE
-        wanted = self.set_point_detected if seen else self.set_point_default
+        wanted, because = self.set_point_default, ""
+        sight = self._sight
+        if sight is not None and now - sight.taken <= VISION_STALE:
+            if sight.set_point is not None:
+                wanted, because = sight.set_point, f": {sight.target} is seen"
+            elif sight.colour == self.colour:
+                wanted, because = self.set_point_detected, f": {self.colour} is seen"
+        if sight is not None and sight is not self._used:
+            self._used, self.picture_age = sight, now - sight.taken
         if wanted != self._wanted:
             self._wanted = wanted
-            because = f": {self.colour} is seen" if seen else ""
             self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
         if mode != "manual" or not self.depth.on:
             self.depth.set_point = wanted
@@ -291,7 +300,7 @@ class ControlNode:
 
     def _take_detection(self, _: str, document: Document) -> None:
         if isinstance(document, Detection):
-            self._seen = document.taken if document.colour == self.colour else float("-inf")
+            self._sight = document
 
     def _tell(self, kind: str, text: str) -> None:
         event = Event(time=self._clock.now(), kind=kind, severity="info", text=text)

@@ -10,6 +10,7 @@ from robot_runtime import samples
 from robot_runtime.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
 from robot_runtime.packets.layout import Record, Wire
 from robot_runtime.topics import TIME, TOPICS, Kind, Topic
+from robot_runtime.vision_settings import ColourRange, VisionSettings
 
 _HEAD = f"""\
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
@@ -110,6 +111,7 @@ def _row_name(topic: Topic) -> str:
 
 def _documents() -> list[type]:
     shared = [samples.Box, samples.Gain, samples.ControllerChoice, samples.Loop, samples.Pace, samples.Alarm]
+    shared += [samples.Candidate, samples.Marker, ColourRange, VisionSettings]
     return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
 
 
@@ -132,6 +134,11 @@ def _type(hint: typing.Any) -> str:
         return " | ".join(_type(part) for part in typing.get_args(hint))
     if origin is list:
         return f"{_type(typing.get_args(hint)[0])}[]"
+    if origin is tuple:
+        first, *others = typing.get_args(hint)
+        return f"{_type(first)}[]" if Ellipsis in others else f"[{', '.join(map(_type, [first, *others]))}]"
+    if origin is dict:
+        return f"Record<string, {_type(typing.get_args(hint)[1])}>"
     simple = {float: "number", int: "number", str: "string", bool: "boolean", types.NoneType: "null"}
     return simple.get(hint) or _name(hint)
 

@@ -1,6 +1,6 @@
 """What the vision node looks through in simulated time: the scene, or drawn cards."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
@@ -10,8 +10,7 @@ from robot_runtime.scenario.events import Card
 from robot_runtime.simulation.scene.contents import Contents, Place, Target
 from robot_runtime.simulation.simulator import Simulator
 from robot_runtime.vision.camera import Camera, Frame
-from robot_runtime.vision.cards import card_paint
-from robot_runtime.vision.colours import ColourRange
+from robot_runtime.vision.cards import Card as Held
 
 
 def needs_eyes(scenario: Scenario) -> bool:
@@ -28,8 +27,7 @@ class SceneCamera(Camera):
         config: VisionConfig,
         clock: Clock,
         simulator: Simulator,
-        colours: Mapping[str, ColourRange],
-        card: Callable[[], str | None],
+        card: Callable[[], Held | None],
     ) -> None:
         # Loads MuJoCo, which most scenarios do without.
         from robot_runtime.simulation.scene.scene import Scene as Rendered
@@ -38,7 +36,6 @@ class SceneCamera(Camera):
         self._clock = clock
         self._simulator = simulator
         self._card = card
-        self._paints = {name: card_paint(name, colour) for name, colour in colours.items()}
         self._place = scenario.scene
         self._rendered = Rendered(_contents(self._place, simulator), scenario.robot)
 
@@ -50,7 +47,9 @@ class SceneCamera(Camera):
         time, truth, card = self._clock.now(), self._simulator.truth(), self._card()
         # Numbers as they travel to the scene's own process.
         seen = Truth.from_bytes(truth.to_bytes())
-        picture = self._rendered.render_camera(time, seen, *self._size, self._paints[card] if card else None)
+        picture = self._rendered.render_camera(
+            time, seen, *self._size, card.paint if card else None, marked=bool(card and card.marked)
+        )
         return Frame(picture, time)
 
     def close(self) -> None:
@@ -59,7 +58,7 @@ class SceneCamera(Camera):
 
     def __str__(self) -> str:
         card = self._card()
-        return f"rendered scene with a {card} card" if card else "rendered scene"
+        return f"rendered scene with a {card.name} card" if card else "rendered scene"
 
 
 def _contents(scene: Scene, simulator: Simulator) -> Contents:

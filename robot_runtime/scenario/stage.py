@@ -21,6 +21,7 @@ from robot_runtime.simulation.simulator import FinMotion, Simulator
 from robot_runtime.simulation.stepped_board import PERIOD, SteppedBoard, Water
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
+from robot_runtime.vision.cards import Card
 
 _NOISY = -round(1.0 / PERIOD)
 _TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
@@ -71,7 +72,7 @@ class Robot(Core):
             number.hexdigest()[:16],
             self.conversation,
             Outbox(publish, lambda _: False),
-            picture_wanted=lambda: False,
+            watched=lambda _: False,
             open_camera=open_camera,
         )
 
@@ -143,17 +144,15 @@ class Stage:
     def _open_camera(self) -> Camera:
         vision, config = self.robot.vision, self.robot.config.vision
 
-        def card() -> str | None:
-            return vision.card
+        def card() -> Card | None:
+            return vision.held
 
-        self._camera = CardCamera(config.width, config.height, self.clock, vision.colours, card)
+        self._camera = CardCamera(config.width, config.height, self.clock, card)
         if config.camera == "scene":
             try:
                 problem = missing()
                 if problem is None:
-                    self._camera = SceneCamera(
-                        self.scenario, config, self.clock, self.simulator, vision.colours, card
-                    )
+                    self._camera = SceneCamera(self.scenario, config, self.clock, self.simulator, card)
             except (ImportError, RuntimeError) as error:
                 problem = str(error)
             if problem is not None:

@@ -5,7 +5,7 @@ distance, β the water's attenuation and B its own colour. Red is lost first. Th
 picture.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import cos, exp, pi, sin
 
 import cv2
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.clock import Clock
+from robot_runtime.paints import Paint
 from robot_runtime.vision.camera import Camera, Frame
-from robot_runtime.vision.cards import card_paint
-from robot_runtime.vision.colours import ColourRange
+from robot_runtime.vision.cards import MARKER_CELLS, MARKER_SIDE, Card, marker_pattern
 from robot_runtime.vision.picture import Picture
 
 Floats = NDArray[np.float32]
@@ -28,6 +28,8 @@ CARD_DISTANCE = 0.4
 """m."""
 CARD_SIZE = (0.26, 0.36)
 """Width and height of the card as shares of the picture's height."""
+BLACK = (18, 18, 18)
+"""Printer's ink."""
 NOISE = 3.0
 """Standard deviation of each byte of the picture."""
 NOISE_SHIFT = 64
@@ -39,20 +41,18 @@ COARSE = 8
 
 
 class CardCamera(Camera):
-    """Draws `width` × `height` pixels; `card` tells which of the colours is shown now, if any."""
+    """Draws `width` × `height` pixels; `card` tells which card is shown now, if any."""
 
     def __init__(
         self,
         width: int,
         height: int,
         clock: Clock,
-        colours: Mapping[str, ColourRange],
-        card: Callable[[], str | None],
+        card: Callable[[], Card | None],
     ) -> None:
         self._size = (width, height)
         self._clock = clock
         self._card = card
-        self._paints = {name: _paint(name, colour) for name, colour in colours.items()}
         self._water = _water(width, height)
         # Kept, since memory that is new for each picture costs more than drawing in it.
         self._canvas: Floats = np.empty_like(self._water)
@@ -72,18 +72,31 @@ class CardCamera(Camera):
 
     def __str__(self) -> str:
         card = self._card()
-        return f"drawn water with a {card} card" if card else "drawn water without a card"
+        return f"drawn water with a {card.name} card" if card else "drawn water without a card"
 
-    def draw(self, time: float, card: str | None) -> Picture:
+    def draw(self, time: float, card: Card | None) -> Picture:
         """The picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
         canvas = self._canvas
         np.copyto(canvas, self._water)
         if card is not None:
-            cv2.fillConvexPoly(canvas, self._corners(time), self._paints[card], cv2.LINE_AA, shift=4)
+            self._draw_card(time, card)
         canvas *= self._light(time)
         canvas += self._grain(time)
         np.clip(canvas, 0, 255, out=canvas)
         return canvas.astype(np.uint8)
+
+    def _draw_card(self, time: float, card: Card) -> None:
+        half_x, half_y = (side * self._size[1] / 2 for side in CARD_SIZE)
+        sheet = self._quad(time, -half_x, -half_y, half_x, half_y)
+        cv2.fillConvexPoly(self._canvas, sheet, _through_water(card.paint), cv2.LINE_AA, shift=4)
+        if not card.marked:
+            return
+        cell = 2 * half_x * MARKER_SIDE / MARKER_CELLS
+        start = -cell * MARKER_CELLS / 2
+        for row, column in np.argwhere(marker_pattern() == 0):
+            x, y = start + cell * column, start + cell * row
+            black = self._quad(time, x, y, x + cell, y + cell)
+            cv2.fillConvexPoly(self._canvas, black, _through_water(BLACK), shift=4)
 
     def _light(self, time: float) -> Floats:
         """How bright each place is, about 1; (height, width, 1)."""
@@ -102,16 +115,18 @@ class CardCamera(Camera):
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         return self._noise[y : y + height, x : x + width]
 
-    def _corners(self, time: float) -> NDArray[np.int32]:
-        """The card's corners in sixteenths of a pixel; the hand that holds it is not quite still."""
+    def _quad(self, time: float, left: float, top: float, right: float, bottom: float) -> NDArray[np.int32]:
+        """The corners, in sixteenths of a pixel, of what lies there on the card (pixels from its middle).
+
+        The hand that holds it is not quite still.
+        """
         width, height = self._size
         centre_x = width * (0.5 + 0.03 * sin(2 * pi * 0.11 * time))
         centre_y = height * (0.5 + 0.03 * sin(2 * pi * 0.17 * time + 1))
         tilt = 0.12 * sin(2 * pi * 0.13 * time + 2)
-        half_x, half_y = CARD_SIZE[0] * height / 2, CARD_SIZE[1] * height / 2
         corners = [
             (centre_x + x * cos(tilt) - y * sin(tilt), centre_y + x * sin(tilt) + y * cos(tilt))
-            for x, y in ((-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y))
+            for x, y in ((left, top), (right, top), (right, bottom), (left, bottom))
         ]
         return np.round(np.array(corners) * 16).astype(np.int32)
 
@@ -122,10 +137,10 @@ def _water(width: int, height: int) -> Floats:
     return np.ascontiguousarray(np.broadcast_to(brightness * np.array(WATER, np.float32), (height, width, 3)))
 
 
-def _paint(name: str, colour: ColourRange) -> tuple[float, float, float]:
-    """A card's blue, green and red as seen through the water."""
+def _through_water(paint: Paint) -> tuple[float, float, float]:
+    """A paint's blue, green and red as seen on the card, through the water."""
     blue, green, red = (
-        paint * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
-        for paint, water, loss in zip(card_paint(name, colour), WATER, ATTENUATION, strict=True)
+        own * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
+        for own, water, loss in zip(paint, WATER, ATTENUATION, strict=True)
     )
     return blue, green, red

@@ -1,16 +1,46 @@
-"""The coloured cards that are held before the camera."""
+"""The cards that are held before the camera: coloured ones, and one with a marker."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from robot_runtime.paints import PAINTS, Paint
-from robot_runtime.vision.colours import ColourRange
+from robot_runtime.paints import MARKER_CARD, PAINTS, WHITE, Paint
+from robot_runtime.vision_settings import ColourRange, marker_name
+
+MARKER_DICTIONARY = cv2.aruco.DICT_4X4_50
+MARKER_CELLS = 6
+"""To each side, with the black border."""
+MARKER_SIDE = 0.8
+"""Of the card's width."""
 
 
-def card_paint(name: str, colour: ColourRange) -> Paint:
-    """A card's blue, green and red in daylight; of the range's middle where the colour has no paint."""
+@dataclass(frozen=True, slots=True)
+class Card:
+    """A card: its blue, green and red in daylight, and whether the marker is printed on it."""
+
+    name: str
+    paint: Paint
+    marked: bool = False
+
+
+def make_card(name: str, colours: Mapping[str, ColourRange]) -> Card:
+    """The card of this name; of the range's middle where the colour has no paint. Raises KeyError."""
+    if name == marker_name(MARKER_CARD):
+        return Card(name, WHITE, marked=True)
     if name in PAINTS:
-        return PAINTS[name]
-    middle = np.array([[colour.middle]], np.uint8)
+        return Card(name, PAINTS[name])
+    middle = np.array([[colours[name].middle]], np.uint8)
     blue, green, red = cv2.cvtColor(middle, cv2.COLOR_HSV2BGR)[0, 0].tolist()
-    return blue, green, red
+    return Card(name, (blue, green, red))
+
+
+@cache
+def marker_pattern() -> NDArray[np.uint8]:
+    """The printed marker, 0 where it is black and 255 where white, one pixel a cell."""
+    dictionary = cv2.aruco.getPredefinedDictionary(MARKER_DICTIONARY)
+    pattern = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, MARKER_CELLS)
+    return pattern.astype(np.uint8, copy=False)

@@ -1,70 +1,68 @@
-"""The search for a colour: BGR to HSV, a mask of the colour, its largest patch (thesis, section 4.2)."""
+"""The search for colours and markers: BGR to HSV, a mask of the colour, its patches (thesis, section 4.2)."""
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-from robot_runtime.samples import Box
-from robot_runtime.vision.colours import HUE_MAX, ColourRange
+from robot_runtime.samples import Candidate, Marker
+from robot_runtime.vision.balance import BALANCES
+from robot_runtime.vision.markers import MarkerFinder
+from robot_runtime.vision.patches import Patches, find_patches
 from robot_runtime.vision.picture import Picture
+from robot_runtime.vision_settings import VisionSettings, marker_name
 
 
-class Patch(NamedTuple):
-    """A patch of one colour; `area` and the box are shares of the picture."""
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What is in one picture.
 
-    colour: str
-    box: Box
-    area: float
+    `wanted` are the patches of the wanted colour; `patch` is the one that counts, of `colour`: the largest of
+    the target's or, without one, of any. `target` is what is acted on, `set_point` (m) the action for it.
+    """
+
+    balanced: Picture
+    wanted: Patches
+    colour: str | None
+    patch: Candidate | None
+    markers: list[Marker]
+    target: str | None
+    set_point: float | None
 
 
 class Detector:
-    """Finds patches of the named colours that cover at least `area_min` of the picture (a share, 0 to 1)."""
+    """Searches pictures by these settings."""
 
-    def __init__(self, colours: Mapping[str, ColourRange], area_min: float) -> None:
-        self._colours = colours
-        self._area_min = area_min
+    def __init__(self, settings: VisionSettings) -> None:
+        self.settings = settings
+        self.balance = BALANCES[settings.white_balance]
+        """What every picture passes first."""
+        self._markers = MarkerFinder(settings)
 
-    def find(self, picture: Picture, wanted: str) -> Patch | None:
-        """The largest patch of the wanted colour or, without one, of any other; BGR (height, width, 3)."""
-        hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
-        patch = self._largest(hsv, wanted)
-        if patch is not None:
-            return patch
-        others = (self._largest(hsv, name) for name in self._colours if name != wanted)
-        return max(filter(None, others), key=lambda other: other.area, default=None)
+    def look(self, picture: Picture) -> Sight:
+        """What is in a BGR picture (height, width, 3).
 
-    def _largest(self, hsv: Picture, name: str) -> Patch | None:
-        height, width = hsv.shape[:2]
-        mask = find_colour(hsv, self._colours[name])
-        if cv2.countNonZero(mask) < self._area_min * width * height:
-            return None
-        # Opening removes specks, which noise makes, and keeps patches as they are.
-        size = max(3, width // 100 | 1)
-        opened = cv2.morphologyEx(
-            mask, cv2.MORPH_OPEN, cv2.getStructuringElement(cv2.MORPH_RECT, (size, size))
+        The wanted colour goes before everything, what has an action before the rest, in the actions' order.
+        """
+        settings = self.settings
+        balanced = self.balance(picture)
+        hsv = cv2.cvtColor(balanced, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
+        markers = self._markers.find(balanced)
+        wanted = find_patches(hsv, settings.colour, settings)
+        if (patch := wanted.largest) is not None:
+            action = settings.actions.get(settings.colour)
+            return Sight(balanced, wanted, settings.colour, patch, markers, settings.colour, action)
+        others = (find_patches(hsv, name, settings) for name in settings.colours if name != settings.colour)
+        seen = {one.colour: patch for one in others if (patch := one.largest) is not None}
+        there = {*seen, *(marker_name(one.number) for one in markers)}
+        target = next((name for name in settings.actions if name in there), None)
+        colour = target if target in seen else max(seen, key=lambda name: seen[name].area, default=None)
+        return Sight(
+            balanced=balanced,
+            wanted=wanted,
+            colour=colour,
+            patch=seen[colour] if colour is not None else None,
+            markers=markers,
+            target=target,
+            set_point=settings.actions[target] if target is not None else None,
         )
-        contours, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
-        if not contours:
-            return None
-        largest = max(contours, key=cv2.contourArea)
-        area = cv2.contourArea(largest) / (width * height)
-        if area < self._area_min:
-            return None
-        x, y, w, h = cv2.boundingRect(largest)
-        return Patch(name, Box(x=x / width, y=y / height, width=w / width, height=h / height), area)
-
-
-def find_colour(hsv: Picture, colour: ColourRange) -> Picture:
-    """255 where the HSV picture (height, width, 3) has this colour, 0 elsewhere; (height, width)."""
-    low, high = colour.hue
-    if low <= high:
-        return _between(hsv, colour, low, high)
-    return _between(hsv, colour, low, HUE_MAX) | _between(hsv, colour, 0, high)
-
-
-def _between(hsv: Picture, colour: ColourRange, hue_low: int, hue_high: int) -> Picture:
-    lows = (hue_low, colour.saturation[0], colour.value[0])
-    highs = (hue_high, colour.saturation[1], colour.value[1])
-    return cv2.inRange(hsv, lows, highs).astype(np.uint8, copy=False)

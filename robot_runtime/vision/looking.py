@@ -4,7 +4,7 @@ They are loaded with this module, in the node's own thread: that takes longer th
 and the board should not wait for it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -14,10 +14,14 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.messages import Messages
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.colours import ColourRange
+from robot_runtime.vision.cards import Card
+from robot_runtime.vision.cards import make_card as make_card
 from robot_runtime.vision.detector import Detector as Detector
 from robot_runtime.vision.file_camera import FileCamera
+from robot_runtime.vision.mask import draw_mask as draw_mask
 from robot_runtime.vision.pi_camera import PiCamera
+from robot_runtime.vision.picking import Place as Place
+from robot_runtime.vision.picking import propose as propose
 from robot_runtime.vision.picture import Picture
 from robot_runtime.vision.scene_camera import SceneCamera, SceneMissing
 
@@ -33,8 +37,7 @@ def open_camera(
     config: VisionConfig,
     clock: Clock,
     messages: Messages | None,
-    colours: Mapping[str, ColourRange],
-    card: Callable[[], str | None],
+    card: Callable[[], Card | None],
     on_missing: Callable[[str], None],
 ) -> Camera:
     """The configured camera; a drawn card, after `on_missing` was told why, where no scene can be rendered.
@@ -47,10 +50,10 @@ def open_camera(
         return FileCamera(Path(config.file), config.width, config.height, clock)
     if config.camera == "scene" and messages is not None:
         try:
-            return SceneCamera(config.width, config.height, messages, colours, card)
+            return SceneCamera(config.width, config.height, messages, card)
         except SceneMissing as missing:
             on_missing(str(missing))
-    return CardCamera(config.width, config.height, clock, colours, card)
+    return CardCamera(config.width, config.height, clock, card)
 
 
 def as_jpeg(picture: Picture) -> bytes:

@@ -1,23 +1,27 @@
-"""The vision node: a thread that looks, searches for the wanted colour, and tells what it found."""
+"""The vision node: a thread that looks, searches for colours and markers, and tells what it found."""
 
 import importlib
 import logging
 import threading
 from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.config import VisionConfig, parse
 from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
+from robot_runtime.paints import MARKER_CARD, PAINTS
 from robot_runtime.samples import Detection, Event, Severity
 from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.colours import parse_colours
 from robot_runtime.vision.pace import Pace
+from robot_runtime.vision_settings import VisionSettings, marker_name
 
 if TYPE_CHECKING:
-    from robot_runtime.vision.detector import Detector
+    from robot_runtime.vision.cards import Card
+    from robot_runtime.vision.detector import Detector, Sight
+    from robot_runtime.vision.picking import Proposal
+    from robot_runtime.vision.picture import Picture
 
 log = logging.getLogger(__name__)
 
@@ -30,11 +34,11 @@ THUMBNAIL_SECONDS = 2.0
 class Vision:
     """Looks at a settable rate, in a thread of its own that no camera can end.
 
-    Every picture gives one Detection: of the wanted colour if it is there, else of the largest patch of
-    another colour, else of none. Only while `picture_wanted` says that somebody watches is the picture itself
-    handed on, with its time (s), as a JPEG file; a small one is every `THUMBNAIL_SECONDS`. All callbacks run
-    on the node's thread. The camera "scene" is asked through `messages`. Raises ConfigError where the
-    configuration's colours cannot be used.
+    Every picture gives one Detection: of the wanted colour if it is there, else of what has an action, else
+    of the largest patch of another colour, else of none. Only while `watched` says of "picture", "mask" or
+    "balanced" that somebody watches is it handed on, with its time (s), as a JPEG file; a small picture is
+    every `THUMBNAIL_SECONDS`. All callbacks run on the node's thread. The camera "scene" is asked through
+    `messages`.
     """
 
     def __init__(
@@ -42,29 +46,24 @@ class Vision:
         config: VisionConfig,
         clock: Clock,
         on_detection: Callable[[Detection], None],
-        on_picture: Callable[[float, bytes], None],
-        picture_wanted: Callable[[], bool],
+        on_picture: Callable[[str, float, bytes], None],
+        watched: Callable[[str], bool],
         tell: Callable[[Event], None],
         open_camera: Callable[[], Camera] | None = None,
         messages: Messages | None = None,
         on_thumbnail: Callable[[float, bytes], None] | None = None,
     ) -> None:
-        self.colours = parse_colours(config.colours)
-        if config.colour not in self.colours:
-            raise ConfigError(
-                f"vision: colour is {config.colour!r}; it must be one of {', '.join(self.colours)}"
-            )
-        self.colour = config.colour
-        """The wanted colour, one of `colours`."""
-        self.card: str | None = None
-        """The colour of the card before the camera."""
+        self.held: Card | None = None
+        """The card before the camera."""
         self._config = config
+        self._settings = config.settings
         self._clock = clock
         self._on_detection = on_detection
         self._on_picture = on_picture
         self._on_thumbnail = on_thumbnail
         self._thumbnail_due = -inf
-        self._picture_wanted = picture_wanted
+        self._watched = watched
+        self._frame: Frame | None = None
         self._tell = tell
         self._messages = messages
         self._open_camera = open_camera or self._configured_camera
@@ -79,14 +78,27 @@ class Vision:
         self._thread = threading.Thread(target=self._run, name="vision", daemon=True)
 
     @property
-    def rate(self) -> float:
-        """Pictures a second. Raises ValueError when it is set below 0.2 or above 30."""
-        return self._pace.rate
+    def settings(self) -> VisionSettings:
+        """How it looks; what is set here holds, as a whole, from the next picture on."""
+        return self._settings
 
-    @rate.setter
-    def rate(self, rate: float) -> None:
-        self._pace.rate = rate
+    @settings.setter
+    def settings(self, settings: VisionSettings) -> None:
+        self._settings = settings
+        self._pace.rate = settings.rate
         self._wake.set()
+
+    @property
+    def card(self) -> str | None:
+        """The name of the card before the camera."""
+        return self.held.name if self.held else None
+
+    @property
+    def cards(self) -> list[str]:
+        """What can be shown to the camera."""
+        if self._config.camera not in ("card", "scene"):
+            return []
+        return [*dict.fromkeys([*PAINTS, *self._settings.colours]), marker_name(MARKER_CARD)]
 
     @property
     def text(self) -> str:
@@ -96,15 +108,33 @@ class Vision:
         return str(self._camera) if self._camera else "starting"
 
     def show_card(self, colour: str | None) -> None:
-        """Show a card of this colour, or none. Raises Refused where that cannot be."""
+        """Show this card, or none. Raises Refused where that cannot be."""
         if self._config.camera not in ("card", "scene"):
             raise Refused(
                 f"the camera is {self._config.camera!r}; cards are shown to the cameras 'scene' and 'card' "
                 "alone: choose one in robot.toml, [vision] camera"
             )
-        if colour is not None and colour not in self.colours:
-            raise Refused(f"there is no card of colour {colour!r}; there are {', '.join(self.colours)}")
-        self.card = colour
+        if colour is not None and colour not in self.cards:
+            raise Refused(f"there is no card of colour {colour!r}; there are {', '.join(self.cards)}")
+        if colour is None:
+            self.held = None
+        else:
+            from robot_runtime.vision.looking import make_card
+
+            self.held = make_card(colour, self._settings.colours)
+
+    def pick(self, question: dict[str, Any]) -> "Proposal":
+        """The range of the colour at a place of the newest picture, after the white balance.
+
+        `question` is a `Place` as a table. Changes nothing. Raises Refused, ConfigError.
+        """
+        from robot_runtime.vision.looking import Detector, Place, propose
+
+        place = parse(Place, question)
+        frame = self._frame
+        if frame is None:
+            raise Refused(f"There is no picture to pick a colour in. Camera: {self.text}.")
+        return propose(Detector(self._settings).balance(frame.picture), place)
 
     def start(self) -> None:
         """Begin to look."""
@@ -169,29 +199,48 @@ class Vision:
         # Loads NumPy and OpenCV, which takes longest of all at a start; the robot is in hand before that.
         from robot_runtime.vision import looking
 
-        if self._detector is None:
-            self._detector = looking.Detector(self.colours, self._config.area_min)
+        settings = self._settings
+        if self._detector is None or self._detector.settings is not settings:
+            self._detector = looking.Detector(settings)
         begun = self._clock.now()
-        patch = self._detector.find(frame.picture, self.colour)
+        sight = self._detector.look(frame.picture)
         ended = self._clock.now()
+        self._frame = frame
+        patch = sight.patch
         self._on_detection(
             Detection(
                 time=ended,
                 taken=frame.taken,
-                colour=patch.colour if patch else None,
+                colour=sight.colour,
                 box=patch.box if patch else None,
                 area=patch.area if patch else 0.0,
                 processing=ended - begun,
+                candidates=list(sight.wanted.candidates),
+                markers=sight.markers,
+                target=sight.target,
+                set_point=sight.set_point,
             )
         )
-        if self._picture_wanted():
-            self._on_picture(frame.taken, looking.as_jpeg(frame.picture))
+        self._hand_on(frame, sight)
         if self._on_thumbnail is not None and frame.taken >= self._thumbnail_due:
             self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
             self._on_thumbnail(frame.taken, looking.as_thumbnail(frame.picture))
 
+    def _hand_on(self, frame: Frame, sight: "Sight") -> None:
+        from robot_runtime.vision import looking
+
+        made: dict[str, Callable[[], Picture]] = {
+            "picture": lambda: frame.picture,
+            "mask": lambda: looking.draw_mask(sight.wanted),
+            "balanced": lambda: sight.balanced,
+        }
+        for topic, make in made.items():
+            if self._watched(topic):
+                self._on_picture(topic, frame.taken, looking.as_jpeg(make()))
+
     def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
+        self._frame = None
         now = self._clock.now()
         self._retry_at = now + RETRY
         if self._failing_since is None:
@@ -217,6 +266,4 @@ class Vision:
         def tell_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-        return open_camera(
-            self._config, self._clock, self._messages, self.colours, lambda: self.card, tell_missing
-        )
+        return open_camera(self._config, self._clock, self._messages, lambda: self.held, tell_missing)

@@ -1,13 +1,12 @@
 """The camera of a robot in simulated water: the scene's own process renders what it sees."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.messages import Messages
 from robot_runtime.scene_picture import read_picture, write_request
 from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.cards import card_paint
-from robot_runtime.vision.colours import ColourRange
+from robot_runtime.vision.cards import Card
 
 READY_TIMEOUT = 1.0
 PICTURE_TIMEOUT = 16.0
@@ -21,7 +20,7 @@ class SceneMissing(Exception):  # noqa: N818 - it says what happened
 
 
 class SceneCamera(Camera):
-    """Asks for pictures of `width` × `height` pixels; `card` tells which of the colours is shown, if any.
+    """Asks for pictures of `width` × `height` pixels; `card` tells which card is shown, if any.
 
     Raises CameraError where no scene answers, SceneMissing where it answers that it cannot render.
     """
@@ -31,13 +30,11 @@ class SceneCamera(Camera):
         width: int,
         height: int,
         messages: Messages,
-        colours: Mapping[str, ColourRange],
-        card: Callable[[], str | None],
+        card: Callable[[], Card | None],
     ) -> None:
         self._size = (width, height)
         self._messages = messages
         self._card = card
-        self._paints = {name: card_paint(name, colour) for name, colour in colours.items()}
         try:
             missing = messages.ask("scene/ready", {}, READY_TIMEOUT)["missing"]
         except NoAnswer as problem:
@@ -52,7 +49,7 @@ class SceneCamera(Camera):
     def read(self) -> Frame:
         """What the camera sees where the robot was when the simulator last told. Raises CameraError."""
         card = self._card()
-        request = write_request(*self._size, self._paints[card] if card else None)
+        request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
         try:
             picture = read_picture(self._messages.ask_bytes("scene/picture", request, PICTURE_TIMEOUT))
         except NoAnswer as problem:
@@ -68,4 +65,4 @@ class SceneCamera(Camera):
 
     def __str__(self) -> str:
         card = self._card()
-        return f"rendered scene with a {card} card" if card else "rendered scene"
+        return f"rendered scene with a {card.name} card" if card else "rendered scene"

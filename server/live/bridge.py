@@ -167,9 +167,9 @@ class Bridge:
         """What the simulator answers. Raises Refused with its reason, or RuntimeSilent."""
         return await self._ask(f"simulator/{name}", payload, stop=False)
 
-    async def query(self, name: str) -> Mapping[str, Any]:
+    async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
         """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
-        return await self._ask(f"query/{name}", {}, stop=False)
+        return await self._ask(f"query/{name}", question or {}, stop=False)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         """What the simulated scene answers. Raises Refused with its reason, or RuntimeSilent."""

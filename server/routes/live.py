@@ -22,7 +22,7 @@ from server.live.hub import POLICY_VIOLATION, Client, Evicted
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""
 FAREWELL_SECONDS = 1.0
-WATCHABLE = frozenset({"picture", "observer"})
+WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
 """Topics of pictures that a page can have."""
 
 router = APIRouter()

@@ -72,6 +72,12 @@ def _rewrite(value: Any, wanted: Any) -> Any:
         return _rewrite(value, only)
     if kind is list and isinstance(value, list):
         return [_rewrite(one, arguments[0]) for one in value]
+    if kind is tuple and isinstance(value, list):
+        hints = arguments[:1] * len(value) if Ellipsis in arguments else arguments
+        if len(hints) == len(value):
+            return [_rewrite(one, hint) for one, hint in zip(value, hints, strict=True)]
+    if kind is dict and isinstance(value, dict):
+        return {name: _rewrite(one, arguments[1]) for name, one in value.items()}
     if kind is Literal and value in arguments:
         return value
     if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):

@@ -249,8 +249,8 @@ def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
         ("set_points", {"default": 11}, "not between 0 and 10"),
         ("set_points", {"default": "deep"}, "must be a number"),
         ("card", {"colour": "plaid"}, "no card of colour 'plaid'"),
-        ("vision", {"rate": 1000}, "not between 2 and 30"),
-        ("vision", {"colour": "plaid"}, "no colour is named 'plaid'"),
+        ("vision", {"rate": 1000}, "must lie between 2 and 30"),
+        ("vision", {"colour": "plaid"}, "colour is 'plaid'; it must be one of red"),
     ],
 )
 def test_bad_commands_are_refused_with_the_reason(

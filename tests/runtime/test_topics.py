@@ -58,7 +58,7 @@ def test_documents_arrive_as_json_in_order() -> None:
 
 def test_a_picture_goes_out_at_once_with_its_time() -> None:
     sent: list[tuple[str, bytes]] = []
-    sent_by(sent).send_picture(3.5, b"jpeg")
+    sent_by(sent).send_picture("picture", 3.5, b"jpeg")
     (block,) = read_blocks(sent[0][1])
     assert (block.topic.name, block.payload[8:]) == ("picture", b"jpeg")
 

@@ -12,10 +12,11 @@ from robot_runtime.errors import Refused
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
 from robot_runtime.topics import Block, Kind
+from robot_runtime.vision_settings import VisionSettings
 
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
-    *("controller", "loop", "set_points", "steering", "card", "vision"),
+    *("controller", "loop", "set_points", "steering", "card", "vision", "vision_settings"),
     *("experiment", "end_experiment"),
 )
 
@@ -39,6 +40,10 @@ class RuntimeEnd:
             self._answer(name, gate)
         self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
         self._messages.answer("query/frames", lambda _: self.frames)
+        settings = VisionSettings().table()
+        self._messages.answer("query/vision", lambda _: {"settings": settings, "configured": settings})
+        self.picked: list[dict[str, Any]] = []
+        self._messages.answer("query/pick", self._pick)
         self._cache = Cache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
             self._messages.answer_bytes(name, self._cache.answer)
@@ -68,6 +73,12 @@ class RuntimeEnd:
     def is_heard(self, topic: str) -> bool:
         """Whether anybody listens to a topic."""
         return self._messages.watched(topic)
+
+    def _pick(self, question: dict[str, Any]) -> Mapping[str, Any]:
+        self.picked.append(question)
+        if self.refusal is not None:
+            raise Refused(self.refusal)
+        return {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
 
     def _answer(self, name: str, gate: threading.Event) -> None:
         def handle(question: dict[str, Any]) -> Mapping[str, Any] | None:

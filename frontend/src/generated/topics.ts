@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'c4f263b5';
+export const DEFINITIONS_HASH = 'dad8308f';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -191,17 +191,6 @@ export const ROW_TOPICS = {
       { name: 'fins', code: 'f', offset: 60, count: 4, scale: 1, unit: 'rad', meaning: 'fin angles' },
     ],
   },
-  turning: {
-    id: 10,
-    name: 'turning',
-    rowBytes: 44,
-    meaning: 'the same ticks, for heading, pitch and roll',
-    fields: [
-      { name: 'set_point', code: 'f', offset: 8, count: 3, scale: 1, unit: 'rad', meaning: 'wanted heading, pitch, roll; NaN where it is not steered' },
-      { name: 'measured', code: 'f', offset: 20, count: 3, scale: 1, unit: 'rad', meaning: 'heading, pitch, roll' },
-      { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN where it is not steered' },
-    ],
-  },
 } as const;
 
 export interface ImuRow {
@@ -369,17 +358,6 @@ export interface TruthRow {
   fins: number[];
 }
 
-export interface TurningRow {
-  /** s, steady clock of the robot's computer */
-  time: number;
-  /** rad, wanted heading, pitch, roll; NaN where it is not steered */
-  set_point: number[];
-  /** rad, heading, pitch, roll */
-  measured: number[];
-  /** commands yaw, pitch, roll, -1 to 1; NaN where it is not steered */
-  output: number[];
-}
-
 export interface Rows {
   imu: ImuRow;
   depth: DepthRow;
@@ -390,7 +368,6 @@ export interface Rows {
   control: ControlRow;
   link: LinkRow;
   truth: TruthRow;
-  turning: TurningRow;
 }
 
 export const OTHER_TOPICS = {
@@ -399,10 +376,12 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
-  experiment: 22,
+  vision: 23,
   picture: 32,
   observer: 33,
   thumbnail: 34,
+  mask: 35,
+  balanced: 36,
 } as const;
 
 /** A rectangle in the picture; each number a share of the picture's width or height. */
@@ -430,15 +409,6 @@ export interface ControllerChoice {
   gains: Gain[];
 }
 
-/** One thing that the robot steers by: depth (m), heading, pitch or roll (rad). */
-export interface Loop {
-  name: string;
-  on: boolean;
-  set_point: number;
-  controller: string;
-  controllers: ControllerChoice[];
-}
-
 /** How often the board sends a topic on this line: s between two samples. */
 export interface Pace {
   topic: string;
@@ -455,6 +425,57 @@ export interface Alarm {
   what: string;
   cause: string;
   remedy: string;
+}
+
+/** A patch of the wanted colour, and what it is measured by; `refused` says why it does not count. */
+export interface Candidate {
+  box: Box;
+  area: number;
+  fill: number;
+  aspect: number;
+  circularity: number;
+  refused: string;
+}
+
+/** An ArUco marker in the picture. */
+export interface Marker {
+  number: number;
+  corners: number[];
+}
+
+/** What counts as one colour: lowest and highest hue, saturation and value, both included.
+
+    A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
+    where another one does.
+     */
+export interface ColourRange {
+  hue: [number, number];
+  saturation: [number, number];
+  value: [number, number];
+}
+
+/** Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
+
+    `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
+    fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
+    (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
+    the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
+    ConfigError on what does not go together.
+     */
+export interface VisionSettings {
+  rate: number;
+  colour: string;
+  colours: Record<string, ColourRange>;
+  area_min: number;
+  area_max: number;
+  fill_min: number;
+  aspect: [number, number];
+  circularity_min: number;
+  opening: number;
+  white_balance: 'none' | 'grey_world' | 'underwater';
+  markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
+  marker_numbers: number[];
+  actions: Record<string, number>;
 }
 
 /** The robot as a whole; sent once a second and at every change. */
@@ -483,8 +504,8 @@ export interface State {
   vision_colour: string;
   colours: string[];
   card: string | null;
+  cards: string[];
   camera: string;
-  loops: Loop[];
   pilot_dropped: number;
 }
 
@@ -496,6 +517,11 @@ export interface Detection {
   box: Box | null;
   area: number;
   processing: number;
+  candidates: Candidate[];
+  markers: Marker[];
+  target: string | null;
+  set_point: number | null;
+  latency: number | null;
 }
 
 /** A line of text that the firmware wrote; level as in DebugLevel. */
@@ -513,18 +539,10 @@ export interface RobotEvent {
   text: string;
 }
 
-/** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */
-export interface Experiment {
+/** How the vision node looks now; sent at every change, and every ten seconds. */
+export interface VisionInForce {
   time: number;
-  number: number;
-  kind: 'step' | 'relay';
-  loop: string;
-  phase: 'settling' | 'balancing' | 'running' | 'complete' | 'stopped' | 'failed';
-  since: number;
-  progress: number;
-  cycles: number;
-  bias: number;
-  text: string;
+  settings: VisionSettings;
 }
 
 export interface Documents {
@@ -533,5 +551,5 @@ export interface Documents {
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
-  experiment: Experiment;
+  vision: VisionInForce;
 }

@@ -48,7 +48,7 @@ export class LiveFeed {
       lease: () => this.#lease(),
       keeps: () => false,
     });
-    this.live.onObserve = () => this.#watch();
+    this.live.onWatch = () => this.#watch();
   }
 
   /** Open the socket and keep it open. Returns what ends it. */
@@ -85,11 +85,11 @@ export class LiveFeed {
     this.#progress.reconnect();
     live.commTest.reconnect();
     live.gaps.restart();
-    if (live.observed) this.#watch();
+    if (live.watched.length > 0) this.#watch();
   }
 
   #watch(): void {
-    this.#socket.send({ op: 'watch', pictures: this.live.observed ? ['picture', 'observer'] : ['picture'] });
+    this.#socket.send({ op: 'watch', pictures: ['picture', ...this.live.watched] });
   }
 
   #closed(reason: string, refused: boolean): void {

@@ -8,6 +8,7 @@ import {
   type RobotEvent,
   type Rows,
   type State,
+  type VisionInForce,
 } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
@@ -28,6 +29,9 @@ const CONSOLE_LINES = 2000;
 const EVENT_LINES = 500;
 /** how many detections a rate is counted over */
 const RATE_OVER = 12;
+
+const WATCHED = ['observer', 'mask', 'balanced'] as const;
+type WatchedPicture = (typeof WATCHED)[number];
 
 export interface Picture {
   readonly time: number;
@@ -52,8 +56,13 @@ export class Live {
   /** Hz, as detections really come; null while there are fewer than two */
   detectionRate = $state<number | null>(null);
   picture = $state.raw<Picture | null>(null);
-  /** what a bystander in the simulated water sees; comes only while somebody asked for it with `observe` */
+  /** what a bystander in the simulated water sees; comes only while somebody asked for it with `watch` */
   observer = $state.raw<Picture | null>(null);
+  /** the mask of the wanted colour, and the picture after the white balance; while somebody asked for them */
+  mask = $state.raw<Picture | null>(null);
+  balanced = $state.raw<Picture | null>(null);
+  /** how the vision node looks */
+  vision = $state.raw<VisionInForce | null>(null);
   serverError = $state('');
   /** alarms of the server, which sees what the runtime cannot: that it is silent, for one */
   serverAlarms = $state.raw<readonly Alarm[]>([]);
@@ -75,9 +84,9 @@ export class Live {
   #tick = $state(0);
   #drawn = 0;
   #awaited = false;
-  #observing = 0;
-  /** called where `observed` changes; a recording has no such pictures */
-  onObserve: (() => void) | null = null;
+  readonly #watching: Record<WatchedPicture, number> = { observer: 0, mask: 0, balanced: 0 };
+  /** called where `watched` changes; a recording has no such pictures */
+  onWatch: (() => void) | null = null;
 
   /**
    * @param clock the steady clock of what is shown, s; NaN while unknown
@@ -114,21 +123,21 @@ export class Live {
     return () => clearInterval(beat);
   }
 
-  /** Look at the bystander's pictures. Returns what ends that. */
-  observe(): () => void {
-    this.#observing += 1;
-    if (this.#observing === 1) this.onObserve?.();
+  /** Look at pictures that are made only for whoever does. Returns what ends that. */
+  watch(topic: WatchedPicture): () => void {
+    this.#watching[topic] += 1;
+    if (this.#watching[topic] === 1) this.onWatch?.();
     return () => {
-      this.#observing -= 1;
-      if (this.#observing > 0) return;
-      this.observer = null;
-      this.onObserve?.();
+      this.#watching[topic] -= 1;
+      if (this.#watching[topic] > 0) return;
+      this[topic] = null;
+      this.onWatch?.();
     };
   }
 
-  /** whether somebody looks at the bystander's pictures */
-  get observed(): boolean {
-    return this.#observing > 0;
+  /** the pictures that somebody looks at beside the camera's */
+  get watched(): WatchedPicture[] {
+    return WATCHED.filter((topic) => this.#watching[topic] > 0);
   }
 
   /** The robot's steady clock, s; NaN while unknown. Whoever reads it in an effect runs again with every tick. */
@@ -175,13 +184,14 @@ export class Live {
     if (topic === 'detection') return this.detection?.time ?? null;
     if (topic === 'picture') return this.picture?.time ?? null;
     if (topic === 'observer') return this.observer?.time ?? null;
+    if (topic === 'mask') return this.mask?.time ?? null;
     return this.rings[topic].newest;
   }
 
   /** s between two samples of a topic as things are */
   period(topic: Timed): number {
     if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
-    if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
+    if (topic === 'detection' || topic === 'picture' || topic === 'mask') return 1 / (this.state?.vision_rate ?? 1);
     if (topic === 'observer') return PERIODS.truth;
     if (topic === 'control' || topic === 'navigation') return 1 / (this.state?.control_rate ?? 10);
     return this.state?.paces.find((pace) => pace.topic === topic)?.period ?? PERIODS[topic];
@@ -197,7 +207,8 @@ export class Live {
     this.detectionRate = null;
     this.#detected = [];
     this.picture = null;
-    this.observer = null;
+    for (const name of WATCHED) this[name] = null;
+    this.vision = null;
   }
 
   /** Take in what of a block is later than `after`. Returns the time up to which its topic is known (s), if any. */
@@ -212,9 +223,11 @@ export class Live {
       if (picture.time > after) this.picture = picture;
       return picture.time;
     }
-    if (block.topic === OTHER_TOPICS.observer) {
-      this.observer = readPicture(block);
-      return this.observer.time;
+    for (const name of WATCHED) {
+      if (block.topic !== OTHER_TOPICS[name]) continue;
+      const picture = readPicture(block);
+      this[name] = picture;
+      return picture.time;
     }
     const documents = (readDocuments(block) as { time: number }[]).filter((document) => document.time > after);
     return this.takeDocuments(block.topic, documents);
@@ -231,6 +244,7 @@ export class Live {
   #keep(topic: number, documents: { time: number }[], last: { time: number }): void {
     if (topic === OTHER_TOPICS.state) this.state = last as State;
     else if (topic === OTHER_TOPICS.detection) this.#detect(documents, last as Detection);
+    else if (topic === OTHER_TOPICS.vision) this.vision = last as VisionInForce;
     else if (topic === OTHER_TOPICS.debug) this.debug.append(documents as DebugLine[]);
     else if (topic === OTHER_TOPICS.event || topic === OTHER_TOPICS.notice) {
       this.events.append(documents as RobotEvent[]);

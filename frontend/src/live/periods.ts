@@ -1,6 +1,6 @@
 import type { Rows } from '../generated/topics';
 
-export type Timed = keyof Rows | 'state' | 'detection' | 'picture' | 'observer';
+export type Timed = keyof Rows | 'state' | 'detection' | 'picture' | 'observer' | 'mask';
 
 /** s between two samples of each topic on a fast line; `state.paces` says what a slow one carries. */
 export const PERIODS: Record<keyof Rows | 'state', number> = {

@@ -24,10 +24,12 @@ CARD_DISTANCE = 0.4
 """m from camera to card."""
 CARD = (0.105, 0.148)
 """m, width and height: A6."""
+MARKER_SIDE = 0.8
+"""Of the card's width, that the marker on it takes."""
 NEAR, FAR = 0.02, 1000.0
 """m between which things are drawn."""
 
-ALWAYS, ROBOT, SURFACE_BELOW, CARD_HELD = range(4)
+ALWAYS, ROBOT, SURFACE_BELOW, CARD_HELD, MARKER_HELD = range(5)
 """Groups of things that are drawn or not, depending on who looks and from where."""
 
 PERIOD = 10.0
@@ -227,6 +229,13 @@ def _robot(spec: Any, parameters: Parameters) -> None:
     robot.add_geom(
         name="card", type=_BOX, size=[0.001, CARD[0] / 2, CARD[1] / 2],
         pos=[NOSE + CARD_DISTANCE, 0, 0], group=CARD_HELD,
+    )  # fmt: skip
+    # A texture lies across a box's z axis, which points to the camera here.
+    marker = _texture(spec, "marker", textures.marker())
+    half = MARKER_SIDE * CARD[0] / 2
+    robot.add_geom(
+        type=_BOX, size=[half, half, 0.0005], pos=[NOSE + CARD_DISTANCE - 0.002, 0, 0],
+        quat=_axes((0, -1, 0), (0, 0, 1)), material=marker, group=MARKER_HELD,
     )  # fmt: skip
     places = zip(parameters.fin_positions, parameters.fin_directions, strict=True)
     for number, ((forward, right), (along, across)) in enumerate(places):

@@ -146,7 +146,9 @@ class Process:
             raise Refused("the simulator has not told yet where the robot is")
         time, truth = self._truth
         self._card = request.card
-        pixels = self._ready_scene().render_camera(time, truth, request.width, request.height, request.card)
+        pixels = self._ready_scene().render_camera(
+            time, truth, request.width, request.height, request.card, request.marked
+        )
         return Picture(time, pixels)
 
     def _observe(self) -> float:

@@ -80,13 +80,19 @@ class Scene:
         self._card = self._model.geom("card").id
 
     def render_camera(
-        self, time: float, truth: Truth, width: int, height: int, card: Paint | None = None
+        self,
+        time: float,
+        truth: Truth,
+        width: int,
+        height: int,
+        card: Paint | None = None,
+        marked: bool = False,
     ) -> Picture:
         """What the robot's camera sees at this time (s), uint8 of shape (height, width, 3); blue, green, red.
 
-        `card` is the paint of the card that is held before it.
+        `card` is the paint of the card that is held before it, `marked` whether the marker is printed on it.
         """
-        picture, depth, eye = self.draw_camera(time, truth, width, height, card)
+        picture, depth, eye = self.draw_camera(time, truth, width, height, card, marked)
         return self.look(picture, depth, eye, time)
 
     def render_observer(
@@ -103,7 +109,13 @@ class Scene:
         )
 
     def draw_camera(
-        self, time: float, truth: Truth, width: int, height: int, card: Paint | None = None
+        self,
+        time: float,
+        truth: Truth,
+        width: int,
+        height: int,
+        card: Paint | None = None,
+        marked: bool = False,
     ) -> tuple[Picture, Floats, _Eye]:
         """The camera's picture without water, the depth (m) of each pixel, and the eye that took it."""
         self._pose(time, truth, card)
@@ -111,7 +123,8 @@ class Scene:
         nose = to_world(axes, (modelling.NOSE, 0.0, 0.0))
         north, east, down = (at + by for at, by in zip(truth.position, nose, strict=True))
         position = (north, east, down)
-        eye = _Eye(position, axes, self._nose, self._groups(position, card))
+        printed = (modelling.MARKER_HELD,) if marked else ()
+        eye = _Eye(position, axes, self._nose, self._groups(position, card, *printed))
         return *self._render(eye, width, height), eye
 
     def look(self, picture: Picture, depth: Floats, eye: _Eye, time: float) -> Picture:

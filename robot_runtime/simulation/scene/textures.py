@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_runtime.paints import MARKER_CARD
+
 Texture = NDArray[np.uint8]
 Floats = NDArray[np.float32]
 
@@ -87,6 +89,14 @@ def caustics() -> Floats:
         np.add.at(count, (down, across), 1.0)
     light = cv2.GaussianBlur(np.pad(count / fine**2, 8, mode="wrap"), (0, 0), 1.1)[8:-8, 8:-8]
     return np.clip(light, 0.3, 4.0).astype(np.float32)
+
+
+@cache
+def marker() -> Texture:
+    """The marker on a card, without the white around it."""
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    printed = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, SIDE)
+    return cv2.cvtColor(printed, cv2.COLOR_GRAY2RGB).astype(np.uint8, copy=False)
 
 
 @cache

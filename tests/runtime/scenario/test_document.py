@@ -8,7 +8,7 @@ from robot_runtime.scenario.document import ScenarioError, read_scenario
 from robot_runtime.scenario.events import EVENTS, Arm, Card, Colour, Line, WavesChange
 from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.surroundings import Start, Trim
-from robot_runtime.vision.colours import DEFAULTS
+from robot_runtime.vision_settings import COLOURS
 
 WHOLE = """
 name = "whole"
@@ -172,7 +172,7 @@ def test_questions_are_those_of_the_simulator() -> None:
 
 
 def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
-    assert set(Colour.__args__) == set(DEFAULTS)  # type: ignore[attr-defined]
+    assert set(Colour.__args__) == set(COLOURS)  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,42 @@
 """Pictures and cameras to look at."""
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.samples import Box
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.colours import DEFAULTS
+from robot_runtime.vision.cards import make_card
+from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.picture import Picture
+from robot_runtime.vision_settings import COLOURS, ColourRange, VisionSettings
+
+
+class Found(NamedTuple):
+    """What counts in a picture."""
+
+    colour: str
+    box: Box
+    area: float
+
+
+def find(
+    picture: Picture, wanted: str, area_min: float = 0.01, colours: Mapping[str, ColourRange] = COLOURS
+) -> Found | None:
+    """What the detector finds when it looks for this colour first."""
+    settings = VisionSettings(colour=wanted, colours=dict(colours), area_min=area_min)
+    sight = Detector(settings).look(picture)
+    if sight.patch is None:
+        return None
+    assert sight.colour is not None
+    return Found(sight.colour, sight.patch.box, sight.patch.area)
 
 
 def drawn(time: float, card: str | None, width: int = 320, height: int = 240) -> Picture:
     """The card camera's picture at this time."""
-    return CardCamera(width, height, SimulatedClock(), DEFAULTS, lambda: None).draw(time, card)
+    held = make_card(card, COLOURS) if card else None
+    return CardCamera(width, height, SimulatedClock(), lambda: None).draw(time, held)
 
 
 class ShakyCamera(Camera):

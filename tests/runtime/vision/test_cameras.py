@@ -12,12 +12,12 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
-from robot_runtime.vision.colours import DEFAULTS, ColourRange
-from robot_runtime.vision.detector import Detector
+from robot_runtime.vision.cards import Card, make_card
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
-from tests.runtime.vision.harness import drawn
+from robot_runtime.vision_settings import COLOURS, ColourRange
+from tests.runtime.vision.harness import drawn, find
 
 FPS = 10.0
 
@@ -28,8 +28,7 @@ class TestCardCamera:
 
     def test_light_noise_and_card_move(self) -> None:
         assert not np.array_equal(drawn(3.25, None), drawn(3.5, None))
-        detector = Detector(DEFAULTS, 0.01)
-        boxes = {patch.box for time in range(10) if (patch := detector.find(drawn(time, "red"), "red"))}
+        boxes = {patch.box for time in range(10) if (patch := find(drawn(time, "red"), "red"))}
         assert len(boxes) > 5
 
     @pytest.mark.parametrize(("width", "height"), [(64, 48), (320, 240), (640, 480), (333, 101)])
@@ -48,16 +47,16 @@ class TestCardCamera:
         assert picture[:40].mean() > 1.3 * picture[-40:].mean()
 
     def test_water_takes_red_from_a_card(self) -> None:
-        white = ColourRange(hue=(0, 0), saturation=(0, 0), value=(255, 255))
-        camera = CardCamera(320, 240, SimulatedClock(), {"white": white}, lambda: "white")
-        blue, green, red = camera.draw(0.0, "white")[110:130, 150:170].reshape(-1, 3).mean(axis=0)
+        white = Card("white", (255, 255, 255))
+        camera = CardCamera(320, 240, SimulatedClock(), lambda: white)
+        blue, green, red = camera.draw(0.0, white)[110:130, 150:170].reshape(-1, 3).mean(axis=0)
         assert blue > green > red
         assert red / blue < 0.93
         assert ATTENUATION[2] * CARD_DISTANCE == pytest.approx(0.24)
 
     def test_reads_the_time_and_the_card_of_now(self) -> None:
         clock, cards = SimulatedClock(5.0), ["red"]
-        camera = CardCamera(320, 240, clock, DEFAULTS, lambda: cards[0])
+        camera = CardCamera(320, 240, clock, lambda: make_card(cards[0], COLOURS))
         assert camera.read().taken == 5.0
         assert "red card" in str(camera)
         cards[0] = "blue"
@@ -69,8 +68,9 @@ class TestCardCamera:
 
     def test_colours_without_a_paint_get_a_card_too(self) -> None:
         pink = {"pink": ColourRange(hue=(145, 165), saturation=(120, 255), value=(120, 255))}
-        picture = CardCamera(320, 240, SimulatedClock(), pink, lambda: "pink").draw(1.0, "pink")
-        assert Detector(pink, 0.01).find(picture, "pink") is not None
+        card = make_card("pink", pink)
+        picture = CardCamera(320, 240, SimulatedClock(), lambda: card).draw(1.0, card)
+        assert find(picture, "pink", colours=pink) is not None
 
 
 @pytest.fixture(params=[("mjpg.avi", "MJPG"), ("mp4v.mp4", "mp4v")], ids=["avi", "mp4"])
@@ -124,9 +124,8 @@ class TestFileCamera:
         assert cv2.imwrite(str(file), drawn(1.0, "yellow"))
         clock = SimulatedClock()
         camera = FileCamera(file, 320, 240, clock)
-        detector = Detector(DEFAULTS, 0.01)
         for _ in range(3):
-            patch = detector.find(camera.read().picture, "yellow")
+            patch = find(camera.read().picture, "yellow")
             assert patch is not None
             assert patch.colour == "yellow"
             clock.forward(10)

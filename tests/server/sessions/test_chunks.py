@@ -73,5 +73,5 @@ def test_the_description_is_enough_to_read_every_topic_of_rows() -> None:
             layout = chunks.row_layout(described[topic.name])
             assert layout.row.size == topic.row_bytes == described[topic.name]["row_bytes"]
             assert len(layout.columns) == len(layout.scales) == len(layout.line.split(","))
-    assert set(described) == {topic.name for topic in TOPICS} - {"picture", "observer"}
+    assert set(described) == {topic.name for topic in TOPICS} - {"picture", "observer", "mask", "balanced"}
     assert chunks.row_layout(described["motor"]).columns[1:3] == ("wanted_0 [rad]", "wanted_1 [rad]")

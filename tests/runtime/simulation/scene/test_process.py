@@ -226,9 +226,15 @@ def look(messages: Messages, until: Callable[[Vision], bool], config: VisionConf
     events: list[Event] = []
     found: list[Detection] = []
     vision = Vision(
-        config, SteadyClock(), found.append, lambda *_: None, lambda: False, events.append, messages=messages
+        config,
+        SteadyClock(),
+        found.append,
+        lambda *_: None,
+        lambda _: False,
+        events.append,
+        messages=messages,
     )
-    vision.card = "yellow"
+    vision.show_card("yellow")
     try:
         end = time.monotonic() + SLOW
         while not until(vision):
@@ -268,7 +274,7 @@ def test_without_a_scene_there_is_no_picture_and_it_is_news_only_after_a_while()
         clock = SimulatedClock()
         with Messages("turtle", [f"unixsock-stream/{folder}/zenoh"]) as alone:
             vision = Vision(
-                VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda: False,
+                VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda _: False,
                 events.append, messages=alone,
             )  # fmt: skip
             vision.look()

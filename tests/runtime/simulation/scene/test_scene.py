@@ -6,16 +6,17 @@ from itertools import product
 import numpy as np
 import pytest
 
-from robot_runtime.paints import PAINTS
+from robot_runtime.paints import MARKER_CARD, PAINTS, WHITE
 from robot_runtime.samples import Truth
 from robot_runtime.simulation.scene.contents import Contents, Place, Target
 from robot_runtime.simulation.scene.view import View
 from robot_runtime.simulation.scene.water import Kind
 from robot_runtime.simulation.surroundings import Basin
-from robot_runtime.vision.colours import DEFAULTS
 from robot_runtime.vision.detector import Detector
+from robot_runtime.vision_settings import VisionSettings
 from tests.runtime.simulation.scene.conftest import Make
 from tests.runtime.simulation.scene.harness import centre, changed, open_water, truth
+from tests.runtime.vision.harness import find
 
 SIZE = (320, 240)
 NOSE = 0.125
@@ -98,7 +99,7 @@ def test_colours_are_lost_with_distance(
     one = scene(open_water(*targets, kind=kind))
     for (colour, distance), seen in expected.items():
         pose = truth((-NOSE - distance - 0.2, 0.0, depths[colour]))
-        patch = Detector(DEFAULTS, 0.002).find(one.render_camera(1.0, pose, *SIZE), colour)
+        patch = find(one.render_camera(1.0, pose, *SIZE), colour, 0.002)
         assert (patch and patch.colour) == seen, (colour, distance)
 
 
@@ -109,12 +110,25 @@ def test_a_card_is_seen_as_what_it_is(scene: Make, contents: Contents) -> None:
     one = scene(contents)
     for colour, (time, depth) in product(PAINTS, ((1.0, 0.3), (7.0, 1.5))):
         picture = one.render_camera(time, truth((0.0, 0.0, depth)), *SIZE, PAINTS[colour])
-        patch = Detector(DEFAULTS, 0.01).find(picture, colour)
+        patch = find(picture, colour)
         assert patch is not None
         assert patch.colour == colour
         assert (patch.box.x + patch.box.width / 2, patch.box.y + patch.box.height / 2) == pytest.approx(
             (0.5, 0.5), abs=0.02
         )
+
+
+@pytest.mark.parametrize("size", [(320, 240), (640, 480)])
+def test_the_marker_card_is_read(scene: Make, size: tuple[int, int]) -> None:
+    pose = truth((0.0, 0.0, 1.0), roll=10.0)
+    picture = scene(Contents()).render_camera(1.0, pose, *size, WHITE, marked=True)
+    (marker,) = Detector(VisionSettings(markers="4x4_50")).look(picture).markers
+    assert marker.number == MARKER_CARD
+    assert sum(marker.corners[0::2]) / 4 == pytest.approx(0.5, abs=0.02)
+    assert sum(marker.corners[1::2]) / 4 == pytest.approx(0.5, abs=0.02)
+    # Its first corner is the upper left one of the upright marker.
+    assert marker.corners[0] < 0.5
+    assert marker.corners[1] < 0.5
 
 
 @pytest.mark.parametrize(
@@ -123,20 +137,20 @@ def test_a_card_is_seen_as_what_it_is(scene: Make, contents: Contents) -> None:
     ids=["natural", "pool"],
 )
 def test_the_surroundings_have_none_of_the_colours(scene: Make, contents: Contents) -> None:
-    one, detector = scene(contents), Detector(DEFAULTS, 0.01)
+    one = scene(contents)
     for number in range(20):
         rng = np.random.default_rng(number)
         north, east, depth = rng.uniform((-2.0, -2.0, 0.05), (2.0, 2.0, 2.4)).tolist()
         roll, pitch, yaw = rng.uniform((-20.0, -40.0, 0.0), (20.0, 40.0, 360.0)).tolist()
         pose = truth((north, east, depth), roll, pitch, yaw)
-        assert detector.find(one.render_camera(float(number), pose, *SIZE), "yellow") is None
+        assert find(one.render_camera(float(number), pose, *SIZE), "yellow") is None
 
 
 def test_turbid_water_hides_everything(scene: Make) -> None:
     green = Target(colour="green", position=(2.0, 0.0, 5.0), size=0.2)
     clear, turbid = open_water(green, turbidity=0.1), open_water(green, turbidity=0.7)
-    assert Detector(DEFAULTS, 0.002).find(scene(clear).render_camera(1.0, truth(), *SIZE), "green")
-    assert not Detector(DEFAULTS, 0.002).find(scene(turbid).render_camera(1.0, truth(), *SIZE), "green")
+    assert find(scene(clear).render_camera(1.0, truth(), *SIZE), "green", 0.002)
+    assert not find(scene(turbid).render_camera(1.0, truth(), *SIZE), "green", 0.002)
 
 
 def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
@@ -163,21 +177,20 @@ def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
 )
 def test_a_bystander_sees_the_robot_and_its_camera_does_not(scene: Make, view: View) -> None:
     one = scene(open_water())
-    yellow = Detector(DEFAULTS, 0.001)
     pose = truth(yaw=50.0)
-    patch = yellow.find(one.render_observer(1.0, pose, view, 640, 360), "yellow")
+    patch = find(one.render_observer(1.0, pose, view, 640, 360), "yellow", 0.001)
     assert patch is not None
     assert patch.colour == "yellow"
     across, down = patch.box.x + patch.box.width / 2, patch.box.y + patch.box.height / 2
     assert (across, down) == pytest.approx((0.5, 0.5), abs=0.06)
-    assert yellow.find(one.render_camera(1.0, pose, *SIZE), "yellow") is None
+    assert find(one.render_camera(1.0, pose, *SIZE), "yellow", 0.001) is None
 
 
 def test_from_above_north_is_up_and_east_to_the_right(scene: Make) -> None:
     view = View(name="top", azimuth=0.0, elevation=89.0, distance=3.0)
     red = Target(colour="red", position=(0.5, 0.5, 5.0), size=0.3)
-    patch = Detector(DEFAULTS, 0.001).find(
-        scene(open_water(red, kind="pool")).render_observer(1.0, truth(), view, 640, 360), "red"
+    patch = find(
+        scene(open_water(red, kind="pool")).render_observer(1.0, truth(), view, 640, 360), "red", 0.001
     )
     assert patch is not None
     assert patch.colour == "red"

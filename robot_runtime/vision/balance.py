@@ -1,0 +1,61 @@
+"""White balance: what water and light have done to the colours, taken back as far as can be told."""
+
+from collections.abc import Callable, Mapping
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_runtime.vision.picture import Picture
+from robot_runtime.vision_settings import BYTE_MAX, WhiteBalance
+
+GAIN_MAX = 4.0
+"""By which no channel is raised more: beyond that there is noise in place of light."""
+SPARSE = 4
+"""Of so many lines and columns one is enough for a mean."""
+
+
+def none(picture: Picture) -> Picture:
+    """The picture as it is."""
+    return picture
+
+
+def grey_world(picture: Picture) -> Picture:
+    """Each channel scaled so that all have the same mean: the world is taken to be grey on the whole.
+
+    G. Buchsbaum, A spatial processor model for object colour perception, J. Franklin Institute 310 (1980).
+    BGR, uint8 of shape (height, width, 3).
+    """
+    means = _means(picture)
+    gains = np.clip(means.mean() / np.maximum(means, 1), 1 / GAIN_MAX, GAIN_MAX)
+    levels = np.arange(BYTE_MAX + 1)[:, np.newaxis] * gains
+    table = np.clip(np.round(levels), 0, BYTE_MAX).astype(np.uint8)[np.newaxis]
+    return cv2.LUT(picture, table).astype(np.uint8, copy=False)
+
+
+def underwater(picture: Picture) -> Picture:
+    """The red that water has taken, given back from green where it is missing; then as `grey_world`.
+
+    I_r + (mean I_g - mean I_r)·(1 - I_r)·I_g with intensities from 0 to 1: C. O. Ancuti, C. Ancuti, C. De
+    Vleeschouwer and P. Bekaert, Color Balance and Fusion for Underwater Image Enhancement, IEEE Transactions
+    on Image Processing 27 (2018) 379, equation 4 with α = 1. Where red is not weaker than green, nothing is
+    given.
+    """
+    blue, green, red = cv2.split(picture)
+    means = _means(picture)
+    lost = max(means[1] - means[2], 0.0) / BYTE_MAX
+    given = cv2.multiply(cv2.bitwise_not(red), green, scale=lost / BYTE_MAX)
+    return grey_world(cv2.merge((blue, green, cv2.add(red, given))).astype(np.uint8, copy=False))
+
+
+BALANCES: Mapping[WhiteBalance, Callable[[Picture], Picture]] = {
+    "none": none,
+    "grey_world": grey_world,
+    "underwater": underwater,
+}
+
+
+def _means(picture: Picture) -> NDArray[np.float64]:
+    """Of blue, green and red."""
+    means: NDArray[np.float64] = picture[::SPARSE, ::SPARSE].reshape(-1, 3).mean(axis=0, dtype=np.float64)
+    return means

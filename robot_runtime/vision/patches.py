@@ -1,0 +1,116 @@
+"""Patches of one colour in a picture: their mask, their outlines, and which of them count."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import pi
+
+import cv2
+import numpy as np
+
+from robot_runtime.samples import Box, Candidate
+from robot_runtime.vision.picture import Picture
+from robot_runtime.vision_settings import HUE_MAX, ColourRange, VisionSettings
+
+CONTOURS_MAX = 50
+"""Patches that are measured, the largest ones: noise that nothing removes makes thousands."""
+CANDIDATES_MAX = 5
+"""Patches that are told of, the largest ones."""
+OPENING_LEAST = 3
+"""Pixels; with fewer nothing would be removed."""
+
+Contour = np.ndarray[tuple[int, ...], np.dtype[np.int32]]
+
+
+@dataclass(frozen=True, slots=True)
+class Patches:
+    """All of one colour; `mask` is 255 where it is, uint8 of shape (height, width).
+
+    `candidates` are the largest patches, first the largest, and `contours` their outlines.
+    """
+
+    colour: str
+    mask: Picture
+    candidates: Sequence[Candidate]
+    contours: Sequence[Contour]
+
+    @property
+    def counting(self) -> Iterator[tuple[Candidate, Contour]]:
+        """Those that count."""
+        pairs = zip(self.candidates, self.contours, strict=True)
+        return ((candidate, contour) for candidate, contour in pairs if not candidate.refused)
+
+    @property
+    def largest(self) -> Candidate | None:
+        """The largest that counts."""
+        return next((candidate for candidate, _ in self.counting), None)
+
+
+def find_patches(hsv: Picture, name: str, settings: VisionSettings) -> Patches:
+    """The patches of a named colour in an HSV picture (height, width, 3)."""
+    height, width = hsv.shape[:2]
+    mask = find_colour(hsv, settings.colours[name])
+    if cv2.countNonZero(mask) < settings.area_min * width * height:
+        return Patches(name, mask, (), ())
+    found, _ = cv2.findContours(_opened(mask, settings.opening), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
+    contours = [one.astype(np.int32, copy=False) for one in found]
+    contours.sort(key=cv2.contourArea, reverse=True)
+    measured = [(_measure(one, width, height, settings), one) for one in contours[:CONTOURS_MAX]]
+    # Those that count are told of before any that does not, however large.
+    measured.sort(key=lambda pair: bool(pair[0].refused))
+    told = measured[:CANDIDATES_MAX]
+    return Patches(name, mask, [one for one, _ in told], [contour for _, contour in told])
+
+
+def find_colour(hsv: Picture, colour: ColourRange) -> Picture:
+    """255 where the HSV picture (height, width, 3) has this colour, 0 elsewhere; (height, width)."""
+    low, high = colour.hue
+    if low <= high:
+        return _between(hsv, colour, low, high)
+    return _between(hsv, colour, low, HUE_MAX) | _between(hsv, colour, 0, high)
+
+
+def _between(hsv: Picture, colour: ColourRange, hue_low: int, hue_high: int) -> Picture:
+    lows = (hue_low, colour.saturation[0], colour.value[0])
+    highs = (hue_high, colour.saturation[1], colour.value[1])
+    return cv2.inRange(hsv, lows, highs).astype(np.uint8, copy=False)
+
+
+def _opened(mask: Picture, opening: float) -> Picture:
+    """Without specks, which noise makes; larger patches stay as they are."""
+    if opening == 0:
+        return mask
+    size = max(OPENING_LEAST, int(mask.shape[1] * opening) | 1)
+    square = cv2.getStructuringElement(cv2.MORPH_RECT, (size, size))
+    return cv2.morphologyEx(mask, cv2.MORPH_OPEN, square).astype(np.uint8, copy=False)
+
+
+def _measure(contour: Contour, width: int, height: int, settings: VisionSettings) -> Candidate:
+    x, y, w, h = cv2.boundingRect(contour)
+    inside = cv2.contourArea(contour)
+    perimeter = cv2.arcLength(contour, closed=True)
+    area = inside / (width * height)
+    # A contour runs through the middle of the outermost pixels, and so does the box that it fills.
+    fill = inside / max((w - 1) * (h - 1), 1)
+    aspect = w / h
+    circularity = min(4 * pi * inside / perimeter**2, 1.0) if perimeter else 0.0
+    return Candidate(
+        box=Box(x=x / width, y=y / height, width=w / width, height=h / height),
+        area=area,
+        fill=fill,
+        aspect=aspect,
+        circularity=circularity,
+        refused=_refused(area, fill, aspect, circularity, settings),
+    )
+
+
+def _refused(area: float, fill: float, aspect: float, circularity: float, settings: VisionSettings) -> str:
+    low, high = settings.aspect
+    reasons = (
+        ("too small", area < settings.area_min),
+        ("too large", area > settings.area_max),
+        ("fills too little of its box", fill < settings.fill_min),
+        ("too narrow", aspect < low),
+        ("too wide", aspect > high),
+        ("not round enough", circularity < settings.circularity_min),
+    )
+    return ", ".join(words for words, holds in reasons if holds)
