@@ -32,7 +32,7 @@ ROWS: list[tuple[str, Break]] = [
     ("imu_stale", absent("gyroscope")),
     ("board_silent", lambda flight: flight.cut(on=True)),
     ("server_silent", lambda flight: setattr(flight, "server", False)),
-    ("control_failed", lambda flight: setattr(flight.robot.control.controller, "step", None)),
+    ("control_failed", lambda flight: setattr(flight.robot.control.depth.controller, "step", None)),
 ]
 
 
