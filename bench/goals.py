@@ -78,6 +78,7 @@ GOALS = {
     **_fault("board_killed", _AGAIN),
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
+    "latency.key_to_fin_ms_p95": _most(150),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
     "replay.seek_ms_p95": _most(150),

@@ -33,10 +33,10 @@ export const LEFT_HAND: readonly (readonly Key[])[] = [
   ],
 ];
 export const RIGHT_HAND: readonly (readonly Key[])[] = [
-  [key('ArrowUp', '↑', 'nose up', PITCH, 1)],
+  [key('ArrowUp', '↑', 'nose ↑', PITCH, 1)],
   [
     key('ArrowLeft', '←', 'roll ‹', ROLL, -1),
-    key('ArrowDown', '↓', 'nose dn', PITCH, -1),
+    key('ArrowDown', '↓', 'nose ↓', PITCH, -1),
     key('ArrowRight', '→', 'roll ›', ROLL, 1),
   ],
 ];

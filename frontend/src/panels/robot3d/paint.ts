@@ -1,5 +1,5 @@
 import { FLANK, HEAD_FACETS, HULL, LENS, MOUNTS, NECK, finAt, type Facet } from './shape';
-import { dot, eyeOf, turn, turnBack, unit, type Camera, type Eye, type Quaternion, type Vector } from './space';
+import { dot, eyeOf, FOCAL, turn, turnBack, unit as unitOf, type Camera, type Eye, type Quaternion, type Vector } from './space';
 
 export interface Pose {
   readonly attitude: Quaternion;
@@ -24,26 +24,28 @@ export interface Colours {
 }
 
 /** m that the surface is drawn above the robot at most; from there on a word says how far it is */
-export const SURFACE_MOST = 0.17;
-const SURFACE_RADIUS = 0.24;
-const RING_RADIUS = 0.235;
+const SURFACE_MOST = 0.1;
+const SURFACE_RADIUS = 0.18;
+const RING_RADIUS = 0.18;
 /** m below the robot */
-const RING_BELOW = 0.13;
-const LIGHT = unit([0.35, 0.5, -1]);
+const RING_BELOW = 0.08;
+/** m that the picture's width and height show at least */
+const SHOWN = [0.46, 0.4] as const;
+const LIGHT = unitOf([0.35, 0.5, -1]);
 const LETTERS = ['N', 'E', 'S', 'W'] as const;
 
 /** Draws the robot into a picture of this size (CSS pixels). */
 export function paint(context: CanvasRenderingContext2D, width: number, height: number, camera: Camera, pose: Pose, colours: Colours): void {
   const eye = eyeOf(camera);
-  const half = Math.min(width, height * 1.25) / 2;
+  const unit = (Math.min(width / SHOWN[0], height / SHOWN[1]) * camera.distance) / FOCAL;
   const pen = new Pen(context, (place) => {
     const [right, down] = eye.see(place);
-    return [width / 2 + right * half, height / 2 + down * half];
+    return [width / 2 + right * unit, height * 0.47 + down * unit];
   });
   context.clearRect(0, 0, width, height);
   compass(pen, colours);
   robot(pen, eye, pose, colours);
-  if (pose.depth !== null) surface(pen, width, pose.depth, colours);
+  if (pose.depth !== null) surface(pen, height, pose.depth, colours);
 }
 
 class Pen {
@@ -123,14 +125,14 @@ function compass(pen: Pen, colours: Colours): void {
     const at = (radius: number) => pen.at([radius * Math.cos(angle), radius * Math.sin(angle), RING_BELOW]);
     context.beginPath();
     context.moveTo(...at(RING_RADIUS));
-    context.lineTo(...at(RING_RADIUS - (tick % 3 === 0 ? 0.02 : 0.01)));
+    context.lineTo(...at(RING_RADIUS - (tick % 3 === 0 ? 0.015 : 0.008)));
     context.stroke();
     context.fillStyle = colours.text;
     if (tick % 3 === 0) context.fillText(LETTERS[tick / 3] ?? '', ...at(RING_RADIUS + 0.02));
   }
 }
 
-function surface(pen: Pen, width: number, depth: number, colours: Colours): void {
+function surface(pen: Pen, height: number, depth: number, colours: Colours): void {
   const { context } = pen;
   const above = Math.min(Math.max(depth, -SURFACE_MOST), SURFACE_MOST);
   const far = depth > SURFACE_MOST;
@@ -148,9 +150,9 @@ function surface(pen: Pen, width: number, depth: number, colours: Colours): void
   }
   context.fillStyle = colours.text;
   context.font = '12px Inter, system-ui, sans-serif';
-  context.textAlign = 'right';
-  context.textBaseline = 'top';
-  context.fillText(far ? `surface ${depth.toFixed(2)} m above` : 'surface', width - 2, 2);
+  context.textAlign = 'left';
+  context.textBaseline = 'bottom';
+  context.fillText(far ? `surface ${depth.toFixed(2)} m above` : 'surface', 0, height);
 }
 
 /** 0 to 1, of a face that looks this way in the world */
@@ -159,6 +161,6 @@ const brightness = (normal: Vector): number => 0.5 + 0.5 * Math.max(-0.6, dot(no
 /** A colour in less light, or in more than its own. */
 function shade(colour: string, light: number): string {
   const parts = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
-  const lit = parts.map((part) => Math.round(Math.min(255, part * (0.45 + 0.75 * light))));
+  const lit = parts.map((part) => Math.round(Math.min(255, part * (0.4 + 0.65 * light))));
   return `rgb(${lit.join(' ')})`;
 }

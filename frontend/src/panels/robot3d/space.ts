@@ -41,12 +41,12 @@ export interface Camera {
 export interface Eye {
   /** where it stands, in the world */
   readonly place: Vector;
-  /** where a place of the world is seen: to the right and down, in units of half the picture's height */
+  /** where a place of the world is seen: to the right and down of the middle */
   readonly see: (place: Vector) => readonly [number, number];
 }
 
-/** what of the picture's half height one metre fills at a distance of one metre */
-const FOCAL = 4.2;
+/** in which a metre is seen at a distance of a metre */
+export const FOCAL = 4;
 
 export function eyeOf({ azimuth, elevation, distance }: Camera): Eye {
   const ahead: Vector = [-Math.cos(azimuth) * Math.cos(elevation), -Math.sin(azimuth) * Math.cos(elevation), Math.sin(elevation)];
