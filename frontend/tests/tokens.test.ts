@@ -45,7 +45,7 @@ describe.each([
     expect(contrast(of('on-stop'), of('stop'))).toBeGreaterThanOrEqual(4.5);
   });
 
-  it.each(['series-measured', 'series-wanted', 'series-third'])('the line %s stands out', (name) => {
+  it.each(['series-measured', 'series-wanted', 'series-third', 'series-4', 'series-5', 'series-6', 'series-7'])('the line %s stands out', (name) => {
     expect(contrast(of(name), of('panel'))).toBeGreaterThanOrEqual(lineLeast);
   });
 });

@@ -140,6 +140,11 @@ export class Live {
     return this.clock();
   }
 
+  /** As `now`, for whoever comes by himself at each frame. */
+  get instantNow(): number {
+    return this.clock();
+  }
+
   /** As `now`, for what is drawn with every frame. */
   get frameNow(): number {
     void this.#frame;
@@ -160,7 +165,7 @@ export class Live {
 
   freshness(...topics: Timed[]): Freshness {
     const now = this.now;
-    return worst(topics.map((topic) => freshness(this.#newest(topic), now, this.#period(topic))));
+    return worst(topics.map((topic) => freshness(this.#newest(topic), now, this.period(topic))));
   }
 
   /** The instant of a steady time on this computer's calendar. */
@@ -176,7 +181,8 @@ export class Live {
     return this.rings[topic].newest;
   }
 
-  #period(topic: Timed): number {
+  /** s between two samples of a topic as things are */
+  period(topic: Timed): number {
     if (topic === 'picture' && this.replayed) return THUMBNAIL_PERIOD;
     if (topic === 'detection' || topic === 'picture') return 1 / (this.state?.vision_rate ?? 1);
     if (topic === 'observer') return PERIODS.truth;

@@ -19,5 +19,8 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
 /** s between two pictures of a recording: its thumbnails */
 export const THUMBNAIL_PERIOD = 2;
 
-/** s that the rings hold: what the server keeps, and a little more. */
-export const HISTORY = 310;
+/** s that charts show at most, and that the server keeps */
+export const HISTORY_SHOWN = 600;
+
+/** s that the rings hold: a little more, since no clock is exact. */
+export const HISTORY = 615;

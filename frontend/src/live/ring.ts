@@ -30,6 +30,8 @@ export class RowRing<K extends keyof Rows> {
   readonly time: Float64Array;
   #length = 0;
   #start = 0;
+  #end = 0;
+  #revision = 0;
   readonly #sources: Source[];
 
   constructor(
@@ -49,6 +51,21 @@ export class RowRing<K extends keyof Rows> {
 
   get length(): number {
     return this.#length;
+  }
+
+  /** Number of the row after the newest, counted since the ring was made. */
+  get end(): number {
+    return this.#end;
+  }
+
+  /** Changes where rows became others than before by anything but newer ones that follow. */
+  get revision(): number {
+    return this.#revision;
+  }
+
+  /** Time of the oldest row (s, steady clock); null while there is none. */
+  get oldest(): number | null {
+    return this.#length === 0 ? null : (this.time[this.place(0)] ?? null);
   }
 
   /** Time of the newest row (s, steady clock); null while there is none. */
@@ -113,15 +130,37 @@ export class RowRing<K extends keyof Rows> {
     return row as unknown as Rows[K];
   }
 
+  /** Put a block's rows that are earlier than the oldest one before it, as far as there is room. */
+  prepend(payload: DataView): void {
+    const { rowBytes } = this.topic;
+    if (payload.byteLength % rowBytes !== 0) {
+      throw new BlockError(`${payload.byteLength} bytes are no rows of ${this.topic.name}, ${rowBytes} bytes each`);
+    }
+    const until = this.oldest ?? Infinity;
+    for (let at = payload.byteLength - rowBytes; at >= 0 && this.#length < this.capacity; at -= rowBytes) {
+      const time = payload.getFloat64(at, true);
+      if (time >= until) continue;
+      this.#start = this.place(this.capacity - 1);
+      this.#length += 1;
+      this.#store(payload, at, time, this.#start);
+    }
+    this.#revision += 1;
+  }
+
   clear(): void {
     this.#length = 0;
     this.#start = 0;
+    this.#revision += 1;
   }
 
   #write(payload: DataView, at: number, time: number): void {
     if (this.#length === this.capacity) this.#start = this.place(1);
     else this.#length += 1;
-    const place = this.place(this.#length - 1);
+    this.#end += 1;
+    this.#store(payload, at, time, this.place(this.#length - 1));
+  }
+
+  #store(payload: DataView, at: number, time: number, place: number): void {
     this.time[place] = time;
     for (const { field, read, bytes, columns } of this.#sources) {
       for (let element = 0; element < columns.length; element += 1) {

@@ -1,0 +1,115 @@
+import { Order, type Columns, type Span } from './columns';
+
+/** Where columns and values lie on the canvas, in pixels. */
+export interface Scale {
+  /** of the left edge of the span's first column */
+  readonly left: number;
+  /** of one column */
+  readonly column: number;
+  /** of the value 0, and of one unit upwards (negative) or downwards */
+  readonly zero: number;
+  readonly unit: number;
+}
+
+/** A sample, in pixels. */
+export type Spot = readonly [x: number, y: number];
+
+/**
+ * Draw a trace: in each column its least and its greatest value in the order in which they came, joined by lines.
+ *
+ * `before` and `after` are the samples next to the span, to which the line goes on where it does.
+ */
+export function paintTrace(
+  context: CanvasRenderingContext2D,
+  columns: Columns,
+  { first, columns: many }: Span,
+  { left, column, zero, unit }: Scale,
+  before: Spot | null,
+  after: Spot | null,
+): void {
+  const { low, high, order, broken } = columns;
+  let open = before !== null;
+  context.beginPath();
+  if (before !== null) context.moveTo(...before);
+  for (let index = 0; index < many; index += 1) {
+    const place = columns.place(first + index);
+    const kind = order[place];
+    if (kind === Order.NONE) continue;
+    const least = zero + unit * (low[place] ?? NaN);
+    const most = zero + unit * (high[place] ?? NaN);
+    const x = left + index * column;
+    if (broken[place] === 1) open = false;
+    if (least === most) {
+      if (open) context.lineTo(x + column / 2, least);
+      else context.moveTo(x + column / 2, least);
+    } else {
+      const begin = kind === Order.RISING ? least : most;
+      if (open) context.lineTo(x + column / 4, begin);
+      else context.moveTo(x + column / 4, begin);
+      context.lineTo(x + 0.75 * column, kind === Order.RISING ? most : least);
+    }
+    open = true;
+  }
+  if (after !== null && open) context.lineTo(...after);
+  context.stroke();
+}
+
+/** Fill what lies between two traces. Each holds its last value where it has none of its own. */
+export function paintBand(
+  context: CanvasRenderingContext2D,
+  [one, other]: readonly [Columns, Columns],
+  { first, columns: many }: Span,
+  { left, column, zero, unit }: Scale,
+): void {
+  const upper: Spot[] = [];
+  const lower: Spot[] = [];
+  const last: [number, number] = [NaN, NaN];
+  const fill = () => {
+    context.beginPath();
+    for (const [x, y] of upper.splice(0)) context.lineTo(x, y);
+    for (const [x, y] of lower.splice(0).reverse()) context.lineTo(x, y);
+    context.fill();
+  };
+  const end = Math.min(newest(one, first, many), newest(other, first, many));
+  for (let number = first; number <= end; number += 1) {
+    [one, other].forEach((columns, trace) => {
+      const place = columns.place(number);
+      if (columns.broken[place] === 1) fill();
+      if (columns.order[place] !== Order.NONE) last[trace] = ((columns.low[place] ?? NaN) + (columns.high[place] ?? NaN)) / 2;
+    });
+    if (Number.isNaN(last[0]) || Number.isNaN(last[1])) continue;
+    const x = left + (number - first + 0.5) * column;
+    upper.push([x, zero + unit * last[0]]);
+    lower.push([x, zero + unit * last[1]]);
+  }
+  fill();
+}
+
+function newest(columns: Columns, first: number, many: number): number {
+  let number = first + many - 1;
+  while (number >= first && columns.order[columns.place(number)] === Order.NONE) number -= 1;
+  return number;
+}
+
+/** An instant to be marked with a flag. */
+export interface Flag {
+  readonly x: number;
+  readonly colour: string;
+}
+
+export function paintFlags(context: CanvasRenderingContext2D, flags: readonly Flag[], height: number): void {
+  for (const { x, colour } of flags) {
+    context.fillStyle = context.strokeStyle = colour;
+    context.globalAlpha = 0.55;
+    context.beginPath();
+    context.moveTo(x, 0);
+    context.lineTo(x, height);
+    context.stroke();
+    context.globalAlpha = 1;
+    context.beginPath();
+    context.moveTo(x, 0);
+    context.lineTo(x + 9, 4);
+    context.lineTo(x, 8);
+    context.fill();
+  }
+}

@@ -1,0 +1,94 @@
+/** Every number of every topic of rows, as something that a chart can show. */
+import { ROW_TOPICS, type Field, type Rows } from '../generated/topics';
+
+export interface Signal {
+  /** as recordings and exports call it: `depth.depth`, or `motor.angle_2` where a field holds several */
+  readonly name: string;
+  readonly topic: keyof Rows;
+  readonly field: string;
+  /** which of several; 0 where the field holds one */
+  readonly element: number;
+  /** in words, without the topic */
+  readonly label: string;
+  readonly unit: string;
+  readonly meaning: string;
+  /** what is wanted rather than measured: drawn dashed */
+  readonly wanted: boolean;
+  /** a depth, which is drawn downwards */
+  readonly downwards: boolean;
+}
+
+const QUATERNION = ['w', 'x', 'y', 'z'];
+const FINS = ['front right', 'back right', 'back left', 'front left'];
+/** What the places of a field mean; of what is not here they are numbered. */
+const ELEMENTS: Readonly<Record<string, readonly string[]>> = {
+  'imu.attitude': QUATERNION,
+  'imu.rate': ['x', 'y', 'z'],
+  'imu.force': ['x', 'y', 'z'],
+  'motor.wanted': FINS,
+  'motor.angle': FINS,
+  'motor.drive': FINS,
+  'truth.position': ['north', 'east', 'down'],
+  'truth.attitude': QUATERNION,
+  'truth.velocity': ['x', 'y', 'z'],
+  'truth.rate': ['x', 'y', 'z'],
+  'truth.fins': FINS,
+};
+const DEPTHS: ReadonlySet<string> = new Set(['depth.depth', 'control.set_point', 'control.depth', 'truth.position_2']);
+const WANTED = /^(wanted|set_point)|_set_point$/;
+
+function signalsOf(topic: keyof Rows, field: Field): Signal[] {
+  const words = field.name.replaceAll('_', ' ');
+  return Array.from({ length: field.count }, (_, element) => {
+    const name = `${topic}.${field.name}${field.count > 1 ? `_${element}` : ''}`;
+    const place = ELEMENTS[`${topic}.${field.name}`]?.[element] ?? String(element);
+    return {
+      name,
+      topic,
+      field: field.name,
+      element,
+      label: field.count > 1 ? `${words} ${place}` : words,
+      unit: field.unit,
+      meaning: field.meaning,
+      wanted: WANTED.test(field.name),
+      downwards: DEPTHS.has(name),
+    };
+  });
+}
+
+const TOPICS = Object.keys(ROW_TOPICS) as (keyof Rows)[];
+
+export const SIGNALS: readonly Signal[] = TOPICS.flatMap((topic) =>
+  ROW_TOPICS[topic].fields.flatMap((field: Field) => signalsOf(topic, field)),
+);
+
+const BY_NAME = new Map(SIGNALS.map((signal) => [signal.name, signal]));
+
+/** The signal of this name; null where this version has none. */
+export function findSignal(name: string): Signal | null {
+  return BY_NAME.get(name) ?? null;
+}
+
+/** The signals of these names; what this version does not have is left out. */
+export function findSignals(names: readonly string[]): Signal[] {
+  return names.map(findSignal).filter((signal) => signal !== null);
+}
+
+export interface Group {
+  readonly topic: keyof Rows;
+  readonly meaning: string;
+  readonly signals: readonly Signal[];
+}
+
+/** The signals in which every word of `search` occurs, by topic. */
+export function searchSignals(search: string): Group[] {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  return TOPICS.map((topic) => {
+    const { meaning } = ROW_TOPICS[topic];
+    const signals = SIGNALS.filter((signal) => {
+      const text = `${signal.topic} ${signal.label} ${signal.name} ${signal.unit} ${signal.meaning} ${meaning}`.toLowerCase();
+      return signal.topic === topic && words.every((word) => text.includes(word));
+    });
+    return { topic, meaning, signals };
+  }).filter((group) => group.signals.length > 0);
+}

@@ -1,0 +1,38 @@
+/** What a cursor reads off a signal. */
+import type { Column } from '../live/ring';
+import type { TimedColumns } from './columns';
+
+/** The values of the samples under a cursor: the least and the greatest of those that share its pixel column. */
+export interface Read {
+  readonly least: number;
+  readonly most: number;
+}
+
+/**
+ * What a signal is at `time`: the samples within half of `width` (s) of it, or where there are none the newest before
+ * it that is not older than `gap`; null where there is none.
+ */
+export function readAt(ring: TimedColumns, column: Column, time: number, width: number, gap: number): Read | null {
+  let order = ring.firstSince(time - width / 2);
+  let least = Infinity;
+  let most = -Infinity;
+  const first = order;
+  for (; order < ring.length; order += 1) {
+    const place = ring.place(order);
+    if ((ring.time[place] ?? NaN) > time + width / 2) break;
+    const value = column[place] ?? NaN;
+    if (value < least) least = value;
+    if (value > most) most = value;
+  }
+  if (least <= most) return { least, most };
+  if (order > first || first === 0) return null;
+  const place = ring.place(first - 1);
+  const value = column[place] ?? NaN;
+  return time - (ring.time[place] ?? NaN) > gap || Number.isNaN(value) ? null : { least: value, most: value };
+}
+
+/** Decimals that tell apart what differs by a thousandth of `range`, at most five. */
+export function decimalsFor(range: number): number {
+  if (!(range > 0)) return 2;
+  return Math.min(5, Math.max(0, 2 - Math.floor(Math.log10(range))));
+}
