@@ -4,7 +4,7 @@ import { timeToAlarm } from '../src/panels/battery';
 /** A ring's columns: a voltage each second. */
 function measured(volts: number[]) {
   const time = Float64Array.from(volts, (_, second) => 1000 + second);
-  return [{ length: volts.length, time, place: (order: number) => order, firstSince: () => 0, end: volts.length, revision: 0 }, Float64Array.from(volts)] as const;
+  return [{ length: volts.length, time, place: (order: number) => order }, Float64Array.from(volts)] as const;
 }
 
 const falling = (seconds: number, from: number, slope: number) => Array.from({ length: seconds }, (_, at) => from + slope * at);

@@ -12,7 +12,7 @@ const LEAST_SPAN = 60;
 const LEAST_FALL = 0.01 / 300;
 
 /** s until a voltage that goes on falling as in the ring reaches ALARM; null where it does not fall. */
-export function timeToAlarm(ring: TimedColumns, column: Column): number | null {
+export function timeToAlarm(ring: Pick<TimedColumns, 'length' | 'time' | 'place'>, column: Column): number | null {
   const { length } = ring;
   let meanTime = 0;
   let meanVolts = 0;

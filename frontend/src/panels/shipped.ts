@@ -45,10 +45,11 @@ const SENSORS = layout(
   at('attitude', 0, 0, 6, 8),
   at('imu', 6, 0, 9, 8),
   at('beacons', 15, 0, 9, 5),
-  at('battery', 15, 5, 9, 7),
+  at('battery', 15, 5, 9, 6),
   at('depth', 0, 8, 15, 9),
-  at('link', 15, 12, 9, 12),
+  at('link', 15, 11, 9, 8),
   at('console', 0, 17, 15, 7),
+  at('events', 15, 19, 9, 5),
 );
 
 /** px: from here on the roomy one is standard */
