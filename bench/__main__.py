@@ -31,6 +31,7 @@ PARTS = (
     "compare",
     "replay",
     "jitter",
+    "hub",
 )
 RESULT = Path("build/bench.json")
 

@@ -30,6 +30,7 @@ from server.routes import (
     link,
     live,
     marks,
+    past,
     replay,
     robot,
     scenarios,
@@ -95,7 +96,7 @@ def create_app(
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live, control)
+    robots = (health, robot, simulator, scene, link, live, past, control)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

@@ -62,6 +62,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/simulator"): "control",
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
+    ("GET", "/api/past"): "viewer",
     ("GET", "/api/storage"): "viewer",
     ("GET", "/api/sessions"): "viewer",
     ("POST", "/api/sessions"): "operator",

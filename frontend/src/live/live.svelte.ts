@@ -76,6 +76,8 @@ export class Live {
   #observing = 0;
   /** called where `observed` changes; a recording has no such pictures */
   onObserve: (() => void) | null = null;
+  /** somebody looks at a topic before its ring begins */
+  wantPast: (topic: keyof Rows) => void = () => undefined;
 
   /**
    * @param clock the steady clock of what is shown, s; NaN while unknown
