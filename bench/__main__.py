@@ -32,6 +32,7 @@ PARTS = (
     "compare",
     "replay",
     "jitter",
+    "hub",
 )
 RESULT = Path("build/bench.json")
 

@@ -30,10 +30,12 @@ def measure() -> dict[str, float]:
             "simulator": stack.child("robot_runtime.simulation"),
         }
         time.sleep(_SETTLE)
-        before = {name: _cpu(process) for name, process in parts.items()}
+        before = {name: cpu_seconds(process) for name, process in parts.items()}
         received = viewer.bytes
         time.sleep(_SECONDS)
-        cpu = {name: (_cpu(process) - before[name]) / _SECONDS * 100 for name, process in parts.items()}
+        cpu = {
+            name: (cpu_seconds(process) - before[name]) / _SECONDS * 100 for name, process in parts.items()
+        }
         figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
         figures["cpu.robot_stack_percent"] = cpu["server"] + cpu["runtime"]
         figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
@@ -67,7 +69,7 @@ class _Viewer:
             self.bytes += len(message)
 
 
-def _cpu(process: psutil.Process) -> float:
+def cpu_seconds(process: psutil.Process) -> float:
     """s on a processor. The scheduler's own count: the usual one sees only who runs when the clock ticks."""
     tasks = Path(f"/proc/{process.pid}/task").iterdir()
     return sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) * 1e-9

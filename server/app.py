@@ -36,6 +36,7 @@ from server.routes import (
     live,
     marks,
     panels,
+    past,
     replay,
     robot,
     scenarios,
@@ -108,7 +109,7 @@ def create_app(
     app.add_exception_handler(CopyFailed, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, vision, simulator, scene, link, live, control)
+    robots = (health, robot, vision, simulator, scene, link, live, past, control)
     kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

@@ -70,6 +70,8 @@ export interface Stretch {
 }
 
 const TIMEOUT_STOP = 2000;
+/** ms; some megabytes */
+const TIMEOUT_PAST = 20_000;
 /** ms; a check takes up to ten seconds */
 const TIMEOUT_CHECK = 15_000;
 /** ms; a board may have to be handed over first, or to get its firmware back */
@@ -124,6 +126,11 @@ export const api = {
   readVision: (text: string) => request<VisionSettings>('POST', '/vision/read', { text }),
   simulator: (here: boolean) => order('PUT', '/simulator', { here }),
   view: (view: View) => order('PUT', '/scene/view', view),
+  /** the rows that the server has of these topics up to a time, s, steady clock */
+  past: (topics: readonly string[], until: number) =>
+    send('GET', `/past?${topics.map((topic) => `topic=${topic}&`).join('')}until=${until}`, undefined, TIMEOUT_PAST, (response) =>
+      response.arrayBuffer(),
+    ),
   health: () => request<Schemas['Health']>('GET', '/health'),
   linkFrames: () => request<LinkFrames>('GET', '/link/frames'),
   sessions: (deleted = false) => request<Session[]>('GET', `/sessions?deleted=${deleted}`),

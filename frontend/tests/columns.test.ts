@@ -85,6 +85,7 @@ describe('Columns', () => {
     const counted = new Columns(
       {
         time: ring.time,
+        oldest: ring.oldest,
         get length() {
           return ring.length;
         },

@@ -25,6 +25,7 @@ OPERATIONS: dict[str, Need] = {
     "revokeDevice": Need.OPERATOR,
     "makeToken": Need.OPERATOR,
     "getHealth": Need.VIEWER,
+    "getPast": Need.VIEWER,
     "getRobot": Need.VIEWER,
     "stopRobot": Need.VIEWER,
     "armRobot": Need.CONTROL,

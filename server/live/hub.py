@@ -16,8 +16,11 @@ from robot_runtime.clock import Clock
 from robot_runtime.topics import Block, Kind
 from server.live.lanes import History, Lane, Totals
 
-HISTORY_SECONDS = 300.0
+HISTORY_SECONDS = 600.0
 HISTORY_TOPIC_BYTES = 4_000_000
+"""At the robot's full rate all topics together have 7 MB in ten minutes, the largest 2.3 MB."""
+FIRST_SECONDS = 65.0
+"""Of rows, what every page gets when it connects: a minute's chart. What shows more asks for it."""
 HISTORY_MESSAGE_BYTES = 256_000
 """Small enough that one of them passes a poor radio link within `STALL_SECONDS`."""
 HISTORY_ROUNDS = 10
@@ -89,9 +92,9 @@ class Client:
             await self._wake.wait()
 
     async def _send_history(self) -> None:
-        tick = -1
+        tick, start = -1, self._clock.now() - FIRST_SECONDS
         for _ in range(HISTORY_ROUNDS):
-            groups, tick = self._hub.history.since(tick, HISTORY_MESSAGE_BYTES), self._hub.tick
+            groups, tick = self._hub.history.since(tick, HISTORY_MESSAGE_BYTES, start), self._hub.tick
             self._rows, self._documents = self._hub.rows.end, self._hub.documents.end
             self._seen = self._hub.rows.totals
             for group in groups:

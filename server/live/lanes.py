@@ -5,9 +5,18 @@ the last minutes of each topic for a page that connects.
 """
 
 from collections import deque
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from math import inf
 
-from robot_runtime.topics import BY_ID, Block, Topic
+from robot_runtime.topics import BY_ID, Block, Kind, Topic
+
+CHUNK_SECONDS = 2.0
+CHUNK_BLOCKS = 100
+COUNT_MAX = 65_535
+"""Samples in one block."""
+NEWEST_ONLY = frozenset({"state", "detection", "parameters"})
+"""Topics whose every document says all: a page that connects has no use for the earlier ones."""
 
 Totals = dict[int, int]
 """Samples of each topic, by its number, since the server started."""
@@ -68,37 +77,88 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class _Kept:
+    """Blocks one after the other that went out up to `tick`; rows begin at the time `since`."""
+
     tick: int
-    time: float
+    since: float
     data: bytes
 
 
+class _Past:
+    """What is kept of one topic: the last blocks as they came, those before them gathered in chunks."""
+
+    def __init__(self, topic: Topic) -> None:
+        self.topic = topic
+        self.bytes = 0
+        self._chunks: deque[_Kept] = deque()
+        self._blocks: list[Block] = []
+        self._since = 0.0
+        self._tick = 0
+
+    def add(self, block: Block, tick: int, time: float) -> None:
+        if not self._blocks:
+            self._since = time
+        self._blocks.append(block)
+        self._tick = tick
+        self.bytes += len(block.data)
+        if time - self._since >= CHUNK_SECONDS or len(self._blocks) >= CHUNK_BLOCKS:
+            self._gather()
+
+    def forget(self, before: float, bytes_max: int) -> None:
+        while self._chunks and (self._chunks[0].since < before or self.bytes > bytes_max):
+            self.bytes -= len(self._chunks.popleft().data)
+
+    def forget_all(self) -> None:
+        self._blocks.clear()
+        self._chunks.clear()
+        self.bytes = 0
+
+    def chunks(self) -> Iterable[_Kept]:
+        # What is given now must not be part of a chunk with what comes later.
+        self._gather()
+        return self._chunks
+
+    def _gather(self) -> None:
+        if not self._blocks:
+            return
+        data = _join(self._blocks)
+        self.bytes += len(data) - sum(len(block.data) for block in self._blocks)
+        self._chunks.append(_Kept(self._tick, self._since, data))
+        self._blocks.clear()
+
+
 class History:
-    """The last `seconds` of every topic, each topic within `bytes_max`."""
+    """The last `seconds` of every topic, each within `bytes_max`; of some topics the newest block only.
+
+    A block is small, and Python's own bytes around it are as many again. So those of two seconds become one,
+    which is soon sent, too.
+    """
 
     def __init__(self, seconds: float, bytes_max: int) -> None:
         self._seconds = seconds
         self._bytes_max = bytes_max
-        self._topics: dict[int, deque[_Kept]] = {}
-        self._bytes: dict[int, int] = {}
+        self._topics: dict[int, _Past] = {}
 
     def add(self, block: Block, tick: int, now: float) -> None:
         """Keep a block that goes out at `tick`, at `now` (s, steady clock)."""
-        topic = block.topic.id
-        kept = self._topics.setdefault(topic, deque())
-        kept.append(_Kept(tick, now, block.data))
-        size = self._bytes.get(topic, 0) + len(block.data)
-        while kept and (kept[0].time < now - self._seconds or size > self._bytes_max):
-            size -= len(kept.popleft().data)
-        self._bytes[topic] = size
+        past = self._topics.setdefault(block.topic.id, _Past(block.topic))
+        if block.topic.name in NEWEST_ONLY:
+            past.forget_all()
+        # What a server takes over from an earlier one is older than now.
+        past.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)
+        past.forget(now - self._seconds, self._bytes_max)
 
-    def since(self, tick: int, message_bytes: int) -> list[list[bytes]]:
-        """Every block that went out after `tick`, topic by topic, in groups of about `message_bytes`."""
+    def since(self, tick: int, message_bytes: int, rows_from: float = -inf) -> list[list[bytes]]:
+        """Every block that went out after `tick`, topic by topic, in groups of about `message_bytes`.
+
+        Of rows only what is not before `rows_from` (s, steady clock), or a little more.
+        """
         groups: list[list[bytes]] = []
         room = 0
-        for kept in self._topics.values():
-            for one in kept:
-                if one.tick <= tick:
+        for past in self._topics.values():
+            first = rows_from - CHUNK_SECONDS if past.topic.kind is Kind.ROWS else -inf
+            for one in past.chunks():
+                if one.tick <= tick or one.since < first:
                     continue
                 if len(one.data) > room:
                     groups.append([])
@@ -106,3 +166,36 @@ class History:
                 groups[-1].append(one.data)
                 room -= len(one.data)
         return groups
+
+    def rows(self, topics: Collection[str], until: float) -> bytes:
+        """The rows of these topics that are kept, up to `until` (s, steady clock) or a little more."""
+        return b"".join(
+            one.data
+            for past in self._topics.values()
+            if past.topic.name in topics
+            for one in past.chunks()
+            if one.since < until
+        )
+
+
+def _join(blocks: Sequence[Block]) -> bytes:
+    """These blocks of one topic; rows that follow each other as one block, which saves their heads."""
+    runs: list[list[Block]] = []
+    count = 0
+    for block in blocks:
+        follows = runs and runs[-1][-1].following == block.first and count + block.count <= COUNT_MAX
+        if block.topic.kind is Kind.ROWS and follows:
+            runs[-1].append(block)
+            count += block.count
+        else:
+            runs.append([block])
+            count = block.count
+    return b"".join(map(_merge, runs))
+
+
+def _merge(run: Sequence[Block]) -> bytes:
+    first = run[0]
+    if len(run) == 1:
+        return first.data
+    payload = b"".join(block.payload for block in run)
+    return Block.of(first.topic, sum(block.count for block in run), first.first, payload).data

@@ -68,6 +68,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/simulator"): "control",
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
+    ("GET", "/api/past"): "viewer",
     ("GET", "/api/storage"): "viewer",
     ("GET", "/api/backup"): "operator",
     ("GET", "/api/sessions"): "viewer",

@@ -9,6 +9,8 @@ export interface TimedColumns {
   readonly end: number;
   /** changes where rows became others than before by anything but newer ones that follow */
   readonly revision: number;
+  /** time of the oldest row, s; null while there is none */
+  readonly oldest: number | null;
   place(order: number): number;
   firstSince(time: number): number;
 }

@@ -109,7 +109,10 @@ export class StripPainter {
     if (context === null) return;
     const span = spanOf(view, this.#width);
     const gaps = this.#lines.map(({ signal }) => staleAfter(this.live.period(signal.topic)));
-    this.#lines.forEach(({ columns }, at) => columns.update(span, gaps[at] ?? Infinity));
+    this.#lines.forEach(({ columns, ring, signal }, at) => {
+      columns.update(span, gaps[at] ?? Infinity);
+      if ((ring.oldest ?? -Infinity) > view.start) this.live.wantPast(signal.topic);
+    });
     const range = this.#choose(span);
     const { instant } = this.live;
     this.frame.show({ seconds: view.seconds, held: held && instant ? { end: view.end, instant } : null }, range);

@@ -4,6 +4,8 @@ export type Range = readonly [number, number];
 
 const STEPS = [0.5, 1, 1.5, 2, 3, 4, 5, 7.5, 10];
 const DEPTH_LEAST = 0.6;
+/** share of a value below which differences are none */
+const FLAT = 1e-6;
 /** least part of a range that data must fill, so that it stays */
 const FILLED = 0.7;
 
@@ -21,8 +23,8 @@ export function depthsRange(least: number, most: number): Range {
 
 /** A round range in which all from `least` to `most` is seen with some room. */
 export function roundRange(least: number, most: number): Range {
-  const flat = Math.max(Math.abs(least), Math.abs(most)) * 0.02 || 1;
-  const room = Math.max((most - least) * 0.06, most - least < flat * 0.05 ? flat : 0);
+  const size = Math.max(Math.abs(least), Math.abs(most));
+  const room = most - least > size * FLAT ? (most - least) * 0.06 : size * 0.02 || 1;
   const step = roundStep((most - least + 2 * room) / 4);
   return [Math.floor((least - room) / step) * step, Math.ceil((most + room) / step) * step];
 }

@@ -11,6 +11,8 @@ export interface Signal {
   /** in words, without the topic */
   readonly label: string;
   readonly unit: string;
+  /** how many are written, so that the smallest difference shows */
+  readonly decimals: number;
   readonly meaning: string;
   /** what is wanted rather than measured: drawn dashed */
   readonly wanted: boolean;
@@ -35,7 +37,13 @@ const ELEMENTS: Readonly<Record<string, readonly string[]>> = {
   'truth.fins': FINS,
 };
 const DEPTHS: ReadonlySet<string> = new Set(['depth.depth', 'control.set_point', 'control.depth', 'truth.position_2']);
+const DECIMALS_MOST = 4;
 const WANTED = /^(wanted|set_point)|_set_point$/;
+
+function decimalsOf({ code, scale }: Field): number {
+  if (code === 'f' || code === 'd') return DECIMALS_MOST - 1;
+  return Math.min(DECIMALS_MOST, Math.max(0, Math.ceil(-Math.log10(scale) - 1e-9)));
+}
 
 function signalsOf(topic: keyof Rows, field: Field): Signal[] {
   const words = field.name.replaceAll('_', ' ');
@@ -49,6 +57,7 @@ function signalsOf(topic: keyof Rows, field: Field): Signal[] {
       element,
       label: field.count > 1 ? `${words} ${place}` : words,
       unit: field.unit,
+      decimals: decimalsOf(field),
       meaning: field.meaning,
       wanted: WANTED.test(field.name),
       downwards: DEPTHS.has(name),
@@ -86,7 +95,7 @@ export function searchSignals(search: string): Group[] {
   return TOPICS.map((topic) => {
     const { meaning } = ROW_TOPICS[topic];
     const signals = SIGNALS.filter((signal) => {
-      const text = `${signal.topic} ${signal.label} ${signal.name} ${signal.unit} ${signal.meaning} ${meaning}`.toLowerCase();
+      const text = `${signal.topic} ${signal.label} ${signal.name} ${signal.unit} ${signal.meaning}`.toLowerCase();
       return signal.topic === topic && words.every((word) => text.includes(word));
     });
     return { topic, meaning, signals };

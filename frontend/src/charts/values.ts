@@ -30,9 +30,3 @@ export function readAt(ring: TimedColumns, column: Column, time: number, width: 
   const value = column[place] ?? NaN;
   return time - (ring.time[place] ?? NaN) > gap || Number.isNaN(value) ? null : { least: value, most: value };
 }
-
-/** Decimals that tell apart what differs by a thousandth of `range`, at most five. */
-export function decimalsFor(range: number): number {
-  if (!(range > 0)) return 2;
-  return Math.min(5, Math.max(0, 2 - Math.floor(Math.log10(range))));
-}

@@ -640,6 +640,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/past": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The last ten minutes of some topics
+         * @description All rows that the server still has of these topics, up to `until`: topic by topic, the oldest first.
+         */
+        get: operations["getPast"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot": {
         parameters: {
             query?: never;
@@ -2567,6 +2587,11 @@ export interface components {
              */
             until: number;
         };
+        /**
+         * RowTopic
+         * @enum {string}
+         */
+        RowTopic: "imu" | "depth" | "beacon" | "motor" | "status" | "navigation" | "control" | "link" | "truth";
         /**
          * Run
          * @description A run with its configuration and its cells.
@@ -5135,6 +5160,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPast: {
+        parameters: {
+            query: {
+                /** @description of rows; may be given several times */
+                topic: components["schemas"]["RowTopic"][];
+                /** @description s, steady clock; a little more may come */
+                until: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Blocks, as on the live socket */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */

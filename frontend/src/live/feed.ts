@@ -9,12 +9,15 @@ import { readBlocks, type Block } from './blocks';
 import { SteadyClock } from './clock';
 import { Live } from './live.svelte';
 import { readMessage, type Hello } from './messages';
+import { Past } from './past';
 import { LiveSocket } from './socket';
 import { Stop } from './stop.svelte';
 import { Progress } from './store';
 
 /** s by which the robot's clock may seem to jump before it is taken for another clock. */
 const CLOCK_JUMP = 5;
+/** ms without a connection after which the server may not send all that was missed by itself */
+const AWAY = 50_000;
 
 /** The robot as it is now: fills a `Live` from the live socket. */
 export class LiveFeed {
@@ -24,6 +27,8 @@ export class LiveFeed {
   readonly #steady = new SteadyClock(() => performance.now() / 1000);
   readonly #socket: LiveSocket;
   readonly #control: Control;
+  readonly #past: Past;
+  #lostAt: number | null = null;
 
   /** @param access whoever uses this page; told where the server does not know them any more */
   constructor(
@@ -49,6 +54,8 @@ export class LiveFeed {
       lease: () => this.#lease(),
       keeps: (axis) => keeps(this.live.state, axis),
     });
+    this.#past = new Past(this.live.rings, api.past, () => this.live.redraw());
+    this.live.wantPast = this.#past.want;
     this.live.onWatch = () => this.#watch();
   }
 
@@ -83,6 +90,9 @@ export class LiveFeed {
     live.connection = 'open';
     live.serverError = '';
     live.farewell = '';
+    // Rows that were missed would be a hole; the past as a whole has them.
+    if (this.#lostAt !== null && Date.now() - this.#lostAt > AWAY) this.#clearRows();
+    this.#lostAt = null;
     this.#progress.reconnect();
     live.commTest.reconnect();
     live.gaps.restart();
@@ -93,7 +103,15 @@ export class LiveFeed {
     this.#socket.send({ op: 'watch', pictures: ['picture', ...this.live.watched] });
   }
 
+  #clearRows(): void {
+    const rings = Object.values(this.live.rings);
+    for (const ring of rings) ring.clear();
+    this.#progress.forgetSome(rings.map((ring) => ring.topic.id));
+    this.#past.forget();
+  }
+
   #closed(reason: string, refused: boolean): void {
+    this.#lostAt ??= Date.now();
     this.live.connection = 'lost';
     this.live.roundTrip = null;
     this.#control.leave();
@@ -128,6 +146,7 @@ export class LiveFeed {
       // The robot's computer was restarted: times from before mean nothing on its new clock.
       this.#steady.reset();
       this.#progress.forget();
+      this.#past.forget();
       live.clear();
     }
     sitOn(hello.seat_key);

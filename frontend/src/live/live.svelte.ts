@@ -87,6 +87,8 @@ export class Live {
   readonly #watching: Record<WatchedPicture, number> = { observer: 0, mask: 0, balanced: 0 };
   /** called where `watched` changes; a recording has no such pictures */
   onWatch: (() => void) | null = null;
+  /** somebody looks at a topic before its ring begins */
+  wantPast: (topic: keyof Rows) => void = () => undefined;
 
   /**
    * @param clock the steady clock of what is shown, s; NaN while unknown

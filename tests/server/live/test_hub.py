@@ -55,7 +55,7 @@ class Page:
 
 def with_hub(scenario: Callable[[Hub, SimulatedClock], Awaitable[None]]) -> None:
     async def run() -> None:
-        clock = SimulatedClock(1000.0)
+        clock = SimulatedClock(110.0)
         await scenario(Hub(clock, lambda _: None), clock)
 
     asyncio.run(run())

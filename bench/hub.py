@@ -1,0 +1,160 @@
+"""What it costs to give every sample to every viewer, and how late they get it, beside foxglove-sdk."""
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median, quantiles
+from time import monotonic, sleep
+
+import psutil
+
+from bench.hub_ends import TOPICS
+from bench.hub_viewers import OURS, THEIRS, Drain, Viewer, Watch
+from bench.stack import cpu_seconds
+from server.settings import DataFolder
+from tests.shell import shell_headers
+from tests.stack import free_port
+
+_VIEWERS = (1, 10, 50)
+_SETTLE = 4.0
+_SECONDS = 8.0
+_ROUNDS = 3
+"""Each is measured so often, one after the other, since a computer is not as quick at all times."""
+_STALL_SECONDS = 15.0
+"""Enough that the buffers on the way are full and the server has noticed."""
+_START_SECONDS = 240.0
+_SOCKET_BYTES = 4096
+
+Open = Callable[[], Viewer]
+
+
+@dataclass
+class _Figures:
+    cpu_ms_per_1000: list[float] = field(default_factory=list)
+    latencies: list[float] = field(default_factory=list)
+
+
+def measure() -> dict[str, float]:
+    """Of 8 topics of 100 samples a second: CPU of the serving process in ms per 1,000 delivered samples, and
+    ms from a sample to a viewer that has it.
+
+    foxglove-sdk logs each sample as it is made, in the process that makes them; the server gets them from
+    another process, as it does from the runtime.
+    """
+    found = {(who, many): _Figures() for who in ("hub", "foxglove") for many in _VIEWERS}
+    with tempfile.TemporaryDirectory() as folder:
+        data, port, other = Path(folder), free_port(), free_port()
+        DataFolder(data).run.mkdir()
+        with (
+            _process("server", folder, str(port)) as server,
+            _process("foxglove", str(other)) as foxglove,
+            _process("source", folder),
+        ):
+            ours, theirs = lambda: _ours(data, port), lambda: _theirs(other)
+            _wait(ours)
+            _wait(theirs)
+            for _ in range(_ROUNDS):
+                for many in _VIEWERS:
+                    _look(found["hub", many], server, ours, many)
+                    _look(found["foxglove", many], foxglove, theirs, many)
+            stalled = _stall(data, port, server)
+    return _summary(found) | stalled
+
+
+def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
+    figures = {}
+    for (who, many), one in found.items():
+        percentiles = quantiles(one.latencies, n=100)
+        figures[f"{who}.cpu_ms_per_1000_delivered.{many}"] = median(one.cpu_ms_per_1000)
+        figures[f"{who}.latency_ms_p50.{many}"] = percentiles[49] * 1000
+        figures[f"{who}.latency_ms_p99.{many}"] = percentiles[98] * 1000
+    for many in _VIEWERS:
+        ours, theirs = (found[who, many].cpu_ms_per_1000 for who in ("hub", "foxglove"))
+        name = "hub.ratio_to_foxglove" + ("" if many == _VIEWERS[-1] else f".{many}")
+        figures[name] = median(one / other for one, other in zip(ours, theirs, strict=True))
+    return figures
+
+
+def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
+    """Measure for a while with so many viewers: the first is timed, the bytes of the others are counted."""
+    with Watch(open_one()) as watch, Drain([open_one() for _ in range(many - 1)]) as drain:
+        sleep(_SETTLE)
+        watch.begin()
+        drain.check()
+        drained, before = drain.bytes, cpu_seconds(server)
+        sleep(_SECONDS)
+        spent = cpu_seconds(server) - before
+        drain.check()
+        samples, size, latencies = watch.end()
+        delivered = samples * (1 + (drain.bytes - drained) / size)
+    found.cpu_ms_per_1000.append(spent * 1e6 / delivered)
+    found.latencies += latencies
+
+
+def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
+    """Ten viewers, then one more that never reads: what that changes for the ten, and in memory."""
+    figures = {}
+    with Watch(_ours(data, port)) as watch, Drain([_ours(data, port) for _ in range(9)]):
+        sleep(_SETTLE)
+        stalled: list[Viewer] = []
+        for name in ("before", "stalled"):
+            if name == "stalled":
+                stalled.append(_ours(data, port, receive_bytes=_SOCKET_BYTES))
+            watch.begin()
+            memory = server.memory_info().rss
+            sleep(_STALL_SECONDS)
+            figures[f"hub.{name}_latency_ms_p50"] = quantiles(watch.end()[2], n=100)[49] * 1000
+            figures[f"hub.{name}_growth_mb"] = (server.memory_info().rss - memory) / 1e6
+        for one in stalled:
+            one.close()
+    return figures
+
+
+def _ours(data: Path, port: int, receive_bytes: int | None = None) -> Viewer:
+    headers = shell_headers(DataFolder(data)) | {"origin": f"http://127.0.0.1:{port}"}
+    return Viewer(f"ws://127.0.0.1:{port}/api/live", OURS, headers, receive_bytes)
+
+
+def _theirs(port: int) -> Viewer:
+    viewer = Viewer(f"ws://127.0.0.1:{port}", THEIRS, {"sec-websocket-protocol": "foxglove.sdk.v1"})
+    channels: list[int] = []
+    for message in viewer.messages():
+        if isinstance(message, str) and (said := json.loads(message))["op"] == "advertise":
+            channels += [one["id"] for one in said["channels"] if one["encoding"] == "row"]
+        if len(channels) == len(TOPICS):
+            break
+    wanted = [{"id": place, "channelId": channel} for place, channel in enumerate(channels)]
+    viewer.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
+    return viewer
+
+
+def _wait(open_one: Open) -> None:
+    """Wait until a viewer gets samples. Raises OSError where none does."""
+    end = monotonic() + _START_SECONDS
+    while True:
+        try:
+            viewer = open_one()
+            if any(not isinstance(message, str) for message in viewer.messages()):
+                return viewer.close()
+        except OSError:
+            if monotonic() > end:
+                raise
+            sleep(0.2)
+
+
+@contextmanager
+def _process(*role: str) -> Iterator[psutil.Process]:
+    # foxglove-sdk tells at length of every viewer that leaves.
+    command = [sys.executable, "-m", "bench.hub_ends", *role]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    try:
+        yield psutil.Process(process.pid)
+    finally:
+        assert process.stdin is not None
+        process.stdin.close()
+        process.wait(60)

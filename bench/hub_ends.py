@@ -1,0 +1,102 @@
+"""`python -m bench.hub_ends ROLE ...`: the processes whose cost and latency `bench.hub` measures.
+
+`server DATA PORT` is the server alone, `source DATA` sends it samples over Zenoh as the runtime does,
+`foxglove PORT` logs the same samples to foxglove-sdk's server in its own process. Each runs until its
+standard input ends.
+"""
+
+import asyncio
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from robot_runtime.cache import Cache
+from robot_runtime.clock import SteadyClock
+from robot_runtime.messages import Messages
+from robot_runtime.outbox import Outbox
+from robot_runtime.topics import BY_NAME, TIME
+from server.app import create_app
+from server.schema import prepare
+from server.settings import DataFolder, Settings
+from server.web import make_server, open_socket
+
+TOPICS = ("imu", "depth", "beacon", "motor", "status", "navigation", "control", "link")
+RATE = 100.0
+"""Samples a second of each topic."""
+_RECORDS = {name: bytes(BY_NAME[name].row_bytes - TIME.size) for name in TOPICS}
+
+
+def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
+    """Call with the time (s, steady clock), RATE times a second."""
+    due = time.monotonic()
+    while not ended.wait(max(0.0, due - time.monotonic())):
+        do(time.monotonic())
+        due += 1 / RATE
+
+
+async def _serve(data: Path, port: int, ended: threading.Event) -> None:
+    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port)
+    prepare(settings.data)
+    server = make_server(create_app(settings, ()))
+    with open_socket("127.0.0.1", port) as listener:
+        running = asyncio.create_task(server.serve(sockets=[listener]))
+        await asyncio.to_thread(ended.wait)
+        server.should_exit = True
+        await running
+
+
+def _source(data: Path, ended: threading.Event) -> None:
+    messages = Messages("turtle", listen=[f"unixsock-stream/{DataFolder(data).runtime_socket}"])
+    cache = Cache(messages.run, SteadyClock())
+    messages.answer_bytes("query/blocks", cache.answer)
+    outbox = Outbox(messages.publish, lambda _: False, cache)
+
+    def send(now: float) -> None:
+        for name in TOPICS:
+            outbox.add_row(name, now, _RECORDS[name])
+        outbox.flush()
+
+    _every_tick(send, ended)
+    messages.close()
+
+
+def _foxglove(port: int, ended: threading.Event) -> None:
+    import foxglove
+
+    server = foxglove.start_server(host="127.0.0.1", port=port)
+    schema = foxglove.Schema(name="row", encoding="", data=b"")
+    channels = [
+        (foxglove.Channel(f"/{name}", schema=schema, message_encoding="row"), _RECORDS[name])
+        for name in TOPICS
+    ]
+
+    def log(now: float) -> None:
+        stamp = TIME.pack(now)
+        for channel, record in channels:
+            channel.log(stamp + record)
+
+    _every_tick(log, ended)
+    server.stop()
+
+
+def main() -> None:
+    role, *rest = sys.argv[1:]
+    ended = threading.Event()
+
+    def wait() -> None:
+        sys.stdin.read()
+        ended.set()
+
+    threading.Thread(target=wait, daemon=True).start()
+    if role == "server":
+        asyncio.run(_serve(Path(rest[0]), int(rest[1]), ended))
+    elif role == "source":
+        _source(Path(rest[0]), ended)
+    else:
+        _foxglove(int(rest[0]), ended)
+
+
+if __name__ == "__main__":
+    main()

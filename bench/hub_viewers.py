@@ -1,0 +1,186 @@
+"""Viewers that cost little themselves, so that many of them leave the computer to what is measured."""
+
+import select
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from time import monotonic
+from types import TracebackType
+from typing import Self
+
+from websockets.client import ClientProtocol
+from websockets.frames import Opcode
+from websockets.http11 import Response
+from websockets.protocol import State
+from websockets.uri import parse_uri
+
+from bench.hub_ends import TOPICS
+from robot_runtime.topics import BY_NAME, HEADER, ROW_BYTES, TIME
+
+_TIMEOUT = 20.0
+_DRAIN_EVERY = 0.05
+_TOPICS = {BY_NAME[name].id for name in TOPICS}
+
+Times = Callable[[bytes], list[float]]
+"""When the samples in a message were made (s, steady clock)."""
+
+
+def OURS(message: bytes) -> list[float]:  # noqa: N802 - one of two
+    """Blocks, one after the other."""
+    times = []
+    at = 0
+    while at < len(message):
+        topic, _, count, _, size = HEADER.unpack_from(message, at)
+        at += HEADER.size
+        if topic in _TOPICS:
+            step = ROW_BYTES[topic]
+            times += [TIME.unpack_from(message, at + row * step)[0] for row in range(count)]
+        at += size
+    return times
+
+
+def THEIRS(message: bytes) -> list[float]:  # noqa: N802 - one of two
+    """foxglove.sdk.v1: an opcode, the subscription (u32), the time of logging (u64), the payload."""
+    return [TIME.unpack_from(message, 13)[0]] if message[0] == 1 else []
+
+
+class Viewer:
+    """One WebSocket. Raises OSError where it cannot be opened."""
+
+    def __init__(
+        self, url: str, times: Times, headers: dict[str, str], receive_bytes: int | None = None
+    ) -> None:
+        self.times = times
+        uri = parse_uri(url)
+        self.socket = socket.create_connection((uri.host, uri.port), _TIMEOUT)
+        if receive_bytes is not None:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
+        self._protocol = ClientProtocol(uri, max_size=None)
+        request = self._protocol.connect()
+        for name, value in headers.items():
+            request.headers[name] = value
+        if "sec-websocket-protocol" in headers:
+            self._protocol.available_subprotocols = [headers["sec-websocket-protocol"]]  # type: ignore[list-item]
+        self._protocol.send_request(request)
+        self._flush()
+        self._ready: list[str | bytes] = []
+        while self._protocol.state is State.CONNECTING:
+            self._receive()
+            if self._protocol.handshake_exc is not None:
+                raise OSError(f"{url} cannot be opened: {self._protocol.handshake_exc}")
+
+    def messages(self) -> Iterator[str | bytes]:
+        """What comes, until nothing comes any more."""
+        while True:
+            while self._ready:
+                yield self._ready.pop(0)
+            try:
+                if not self._receive():
+                    return
+            except OSError:
+                return
+
+    def send(self, text: str) -> None:
+        """Send a text."""
+        self._protocol.send_text(text.encode())
+        self._flush()
+
+    def close(self) -> None:
+        """End it; whoever waits for its messages gets no more."""
+        self.socket.close()
+
+    def _receive(self) -> bool:
+        data = self.socket.recv(1 << 20)
+        if not data:
+            raise ConnectionError("the other end has closed")
+        self._protocol.receive_data(data)
+        for event in self._protocol.events_received():
+            if isinstance(event, Response):
+                continue
+            if event.opcode is Opcode.TEXT:
+                self._ready.append(event.data.decode())
+            elif event.opcode is Opcode.BINARY:
+                self._ready.append(bytes(event.data))
+        self._flush()
+        return self._protocol.state is State.OPEN
+
+    def _flush(self) -> None:
+        for data in self._protocol.data_to_send():
+            self.socket.sendall(data)
+
+
+class Watch:
+    """A viewer that is timed."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._samples = self._bytes = 0
+        self._latencies: list[float] = []
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._viewer.socket.shutdown(socket.SHUT_RDWR)
+        self._thread.join()
+        self._viewer.close()
+
+    def begin(self) -> None:
+        """Count from now on."""
+        self._samples, self._bytes, self._latencies = 0, 0, []
+
+    def end(self) -> tuple[int, int, list[float]]:
+        """Samples since `begin`, their bytes, and how late each was, s."""
+        return self._samples, self._bytes, self._latencies
+
+    def _run(self) -> None:
+        for message in self._viewer.messages():
+            if isinstance(message, str):
+                continue
+            now = monotonic()
+            times = self._viewer.times(message)
+            self._samples += len(times)
+            self._bytes += len(message) + (2 if len(message) < 126 else 4)
+            self._latencies += [now - time for time in times]
+
+
+class Drain:
+    """Viewers that are read now and then, all that there is at once; only the bytes are counted."""
+
+    def __init__(self, viewers: list[Viewer]) -> None:
+        self.bytes = 0
+        self._sent_away = False
+        self._viewers = viewers
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._ended.set()
+        self._thread.join()
+        for viewer in self._viewers:
+            viewer.close()
+
+    def check(self) -> None:
+        """Raise ConnectionError where one of them was sent away."""
+        if self._sent_away:
+            raise ConnectionError("a viewer was sent away; is the computer too busy?")
+
+    def _run(self) -> None:
+        sockets = [viewer.socket for viewer in self._viewers]
+        while not self._ended.wait(_DRAIN_EVERY):
+            for one in select.select(sockets, [], [], 0)[0]:
+                data = one.recv(1 << 20)
+                if not data:
+                    self._sent_away = True
+                    return
+                self.bytes += len(data)
