@@ -2,6 +2,7 @@
 import './styles/tokens.css';
 import './styles/base.css';
 import './styles/listing.css';
+import './styles/tiles.css';
 import { mount } from 'svelte';
 import { Access } from './access/access.svelte';
 import { browserName, takeCode } from './access/code';

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, sync_playwright
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
 
 from robot_runtime.messages import Messages
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
-DESKTOP = {"width": 1440, "height": 900}
-PHONE = {"width": 390, "height": 844}
+DESKTOP: ViewportSize = {"width": 1440, "height": 900}
+PHONE: ViewportSize = {"width": 390, "height": 844}
 RESET_SECONDS = 10.0
 
 
@@ -59,9 +59,9 @@ def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page
     yield from _open(browser, stack, cookies, DESKTOP)
 
 
-def _open(browser: Browser, stack: Stack, cookies: StorageState, size: dict[str, int]) -> Iterator[Page]:
+def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
     context = browser.new_context(
-        viewport={"width": size["width"], "height": size["height"]},
+        viewport=size,
         storage_state=cookies,
     )
     page = context.new_page()

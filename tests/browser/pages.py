@@ -14,8 +14,8 @@ SESSIONS = ("Dive to half a metre", "Half a metre with PID")
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """One page. `address` follows the # and may name {first} and {second}, two sessions, and {run}, a test's;
-    `shows` is in the heading or the label that says that it is there."""
+    """One page. `address` follows the # and may name two sessions, {first} and {second}, a {moment} (s) of
+    the first, and a test's {run}; `shows` is in a heading that says that it is there."""
 
     name: str
     address: str
@@ -35,7 +35,7 @@ PAGES = (
     View("sessions", "sessions", "Recorded"),
     View("session", "sessions/{first}", "Take it home"),
     View("sessions-compare", "sessions/compare/{first},{second}", "Over time"),
-    View("replay", "replay/{first}/0.5", "of Dive to half"),
+    View("replay", "replay/{first}/{moment}", "of Dive to half"),
     View("system", "system", "Parts"),
     View("people", "people", "Browsers and programs"),
 )
@@ -60,10 +60,15 @@ def samples(stack: Stack, session: int) -> int:
 
 def show(page: Page, stack: Stack, view: View) -> None:
     """Go there, and wait until it has what it is to show."""
-    there = {one["name"]: one["id"] for one in stack.api.get("/sessions").json()}
+    there = {one["name"]: one for one in stack.api.get("/sessions").json()}
     first, second = (there[name] for name in SESSIONS)
-    run = stack.api.get("/comm-tests/runs").json()[0]["id"]
-    page.goto(f"{stack.url}/#/{view.address.format(first=first, second=second, run=run)}")
+    names = {
+        "first": first["id"],
+        "second": second["id"],
+        "moment": f"{first['duration'] / 2:.1f}",
+        "run": stack.api.get("/comm-tests/runs").json()[0]["id"],
+    }
+    page.goto(f"{stack.url}/#/{view.address.format(**names)}")
     expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
     settle(page)
 

@@ -50,11 +50,11 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         expect(page.get_by_text("handed control over to").last).to_be_attached()
 
         # Nobody has asked.
-        page.get_by_role("button", name=re.compile("^Hand control over to")).click()
+        page.get_by_role("button", name=re.compile("^Hand over to .*, page")).click()
         expect(control(other)).to_have_accessible_name(MINE)
         page.keyboard.press("Escape")
         control(other).click()
-        other.get_by_role("button", name=re.compile("^Hand control over to")).click()
+        other.get_by_role("button", name=re.compile("^Hand over to .*, page")).click()
         expect(control(page)).to_have_accessible_name(MINE)
         other.keyboard.press("Escape")
 

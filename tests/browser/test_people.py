@@ -68,7 +68,7 @@ def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, 
         page.get_by_role("table").get_by_label("Name", exact=True).fill("guest")
         page.get_by_role("button", name="Save").click()
         with guest.expect_websocket() as coming:
-            page.get_by_role("button", name="Make guest operator").click()
+            page.get_by_role("button", name="Make operator: guest").click()
         expect(you).to_contain_text("guest, operator")
         # Only a live socket can be told why it is closed.
         coming.value.wait_for_event("framereceived")
