@@ -148,6 +148,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/backup": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download a copy of the database
+         * @description Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile.
+         */
+        get: operations["downloadBackup"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/comm-tests/cancel": {
         parameters: {
             query?: never;
@@ -620,6 +640,54 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/layouts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The layouts that are kept
+         * @description By name.
+         */
+        get: operations["listLayouts"];
+        put?: never;
+        /**
+         * Keep a layout
+         * @description Keep it under its name, over one of that name.
+         */
+        post: operations["saveLayout"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/layouts/{layout}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A layout
+         * @description With its document as it was kept, which the page reads.
+         */
+        get: operations["getLayout"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a layout
+         * @description Delete it for good; pages that show it go on showing it.
+         */
+        delete: operations["deleteLayout"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/link/frames": {
         parameters: {
             query?: never;
@@ -632,6 +700,66 @@ export interface paths {
          * @description Asked of the runtime at each call; it costs nothing where nobody calls.
          */
         get: operations["getLinkFrames"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One's own panels
+         * @description Those in the folder `panels` of the data folder, by name.
+         */
+        get: operations["listPanels"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/frame": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Where one's own panels run
+         * @description A page with an origin of its own, which hears samples and can ask nobody for anything.
+         */
+        get: operations["getPanelFrame"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/own/{panel}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A panel's script
+         * @description As text, which the page hands to a frame.
+         */
+        get: operations["getPanel"];
         put?: never;
         post?: never;
         delete?: never;
@@ -773,6 +901,26 @@ export interface paths {
          * @description Choose a controller, and set gains of it.
          */
         put: operations["putController"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/loops/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Steer or hold depth or an angle
+         * @description Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing.
+         */
+        put: operations["putLoop"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1304,6 +1452,98 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/tuning/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The runs on a loop
+         * @description Newest first, without their curves; and what the figures of a step response are.
+         */
+        get: operations["listTuningRuns"];
+        put?: never;
+        /**
+         * Begin a run
+         * @description On the armed robot, in automatic. Afterwards the loop goes on as before.
+         */
+        post: operations["startTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/runs/{run}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One run
+         * @description With its curve, and of a relay experiment with the gains that the rules propose.
+         */
+        get: operations["getTuningRun"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a run
+         * @description For good; refused while it runs.
+         */
+        delete: operations["deleteTuningRun"];
+        options?: never;
+        head?: never;
+        /**
+         * Name a run
+         * @description Call it otherwise.
+         */
+        patch: operations["renameTuningRun"];
+        trace?: never;
+    };
+    "/api/tuning/state": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What runs
+         * @description The run that is on, and the one that ended last, as on the live socket.
+         */
+        get: operations["getTuningState"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop the run that is on
+         * @description The robot stays armed, and goes on as before the run. What was measured so far is kept.
+         */
+        post: operations["stopTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/vision": {
         parameters: {
             query?: never;
@@ -1427,6 +1667,47 @@ export interface components {
             session: number | null;
             /** Title */
             title: string;
+        };
+        /**
+         * ActiveTuning
+         * @description The run that is on.
+         */
+        ActiveTuning: {
+            /**
+             * Began
+             * @description s, steady clock
+             */
+            began: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "settling" | "balancing" | "running" | "complete" | "stopped" | "failed";
+            /** Progress */
+            progress: number;
+            /** Run */
+            run: number;
+            /** Settings */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Since
+             * @description s, steady clock, when its phase began
+             */
+            since: number;
         };
         /**
          * Alarm
@@ -1714,6 +1995,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * ControlState
@@ -1728,6 +2014,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * Controller
@@ -1999,6 +2290,20 @@ export interface components {
             unit: string;
         };
         /**
+         * Force
+         * @description The controller in force, with its gains.
+         */
+        Force: {
+            /** Controller */
+            controller: string;
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Title */
+            title: string;
+        };
+        /**
          * Gain
          * @description One number of a controller that may be tuned.
          */
@@ -2115,6 +2420,21 @@ export interface components {
             wanted: components["schemas"]["Wanted"];
         };
         /**
+         * KeptLayout
+         * @description A layout by its name.
+         */
+        KeptLayout: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
+        };
+        /**
          * Known
          * @description Somebody who is signed in; device 0 is the shell of the robot's computer.
          */
@@ -2133,6 +2453,64 @@ export interface components {
              * @enum {string}
              */
             role: "viewer" | "operator";
+        };
+        /**
+         * LayoutDocument
+         * @description Where the panels of Operate stand.
+         */
+        LayoutDocument: {
+            /**
+             * Format
+             * @constant
+             */
+            format: "mucat-layout";
+            /** Panels */
+            panels: components["schemas"]["PlacedPanel"][];
+            /** Version */
+            version: number;
+        };
+        /**
+         * LimitCycleFound
+         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
+         */
+        LimitCycleFound: {
+            /**
+             * Amplitude
+             * @description d: of the command, either way from the bias
+             */
+            amplitude: number;
+            /**
+             * Asymmetry
+             * @description share of the cycle by which its halves differ; 0: none
+             */
+            asymmetry: number;
+            /**
+             * Bias
+             * @description mean command, which balances the load
+             */
+            bias: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Period
+             * @description ultimate period, s
+             */
+            period: number;
+            /**
+             * Remarks
+             * @description what makes these figures doubtful
+             */
+            remarks: string[];
+            /**
+             * Swing
+             * @description a: half of the height from peak to peak
+             */
+            swing: number;
+            /**
+             * Ultimate Gain
+             * @description command for each unit of the loop
+             */
+            ultimate_gain: number;
         };
         /**
          * Line
@@ -2239,6 +2617,48 @@ export interface components {
             time: number;
         };
         /**
+         * Loop
+         * @description One thing that the robot steers by: depth (m), heading, pitch or roll (rad).
+         */
+        Loop: {
+            /** Controller */
+            controller: string;
+            /** Controllers */
+            controllers: components["schemas"]["ControllerChoice"][];
+            /** Name */
+            name: string;
+            /** On */
+            on: boolean;
+            /** Set Point */
+            set_point: number;
+        };
+        /**
+         * LoopChange
+         * @description What is to change about a loop; what is left out stays as it is.
+         */
+        LoopChange: {
+            /** Controller */
+            controller?: string | null;
+            /**
+             * Gains
+             * @description of this or the chosen controller
+             * @default {}
+             */
+            gains: {
+                [key: string]: number;
+            };
+            /**
+             * On
+             * @description steer it; in manual: hold it
+             */
+            on?: boolean | null;
+            /**
+             * Set Point
+             * @description m, of the angles rad
+             */
+            set_point?: number | null;
+        };
+        /**
          * MadeCode
          * @description A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
          */
@@ -2303,6 +2723,11 @@ export interface components {
          */
         Me: {
             identity: components["schemas"]["Known"] | null;
+            /**
+             * Operators Only
+             * @description operations that viewers are refused, by their names
+             */
+            operators_only: string[];
             /** Pairing Open */
             pairing_open: boolean;
             /** Robot */
@@ -2382,6 +2807,15 @@ export interface components {
             topics?: string[] | null;
         };
         /**
+         * NewLayout
+         * @description A layout that is to be kept under a name.
+         */
+        NewLayout: {
+            document: components["schemas"]["LayoutDocument"];
+            /** Name */
+            name: string;
+        };
+        /**
          * NewMark
          * @description A moment to be marked: s since the session's start, or null for now.
          */
@@ -2436,6 +2870,29 @@ export interface components {
             at: number;
             /** Words */
             words: string;
+        };
+        /**
+         * OwnPanel
+         * @description A panel by the name of its file; `problem` says why it cannot be shown.
+         */
+        OwnPanel: {
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @default
+             */
+            problem: string;
+        };
+        /**
+         * OwnPanelScript
+         * @description What a panel's file holds: an ES module.
+         */
+        OwnPanelScript: {
+            /** Name */
+            name: string;
+            /** Script */
+            script: string;
         };
         /**
          * Pace
@@ -2511,21 +2968,31 @@ export interface components {
             here: boolean;
         };
         /**
+         * PlacedPanel
+         * @description A panel and where it stands, in columns and rows of the grid from its upper left corner.
+         */
+        PlacedPanel: {
+            chart?: components["schemas"]["ShownChart"] | null;
+            /** Height */
+            height: number;
+            /** Id */
+            id: string;
+            /** Panel */
+            panel: string;
+            /** Width */
+            width: number;
+            /** X */
+            x: number;
+            /** Y */
+            y: number;
+        };
+        /**
          * Problem
          * @description What happened, why, and what to do.
          */
         Problem: {
             /** Detail */
             detail: string;
-        };
-        /**
-         * Proposal
-         * @description The range that was found, and how much of the picture it holds.
-         */
-        Proposal: {
-            colour: components["schemas"]["ColourRange"];
-            /** Share */
-            share: number;
         };
         /**
          * QueuedRun
@@ -2588,10 +3055,62 @@ export interface components {
             until: number;
         };
         /**
+         * RelayStart
+         * @description A relay in the place of a loop's controller.
+         */
+        RelayStart: {
+            /**
+             * Amplitude
+             * @description d, share of the most command
+             */
+            amplitude: number;
+            /**
+             * Cycles
+             * @description that are measured
+             */
+            cycles: number;
+            /**
+             * Duration
+             * @description s after which it gives up
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * Hysteresis
+             * @description ε, in the loop's unit
+             */
+            hysteresis: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "relay";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Set Point
+             * @description m, of an angle rad
+             */
+            set_point: number;
+        };
+        /**
          * RowTopic
          * @enum {string}
          */
-        RowTopic: "imu" | "depth" | "beacon" | "motor" | "status" | "navigation" | "control" | "link" | "truth";
+        RowTopic: "imu" | "depth" | "beacon" | "motor" | "status" | "navigation" | "control" | "link" | "truth" | "turning";
         /**
          * Run
          * @description A run with its configuration and its cells.
@@ -2857,6 +3376,26 @@ export interface components {
              * @description s after its last use
              */
             lasts: number;
+            /** Seat */
+            seat: number;
+        };
+        /**
+         * Seated
+         * @description One page or program that is there; those of operators may have control.
+         */
+        Seated: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
             /** Seat */
             seat: number;
         };
@@ -3135,6 +3674,16 @@ export interface components {
             detected?: number | null;
         };
         /**
+         * ShownChart
+         * @description What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds.
+         */
+        ShownChart: {
+            /** Seconds */
+            seconds: number;
+            /** Signals */
+            signals: string[];
+        };
+        /**
          * Signal
          * @description One number that a session holds over time; `name` is topic and column with a dot between them.
          */
@@ -3204,6 +3753,8 @@ export interface components {
             controllers: components["schemas"]["ControllerChoice"][];
             /** Epoch */
             epoch: number | null;
+            /** Loops */
+            loops?: components["schemas"]["Loop"][];
             /**
              * Mode
              * @enum {string}
@@ -3240,6 +3791,58 @@ export interface components {
             vision_colour: string;
             /** Vision Rate */
             vision_rate: number;
+        };
+        /**
+         * StepStart
+         * @description A step of a loop's set point.
+         */
+        StepStart: {
+            /**
+             * Duration
+             * @description s from the step on
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "step";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Settle
+             * @description s for which the start is held at most
+             */
+            settle: number;
+            /**
+             * Start
+             * @description m, of an angle rad
+             */
+            start: number;
+            /**
+             * Target
+             * @description m, of an angle rad
+             */
+            target: number;
+            /**
+             * Tolerance
+             * @description how near to the start counts as settled
+             */
+            tolerance: number;
         };
         /**
          * Storage
@@ -3411,6 +4014,164 @@ export interface components {
             text: string;
             /** Time */
             time: number;
+        };
+        /**
+         * TuningCurve
+         * @description The loop's ticks, in its unit. Times in s: since the step, or since the relay took over.
+         */
+        TuningCurve: {
+            /** Outputs */
+            outputs: number[];
+            /** Set Points */
+            set_points: number[];
+            /** Times */
+            times: number[];
+            /** Values */
+            values: number[];
+        };
+        /**
+         * TuningName
+         * @description What a run is to be called.
+         */
+        TuningName: {
+            /** Name */
+            name: string;
+        };
+        /**
+         * TuningRun
+         * @description A run, without its curve.
+         */
+        TuningRun: {
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRunDetail
+         * @description A run with everything that is known of it.
+         */
+        TuningRunDetail: {
+            curve: components["schemas"]["TuningCurve"];
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Proposals
+             * @description of a relay experiment: gains of a PID by several rules
+             */
+            proposals: components["schemas"]["server__tuning__shapes__Proposal"][];
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRuns
+         * @description The runs on a loop, newest first, and what their figures are.
+         */
+        TuningRuns: {
+            /** Figures */
+            figures: components["schemas"]["FigureMeaning"][];
+            /** Runs */
+            runs: components["schemas"]["TuningRun"][];
+        };
+        /**
+         * TuningStarted
+         * @description The run that has begun.
+         */
+        TuningStarted: {
+            /** Run */
+            run: number;
+        };
+        /**
+         * TuningState
+         * @description What runs, and what ended last since the server started.
+         */
+        TuningState: {
+            active: components["schemas"]["ActiveTuning"] | null;
+            last: components["schemas"]["TuningRun"] | null;
         };
         /**
          * View
@@ -3636,6 +4397,57 @@ export interface components {
             signals: string[];
             /** @description what is drawn; everything without */
             view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
+         * WholeLayout
+         * @description The same with its document, which may be of another version of the program.
+         */
+        WholeLayout: {
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
+        };
+        /**
+         * Proposal
+         * @description Gains by a named rule.
+         */
+        server__tuning__shapes__Proposal: {
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Known For */
+            known_for: string;
+            /**
+             * Problem
+             * @description why these cannot be set; empty where they can
+             */
+            problem: string;
+            /** Rule */
+            rule: string;
+            /** Source */
+            source: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * Proposal
+         * @description The range that was found, and how much of the picture it holds.
+         */
+        server__vision__shapes__Proposal: {
+            colour: components["schemas"]["ColourRange"];
+            /** Share */
+            share: number;
         };
     };
     responses: never;
@@ -4002,6 +4814,53 @@ export interface operations {
             };
             /** @description The database does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadBackup: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The database at one moment; `mucat restore` puts it back */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.sqlite3": unknown;
+                };
+            };
+            /** @description Another one is being copied or downloaded */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be copied */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5126,6 +5985,218 @@ export interface operations {
             };
         };
     };
+    listLayouts: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"][];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    saveLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLayout"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WholeLayout"];
+                };
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     getLinkFrames: {
         parameters: {
             query?: never;
@@ -5155,6 +6226,104 @@ export interface operations {
             };
             /** @description The runtime did not answer within 2 s */
             504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listPanels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanel"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanelFrame: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanel: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                panel: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanelScript"];
+                };
+            };
+            /** @description There is no such panel, or it cannot be read */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5551,6 +6720,84 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["Controller"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putLoop: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: "depth" | "heading" | "pitch" | "roll";
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LoopChange"];
             };
         };
         responses: {
@@ -7158,6 +8405,392 @@ export interface operations {
             };
         };
     };
+    listTuningRuns: {
+        parameters: {
+            query?: {
+                loop?: "depth" | "heading" | "pitch" | "roll";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRuns"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StepStart"] | components["schemas"]["RelayStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningStarted"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    renameTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TuningName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningState: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningState"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stopTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     getVision: {
         parameters: {
             query?: never;
@@ -7300,7 +8933,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Proposal"];
+                    "application/json": components["schemas"]["server__vision__shapes__Proposal"];
                 };
             };
             /** @description There is no colour, or no picture */

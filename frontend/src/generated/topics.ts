@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'dad8308f';
+export const DEFINITIONS_HASH = 'c4f263b5';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -191,6 +191,17 @@ export const ROW_TOPICS = {
       { name: 'fins', code: 'f', offset: 60, count: 4, scale: 1, unit: 'rad', meaning: 'fin angles' },
     ],
   },
+  turning: {
+    id: 10,
+    name: 'turning',
+    rowBytes: 44,
+    meaning: 'the same ticks, for heading, pitch and roll',
+    fields: [
+      { name: 'set_point', code: 'f', offset: 8, count: 3, scale: 1, unit: 'rad', meaning: 'wanted heading, pitch, roll; NaN where it is not steered' },
+      { name: 'measured', code: 'f', offset: 20, count: 3, scale: 1, unit: 'rad', meaning: 'heading, pitch, roll' },
+      { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN where it is not steered' },
+    ],
+  },
 } as const;
 
 export interface ImuRow {
@@ -358,6 +369,17 @@ export interface TruthRow {
   fins: number[];
 }
 
+export interface TurningRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** rad, wanted heading, pitch, roll; NaN where it is not steered */
+  set_point: number[];
+  /** rad, heading, pitch, roll */
+  measured: number[];
+  /** commands yaw, pitch, roll, -1 to 1; NaN where it is not steered */
+  output: number[];
+}
+
 export interface Rows {
   imu: ImuRow;
   depth: DepthRow;
@@ -368,6 +390,7 @@ export interface Rows {
   control: ControlRow;
   link: LinkRow;
   truth: TruthRow;
+  turning: TurningRow;
 }
 
 export const OTHER_TOPICS = {
@@ -376,6 +399,7 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
+  experiment: 22,
   vision: 23,
   picture: 32,
   observer: 33,
@@ -407,6 +431,15 @@ export interface ControllerChoice {
   name: string;
   title: string;
   gains: Gain[];
+}
+
+/** One thing that the robot steers by: depth (m), heading, pitch or roll (rad). */
+export interface Loop {
+  name: string;
+  on: boolean;
+  set_point: number;
+  controller: string;
+  controllers: ControllerChoice[];
 }
 
 /** How often the board sends a topic on this line: s between two samples. */
@@ -506,6 +539,7 @@ export interface State {
   card: string | null;
   cards: string[];
   camera: string;
+  loops: Loop[];
   pilot_dropped: number;
 }
 
@@ -539,6 +573,20 @@ export interface RobotEvent {
   text: string;
 }
 
+/** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */
+export interface Experiment {
+  time: number;
+  number: number;
+  kind: 'step' | 'relay';
+  loop: string;
+  phase: 'settling' | 'balancing' | 'running' | 'complete' | 'stopped' | 'failed';
+  since: number;
+  progress: number;
+  cycles: number;
+  bias: number;
+  text: string;
+}
+
 /** How the vision node looks now; sent at every change, and every ten seconds. */
 export interface VisionInForce {
   time: number;
@@ -551,5 +599,6 @@ export interface Documents {
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
+  experiment: Experiment;
   vision: VisionInForce;
 }
