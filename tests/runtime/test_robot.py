@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ from robot_runtime.packets import (
     Stop,
 )
 from robot_runtime.topics import Kind, read_blocks, read_rows
+from robot_runtime.vision_settings import VisionSettings
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -272,6 +274,29 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Rig]:
     rig.listener.wait(lambda: rig.listener.newest_state()["camera"] != "starting")
     yield rig
     rig.close()
+
+
+def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None:
+    usual = VisionSettings()
+    changed = replace(
+        usual, colour="buoy", colours={"buoy": usual.colours["green"]}, actions={"marker 7": 1.5}
+    )
+    first = Rig(tmp_path)
+    first.ready()
+    first.ask("vision_settings", **changed.table())
+    assert first.messages.ask("query/vision", {})["settings"] == changed.table()
+    with pytest.raises(Refused, match="colour is 'yellow'; it must be one of buoy"):
+        first.ask("vision", colour="yellow")
+    first.close()
+
+    second = Rig(tmp_path)
+    second.ready()
+    told = second.messages.ask("query/vision", {})
+    assert (told["settings"], told["configured"]) == (changed.table(), usual.table())
+    assert second.listener.newest_state()["vision_colour"] == "buoy"
+    second.ask("vision_settings", **usual.table())
+    assert not (tmp_path / "vision.json").exists()
+    second.close()
 
 
 def test_the_last_frames_are_told_when_asked(rig: Rig) -> None:

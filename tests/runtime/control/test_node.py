@@ -40,9 +40,18 @@ class Rig:
         record = Beacon(time=0, right=int(right), left=int(left))
         self.bus.publish_row("beacon", self.clock.now(), record.to_bytes())
 
-    def see(self, colour: str | None) -> None:
+    def see(self, colour: str | None, target: str | None = None, set_point: float | None = None) -> None:
         now = self.clock.now()
-        seen = Detection(time=now, taken=now, colour=colour, box=None, area=0.1, processing=0.001)
+        seen = Detection(
+            time=now,
+            taken=now,
+            colour=colour,
+            box=None,
+            area=0.1,
+            processing=0.001,
+            target=target,
+            set_point=set_point,
+        )
         self.bus.publish_document("detection", seen)
 
     def tick(self) -> None:
@@ -88,6 +97,35 @@ def test_another_colour_changes_nothing(rig: Rig) -> None:
     rig.see("red")
     rig.tick()
     assert rig.ticks[0].set_point == 0.5
+
+
+def test_what_has_a_set_point_of_its_own_goes_there(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.see("red", "red", 0.8)
+    rig.tick()
+    rig.see(None, "marker 7", 1.5)
+    rig.tick()
+    # The wanted colour's own goes before the one of all that is wanted.
+    rig.see("yellow", "yellow", 2.0)
+    rig.tick()
+    rig.see("red")
+    rig.tick()
+    assert [tick.set_point for tick in rig.ticks] == pytest.approx([0.8, 1.5, 2.0, 0.5])
+    assert rig.events[:2] == ["Set point 0.80 m: red is seen.", "Set point 1.50 m: marker 7 is seen."]
+
+
+def test_the_age_of_a_picture_is_that_at_its_first_tick(rig: Rig) -> None:
+    rig.depth(0.5)
+    rig.tick()
+    assert rig.node.picture_age is None
+    rig.see(None)
+    rig.tick()
+    rig.tick()
+    assert rig.node.picture_age == pytest.approx(0.1)
+    rig.see("yellow")
+    rig.clock.forward(0.05)
+    rig.tick()
+    assert rig.node.picture_age == pytest.approx(0.15)
 
 
 def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:

@@ -123,6 +123,48 @@ def test_pictures_are_made_only_while_somebody_watches(listener: Listener, clock
     assert difference.mean() < 5
 
 
+def test_mask_and_balanced_picture_are_made_for_whoever_watches_them(
+    listener: Listener, clock: SimulatedClock
+) -> None:
+    node = listener.node(clock)
+    node.show_card("yellow")
+    listener.watching = {"mask"}
+    node.look()
+    listener.watching = {"balanced"}
+    node.settings = VisionSettings(white_balance="grey_world")
+    node.look()
+    assert [topic for topic, _, _ in listener.pictures] == ["mask", "balanced"]
+    mask, balanced = (
+        cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR) for _, _, jpeg in listener.pictures
+    )
+    assert mask is not None
+    assert (mask > 200).all(axis=2).mean() == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.15)
+    assert balanced is not None
+    blue, _, red = balanced.reshape(-1, 3).mean(axis=0)
+    assert blue / red < 1.3
+
+
+def test_settings_change_as_a_whole_between_two_pictures(
+    listener: Listener, clock: SimulatedClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    picture = drawn(1.0, "red")
+    picture[:60, :60] = (0, 220, 240)
+    node = listener.node(clock, ShakyCamera(picture, clock).open)
+    other = VisionSettings(colour="red", actions={"red": 2.0, "yellow": 3.0})
+    convert = cv2.cvtColor
+
+    def change_meanwhile(*arguments: object) -> object:
+        node.settings = other
+        return convert(*arguments)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(cv2, "cvtColor", change_meanwhile)
+    node.look()
+    node.look()
+    before, after = listener.detections
+    assert (before.colour, before.target, before.set_point) == ("yellow", "yellow", None)
+    assert (after.colour, after.target, after.set_point) == ("red", "red", 2.0)
+
+
 def test_a_camera_that_fails_is_reported_once_and_tried_again(
     listener: Listener, clock: SimulatedClock
 ) -> None:
