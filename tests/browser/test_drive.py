@@ -2,17 +2,45 @@
 
 import csv
 import io
+import re
+import time
 import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from typing import Any
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, StorageState, expect
 
+from server.settings import DataFolder
+from tests.browser.conftest import PHONE
 from tests.browser.test_swim import hold_to_arm
+from tests.proofs.watching import Fins
 from tests.stack import Stack
 
 NEUTRAL_SECONDS = 0.5
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+# What a browser tells of a gamepad; nobody can plug one in here.
+GAMEPAD = """
+() => {
+  const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
+  globalThis.pad = {
+    id: 'Test pad (Vendor: 0000)', index: 0, connected: true, mapping: 'standard',
+    axes: [0, 0, 0, 0], buttons,
+  };
+  navigator.getGamepads = () => [globalThis.pad];
+  dispatchEvent(Object.assign(new Event('gamepadconnected'), { gamepad: globalThis.pad }));
+}
+"""
+KEEP_SOCKETS = """
+globalThis.sockets = [];
+globalThis.WebSocket = class extends WebSocket {
+  constructor(...options) {
+    super(...options);
+    globalThis.sockets.push(this);
+  }
+};
+"""
 
 
 def arm_by_hand(page: Page) -> None:
@@ -30,6 +58,7 @@ def expect_surge(page: Page, words: str) -> None:
 def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> None:
     session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
     arm_by_hand(page)
+    page.keyboard.press("9")
     page.keyboard.down("w")
     expect_surge(page, "forwards")
     page.keyboard.up("w")
@@ -98,3 +127,101 @@ def test_a_thumb_drives_on_the_pad(page: Page) -> None:
     expect_surge(page, "forwards")
     page.mouse.up()
     expect_surge(page, "")
+
+
+@contextmanager
+def resting_within_half_a_second(stack: Stack, begin: Callable[[], object]) -> Iterator[None]:
+    """The block, once the fins flap; after it they do for at most half a second of the board's time."""
+    fins = Fins(DataFolder(stack.data).board_socket)
+    try:
+        begin()
+        until_seen(lambda: fins.seen[-1:] and fins.seen[-1].moving)
+        yield
+        since = time.monotonic()
+        until_seen(lambda: fins.seen[-1].time > since + 2 * NEUTRAL_SECONDS)
+        moved = fins.moved_for(since)
+    finally:
+        fins.close()
+    assert moved <= NEUTRAL_SECONDS, f"the fins moved for {moved:.3f} s"
+
+
+def until_seen(condition: Any) -> None:
+    end = time.monotonic() + 20
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+def test_a_lost_gamepad_a_lost_socket_and_escape_are_rest(page: Page, stack: Stack) -> None:
+    page.add_init_script(KEEP_SOCKETS)
+    page.reload()
+    arm_by_hand(page)
+    drive = page.get_by_role("region", name="Drive")
+    page.evaluate(GAMEPAD)
+    expect(drive.get_by_text("Test pad")).to_be_visible()
+    with resting_within_half_a_second(
+        stack, lambda: page.evaluate("() => { globalThis.pad.axes = [0, 0, 0, -1]; }")
+    ):
+        expect_surge(page, "forwards")
+        page.evaluate("() => { globalThis.pad = null; }")
+    expect(drive.get_by_text("Test pad has gone; what it held is let go.")).to_be_visible()
+    expect_surge(page, "")
+    with resting_within_half_a_second(stack, lambda: page.keyboard.down("r")):
+        page.evaluate("() => { for (const one of globalThis.sockets) one.close(); }")
+    expect(drive).to_be_visible()
+    page.keyboard.up("r")
+    with resting_within_half_a_second(stack, lambda: page.keyboard.down("r")):
+        page.keyboard.press("Escape")
+
+
+def test_depth_and_heading_are_held_while_driving(page: Page) -> None:
+    arm_by_hand(page)
+    depth = page.get_by_role("button", name="Depth hold")
+    page.keyboard.press("g")
+    expect(depth).to_have_attribute("aria-pressed", "true")
+    page.get_by_role("button", name="Heading hold").click()
+    expect(page.get_by_role("button", name="Heading hold")).to_have_accessible_name(re.compile(r"\d{3}°"))
+    depth.click()
+    expect(depth).to_have_attribute("aria-pressed", "false")
+
+
+def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
+    browser: Browser, stack: Stack, cookies: StorageState
+) -> None:
+    context = browser.new_context(
+        viewport={"width": PHONE["width"], "height": PHONE["height"]},
+        storage_state=cookies,
+        has_touch=True,
+        is_mobile=True,
+    )
+    page = context.new_page()
+    page.goto(stack.url)
+    arm_by_hand(page)
+    thumbs = context.new_cdp_session(page)
+    region = page.get_by_role("region", name="Drive")
+    region.scroll_into_view_if_needed()
+    page.get_by_role("button", name="Tilt").tap()
+    scrolled = page.evaluate("() => document.querySelector('main').scrollTop")
+    boxes: list[Any] = [
+        page.get_by_role("img", name=f"{side} stick").bounding_box() for side in ("left", "right")
+    ]
+    middles = [{"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2} for box in boxes]
+    ends = [{"x": one["x"], "y": one["y"] - 60} for one in middles]
+
+    def touch(kind: str, *points: dict[str, float]) -> None:
+        thumbs.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
+
+    touch("touchStart", *middles)
+    touch("touchMove", *ends)
+    page.get_by_role("tab", name="Motion").evaluate("(tab) => tab.click()")
+    words = page.get_by_role("region", name="Navigation command").locator(".word")
+    expect(words.nth(2)).to_have_text("up")
+    expect(words.nth(4)).to_have_text("nose up")
+    elsewhere = {"x": 195, "y": boxes[0]["y"] - 40}
+    touch("touchStart", *ends, elsewhere)
+    touch("touchMove", *ends, elsewhere | {"y": elsewhere["y"] - 120})
+    assert page.evaluate("() => document.querySelector('main').scrollTop") == scrolled
+    touch("touchEnd")
+    expect(words.nth(2)).to_have_text("")
+    context.close()
+    stack.api.post("/robot/stop").raise_for_status()
