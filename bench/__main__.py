@@ -32,6 +32,7 @@ PARTS = (
     "replay",
     "jitter",
     "hub",
+    "page",
 )
 RESULT = Path("build/bench.json")
 
