@@ -33,6 +33,7 @@ PARTS = (
     "replay",
     "jitter",
     "hub",
+    "page",
 )
 RESULT = Path("build/bench.json")
 

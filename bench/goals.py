@@ -83,6 +83,8 @@ GOALS = {
     "hub.ratio_to_foxglove": _most(0.5),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
+    "page.fps": _least(55),
+    "page.update_ms": _most(8),
     "replay.seek_ms_p95": _most(150),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),

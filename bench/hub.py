@@ -51,13 +51,13 @@ def measure() -> dict[str, float]:
         data, port, other = Path(folder), free_port(), free_port()
         DataFolder(data).run.mkdir()
         with (
-            _process("server", folder, str(port)) as server,
-            _process("foxglove", str(other)) as foxglove,
-            _process("source", folder),
+            process("server", folder, str(port), "server/page") as server,
+            process("foxglove", str(other)) as foxglove,
+            process("source", folder),
         ):
-            ours, theirs = lambda: _ours(data, port), lambda: _theirs(other)
-            _wait(ours)
-            _wait(theirs)
+            ours, theirs = lambda: open_viewer(data, port), lambda: _theirs(other)
+            wait_for_samples(ours)
+            wait_for_samples(theirs)
             for _ in range(_ROUNDS):
                 for many in _VIEWERS:
                     _look(found["hub", many], server, ours, many)
@@ -82,7 +82,7 @@ def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
 
 def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
     """Measure for a while with so many viewers: the first is timed, the bytes of the others are counted."""
-    with Watch(open_one()) as watch, Drain([open_one() for _ in range(many - 1)]) as drain:
+    with Watch(open_one()) as watch, Drain(open_one, many - 1) as drain:
         sleep(_SETTLE)
         watch.begin()
         drain.check()
@@ -99,12 +99,12 @@ def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) ->
 def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
     """Ten viewers, then one more that never reads: what that changes for the ten, and in memory."""
     figures = {}
-    with Watch(_ours(data, port)) as watch, Drain([_ours(data, port) for _ in range(9)]):
+    with Watch(open_viewer(data, port)) as watch, Drain(lambda: open_viewer(data, port), 9):
         sleep(_SETTLE)
         stalled: list[Viewer] = []
         for name in ("before", "stalled"):
             if name == "stalled":
-                stalled.append(_ours(data, port, receive_bytes=_SOCKET_BYTES))
+                stalled.append(open_viewer(data, port, receive_bytes=_SOCKET_BYTES))
             watch.begin()
             memory = server.memory_info().rss
             sleep(_STALL_SECONDS)
@@ -115,7 +115,7 @@ def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
     return figures
 
 
-def _ours(data: Path, port: int, receive_bytes: int | None = None) -> Viewer:
+def open_viewer(data: Path, port: int, receive_bytes: int | None = None) -> Viewer:
     headers = shell_headers(DataFolder(data)) | {"origin": f"http://127.0.0.1:{port}"}
     return Viewer(f"ws://127.0.0.1:{port}/api/live", OURS, headers, receive_bytes)
 
@@ -133,7 +133,7 @@ def _theirs(port: int) -> Viewer:
     return viewer
 
 
-def _wait(open_one: Open) -> None:
+def wait_for_samples(open_one: Open) -> None:
     """Wait until a viewer gets samples. Raises OSError where none does."""
     end = monotonic() + _START_SECONDS
     while True:
@@ -148,7 +148,7 @@ def _wait(open_one: Open) -> None:
 
 
 @contextmanager
-def _process(*role: str) -> Iterator[psutil.Process]:
+def process(*role: str) -> Iterator[psutil.Process]:
     # foxglove-sdk tells at length of every viewer that leaves.
     command = [sys.executable, "-m", "bench.hub_ends", *role]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)

@@ -1,16 +1,19 @@
 """`python -m bench.hub_ends ROLE ...`: the processes whose cost and latency `bench.hub` measures.
 
-`server DATA PORT` is the server alone, `source DATA` sends it samples over Zenoh as the runtime does,
+`server DATA PORT PAGE` is the server alone, `source DATA` sends it samples over Zenoh as the runtime does,
 `foxglove PORT` logs the same samples to foxglove-sdk's server in its own process. Each runs until its
 standard input ends.
 """
 
 import asyncio
+import itertools
+import random
 import sys
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from struct import Struct
 
 from robot_runtime.cache import Cache
 from robot_runtime.clock import SteadyClock
@@ -25,7 +28,24 @@ from server.web import make_server, open_socket
 TOPICS = ("imu", "depth", "beacon", "motor", "status", "navigation", "control", "link")
 RATE = 100.0
 """Samples a second of each topic."""
-_RECORDS = {name: bytes(BY_NAME[name].row_bytes - TIME.size) for name in TOPICS}
+PAST_SECONDS = 60
+"""Of samples that the source sends at once when it begins."""
+_VARIANTS = 997
+
+
+def _records(name: str) -> list[bytes]:
+    """The records of a topic, one after the other: of IMU and fins noise, with a spike now and then."""
+    size = BY_NAME[name].row_bytes - TIME.size
+    if name not in ("imu", "motor"):
+        return [bytes(size)]
+    chance = random.Random(1)
+    values = [[chance.gauss(0, 1500) for _ in range(8)] for _ in range(_VARIANTS)]
+    values[_VARIANTS // 2] = [30_000.0] * 8
+    stamp, rest = Struct("<I"), Struct("<8h")
+    return [(stamp.pack(0) + rest.pack(*map(int, one))).ljust(size, b"\0") for one in values]
+
+
+_RECORDS = {name: _records(name) for name in TOPICS}
 
 
 def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
@@ -36,8 +56,8 @@ def _every_tick(do: Callable[[float], None], ended: threading.Event) -> None:
         due += 1 / RATE
 
 
-async def _serve(data: Path, port: int, ended: threading.Event) -> None:
-    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port)
+async def _serve(data: Path, port: int, page: Path, ended: threading.Event) -> None:
+    settings = Settings(data=DataFolder(data), config=Path("robot.toml"), port=port, page=page)
     prepare(settings.data)
     server = make_server(create_app(settings, ()))
     with open_socket("127.0.0.1", port) as listener:
@@ -53,11 +73,21 @@ def _source(data: Path, ended: threading.Event) -> None:
     messages.answer_bytes("query/blocks", cache.answer)
     outbox = Outbox(messages.publish, lambda _: False, cache)
 
-    def send(now: float) -> None:
+    tick = itertools.count()
+
+    def add(now: float) -> None:
+        number = next(tick)
         for name in TOPICS:
-            outbox.add_row(name, now, _RECORDS[name])
+            outbox.add_row(name, now, _RECORDS[name][number % len(_RECORDS[name])])
+
+    def send(now: float) -> None:
+        add(now)
         outbox.flush()
 
+    begin = time.monotonic() - PAST_SECONDS
+    for past in range(int(PAST_SECONDS * RATE)):
+        add(begin + past / RATE)
+    outbox.flush()
     _every_tick(send, ended)
     messages.close()
 
@@ -71,11 +101,12 @@ def _foxglove(port: int, ended: threading.Event) -> None:
         (foxglove.Channel(f"/{name}", schema=schema, message_encoding="row"), _RECORDS[name])
         for name in TOPICS
     ]
+    tick = itertools.count()
 
     def log(now: float) -> None:
-        stamp = TIME.pack(now)
-        for channel, record in channels:
-            channel.log(stamp + record)
+        stamp, number = TIME.pack(now), next(tick)
+        for channel, records in channels:
+            channel.log(stamp + records[number % len(records)])
 
     _every_tick(log, ended)
     server.stop()
@@ -91,7 +122,7 @@ def main() -> None:
 
     threading.Thread(target=wait, daemon=True).start()
     if role == "server":
-        asyncio.run(_serve(Path(rest[0]), int(rest[1]), ended))
+        asyncio.run(_serve(Path(rest[0]), int(rest[1]), Path(rest[2]).resolve(), ended))
     elif role == "source":
         _source(Path(rest[0]), ended)
     else:

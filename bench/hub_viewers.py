@@ -149,17 +149,23 @@ class Watch:
 
 
 class Drain:
-    """Viewers that are read now and then, all that there is at once; only the bytes are counted."""
+    """Viewers that are read now and then, all that there is at once; only the bytes are counted.
 
-    def __init__(self, viewers: list[Viewer]) -> None:
+    Who is not read from the beginning is sent away: each is read while the next are opened.
+    """
+
+    def __init__(self, open_one: Callable[[], Viewer], many: int) -> None:
         self.bytes = 0
         self._sent_away = False
-        self._viewers = viewers
+        self._open_one, self._many = open_one, many
+        self._viewers: list[Viewer] = []
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self) -> Self:
         self._thread.start()
+        for _ in range(self._many):
+            self._viewers.append(self._open_one())
         return self
 
     def __exit__(
@@ -176,10 +182,13 @@ class Drain:
             raise ConnectionError("a viewer was sent away; is the computer too busy?")
 
     def _run(self) -> None:
-        sockets = [viewer.socket for viewer in self._viewers]
         while not self._ended.wait(_DRAIN_EVERY):
+            sockets = [viewer.socket for viewer in self._viewers]
             for one in select.select(sockets, [], [], 0)[0]:
-                data = one.recv(1 << 20)
+                try:
+                    data = one.recv(1 << 20)
+                except ConnectionError:
+                    data = b""
                 if not data:
                     self._sent_away = True
                     return

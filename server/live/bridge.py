@@ -1,8 +1,8 @@
 """The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
 
 What they send passes through a `Source` each, which asks again for what did not arrive. Zenoh calls back in
-its own threads. What arrives is put into a queue, which the event loop empties in rounds: the first arrival
-after a quiet time wakes it, and from then on it comes every `ROUND_SECONDS`.
+its own threads. What arrives is put into a queue. An arrival wakes the event loop, which empties it at once,
+or `ROUND_SECONDS` after it was emptied last.
 """
 
 import asyncio
@@ -28,13 +28,8 @@ from server.settings import Settings, SetupError
 
 log = logging.getLogger(__name__)
 
-ROUND_SECONDS = 0.04
-"""The lever between latency and cost: waking the event loop costs more than what there is to do in it.
-
-The runtime sends at the same pace, and a page draws at about that pace.
-"""
-QUIET_ROUNDS = 5
-"""Empty rounds after which the rounds pause until something arrives."""
+ROUND_SECONDS = 0.02
+"""The lever between latency and cost: waking the event loop costs more than what there is to do in it."""
 QUEUE_MAX = 20_000
 """Blocks that wait while the event loop is held up; far more than can be normal."""
 ANSWER_SECONDS = 2.0
@@ -89,8 +84,8 @@ class Bridge:
         }
         self._ready: list[Block] = []
         self._emptying = False
-        self._rounds = False
-        self._quiet = 0
+        self._resting = True
+        """Nothing is about to empty the queue: whoever puts something into it wakes the event loop."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
@@ -237,22 +232,21 @@ class Bridge:
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""
         self._queue.append((name, data, run))
-        if not self._rounds:
-            self._rounds = True
+        if self._resting:
+            self._resting = False
             try:
                 self._loop.call_soon_threadsafe(self._drain)
             except RuntimeError:
                 log.debug("a block of %s came after the end", name)
 
     def _drain(self) -> None:
-        self._quiet = 0 if self._queue else self._quiet + 1
-        self._empty_queue()
-        if self._quiet >= QUIET_ROUNDS:
-            self._rounds = False
+        if not self._queue:
+            self._resting = True
             # What came before that line has woken nobody.
             if not self._queue:
                 return
-            self._rounds = True
+            self._resting = False
+        self._empty_queue()
         self._loop.call_later(ROUND_SECONDS, self._drain)
 
     def _empty_queue(self) -> None:

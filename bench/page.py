@@ -1,0 +1,109 @@
+"""What twelve live traces of a minute at 100 Hz cost the page, beside bare uPlot; and the first view."""
+
+import re
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
+
+from bench.hub import open_viewer, process, wait_for_samples
+from server.settings import DataFolder
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
+from tests.stack import free_port
+
+_SIZE = {"width": 1440, "height": 900}
+_SETTLE = 5.0
+_SECONDS = 15.0
+_HEAP_SECONDS = 150.0
+_HEAP_EVERY = 10.0
+_BUILT = Path("build/bench_page")
+_PAGE = Path("server/page")
+_DRAWN = """() => [...document.querySelectorAll('canvas')].some((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return data.some((value, at) => at % 4 === 3 && value > 0);
+})"""
+_FRAMES = """() => {
+    globalThis.frames = 0;
+    requestAnimationFrame(function count() { globalThis.frames += 1; requestAnimationFrame(count); });
+}"""
+
+
+def measure() -> dict[str, float]:
+    """Frames per second; ms of the main thread for each frame, its own processor time; MB by which the heap
+    grows in an hour; kB of the first view, compressed.
+    """
+    build = ["npx", "vite", "build", "--config", "bench/vite.config.ts", "--logLevel", "error"]
+    subprocess.run(build, cwd="frontend", check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        data, port = Path(folder), free_port()
+        url = f"http://127.0.0.1:{port}"
+        DataFolder(data).run.mkdir()
+        with (
+            process("server", folder, str(port), str(_BUILT)),
+            process("source", folder),
+            sync_playwright() as playwright,
+        ):
+            wait_for_samples(lambda: open_viewer(data, port))
+            browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+            figures = {}
+            for name, path in (("page", ""), ("uplot", "bare.html")):
+                page, devtools = _open(browser, url, data, f"{url}/{path}")
+                figures |= {f"{name}.{figure}": value for figure, value in _draw(page, devtools).items()}
+                if name == "page":
+                    figures["page.heap_growth_mb_per_h"] = _grow(page, devtools)
+                page.context.close()
+            browser.close()
+    return figures | _first_view()
+
+
+def _first_view() -> dict[str, float]:
+    """kB, compressed, of what the first view asks for: the page with what it links, and with its font."""
+    index = (_PAGE / "index.html").read_text()
+    code = [_PAGE / name for name in re.findall(r"(?:src|href)=\"/(assets/[^\"]+)\"", index)]
+    bundle = sum(map(_sent, [_PAGE / "index.html", *code]))
+    fonts = sum(map(_sent, _PAGE.glob("assets/inter-latin-wght-*.woff2")))
+    return {"page.bundle_kb_gz": bundle / 1000, "page.first_view_kb": (bundle + fonts) / 1000}
+
+
+def _sent(file: Path) -> int:
+    packed = file.with_name(f"{file.name}.gz")
+    return (packed if packed.exists() else file).stat().st_size
+
+
+def _open(browser: Browser, url: str, data: Path, address: str) -> tuple[Page, CDPSession]:
+    page = browser.new_page(viewport=_SIZE)  # type: ignore[arg-type]
+    sign_in(page.context, url, data)
+    page.goto(address)
+    page.wait_for_function(_DRAWN)
+    return page, page.context.new_cdp_session(page)
+
+
+def _draw(page: Page, devtools: CDPSession) -> dict[str, float]:
+    devtools.send("Performance.enable", {"timeDomain": "threadTicks"})
+    page.wait_for_timeout(1000 * _SETTLE)
+    page.evaluate(_FRAMES)
+    began, busy = time.monotonic(), _busy(devtools)
+    page.wait_for_timeout(1000 * _SECONDS)
+    frames = page.evaluate("() => globalThis.frames")
+    took, busy = time.monotonic() - began, _busy(devtools) - busy
+    return {"fps": frames / took, "update_ms": busy / frames * 1000}
+
+
+def _busy(devtools: CDPSession) -> float:
+    metrics = {one["name"]: one["value"] for one in devtools.send("Performance.getMetrics")["metrics"]}
+    return float(metrics["TaskDuration"])
+
+
+def _grow(page: Page, devtools: CDPSession) -> float:
+    """The slope of what is left on the heap after the garbage is gone."""
+    points = []
+    began = time.monotonic()
+    while time.monotonic() - began < _HEAP_SECONDS:
+        devtools.send("HeapProfiler.collectGarbage")
+        points.append((time.monotonic(), devtools.send("Runtime.getHeapUsage")["usedSize"]))
+        page.wait_for_timeout(1000 * _HEAP_EVERY)
+    times, sizes = zip(*points, strict=True)
+    return float(np.polyfit(times, sizes, 1)[0]) * 3600 / 1e6
