@@ -9,35 +9,58 @@ from robot_runtime.core import Core
 from robot_runtime.errors import Refused
 from robot_runtime.samples import Mode
 
+Command = Callable[[Mapping[str, Any]], Mapping[str, Any] | None]
+
 
 class Commands:
     """Every command to one robot; `do` has what each name does with its arguments, or raises Refused."""
 
     def __init__(self, robot: Core) -> None:
         self._robot = robot
-        handlers: dict[str, Callable[[Mapping[str, Any]], None]] = {
+        plain: dict[str, Command] = {
             "stop": self._stop,
             "arm": self._arm,
             "mode": self._mode,
             "check_fins": self._check_fins,
             "acknowledge": self._acknowledge,
             "lease": self._lease,
+            "card": self._card,
+        }
+        tuning: dict[str, Command] = {
+            "parameters": self._parameters,
             "controller": self._controller,
             "set_points": self._set_points,
             "steering": self._steering,
-            "card": self._card,
             "vision": self._vision,
         }
-        self.do = {name: self._announcing(handler) for name, handler in handlers.items()}
+        self.do: dict[str, Command] = {name: self._announcing(handler) for name, handler in plain.items()}
+        self.do |= {name: self._tuning(handler) for name, handler in tuning.items()}
 
-    def _announcing(
-        self, handler: Callable[[Mapping[str, Any]], None]
-    ) -> Callable[[Mapping[str, Any]], None]:
+    def _announcing(self, handler: Command) -> Command:
         def handle(question: Mapping[str, Any]) -> None:
             handler(question)
             self._robot.announce()
 
         return handle
+
+    def _tuning(self, handler: Command) -> Command:
+        """What changes parameters happens between two control ticks, and answers which it changed."""
+
+        def handle(question: Mapping[str, Any]) -> Mapping[str, Any]:
+            with self._robot.parameters.changing() as changed:
+                answer = handler(question) or {}
+            self._robot.announce()
+            return {"changed": {name: list(values) for name, values in changed.items()}, **answer}
+
+        return handle
+
+    def _parameters(self, question: Mapping[str, Any]) -> Mapping[str, Any]:
+        values, expected = question.get("values"), question.get("expected", {})
+        partly = question.get("partly", False)
+        if not isinstance(values, dict) or not isinstance(expected, dict) or not isinstance(partly, bool):
+            raise Refused("values and expected must be values by parameters' names, partly true or false")
+        left_out = self._robot.parameters.apply(values, expected, partly=partly)
+        return {"left_out": left_out}
 
     def _stop(self, _: Mapping[str, Any]) -> None:
         self._robot.supervisor.stop("Stopped by the operator.")

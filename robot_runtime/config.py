@@ -27,6 +27,13 @@ class Range:
     maximum: float
 
 
+def limits(cls: type, name: str) -> Range:
+    """What the number of this name may be in the file."""
+    (found,) = get_type_hints(cls, include_extras=True)[name].__metadata__
+    assert isinstance(found, Range)
+    return found
+
+
 SET_POINT = Range(0, 10)
 """m; what a wanted depth may be, in the file and later."""
 VISION_RATE = Range(2, 30)

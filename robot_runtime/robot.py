@@ -2,6 +2,7 @@
 
 import threading
 import time
+from dataclasses import asdict
 
 from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
@@ -63,6 +64,7 @@ class Robot(Core):
         for name, command in Commands(self).do.items():
             self._messages.answer(f"command/{name}", command)
         self._messages.answer("query/frames", lambda _: self.frames())
+        self._messages.answer("query/parameters", lambda _: asdict(self.list_parameters()))
         self._messages.answer_bytes("query/blocks", self.cache.answer)
 
     def run(self) -> None:

@@ -67,6 +67,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic(18, "debug", Kind.DOCUMENTS, samples.DebugLine, "lines of text from the firmware"),
     Topic(19, "event", Kind.DOCUMENTS, samples.Event, "what happened, told by the runtime"),
     Topic(20, "notice", Kind.DOCUMENTS, samples.Event, "what happened, told by the server"),
+    Topic(21, "parameters", Kind.DOCUMENTS, samples.Parameters, "everything that may be tuned"),
     Topic(32, "picture", Kind.PICTURE, None, "the camera's picture as the vision node saw it"),
     Topic(33, "observer", Kind.PICTURE, None, "the simulated scene as a bystander sees it"),
     Topic(34, "thumbnail", Kind.PICTURE, None, "a small picture of the camera's, for recordings"),

@@ -19,6 +19,7 @@ from server.comparison.shapes import NoSessionError
 from server.control.lease import NotInControl
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
+from server.parameters.profiles import UnknownProfile
 from server.processes.parts import Command
 from server.routes import (
     access,
@@ -30,6 +31,8 @@ from server.routes import (
     link,
     live,
     marks,
+    parameters,
+    profiles,
     replay,
     robot,
     scenarios,
@@ -91,11 +94,12 @@ def create_app(
     app.add_exception_handler(UnknownSession, _absent)
     app.add_exception_handler(UnknownMark, _absent)
     app.add_exception_handler(UnknownDevice, _absent)
+    app.add_exception_handler(UnknownProfile, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, simulator, scene, link, live, control)
+    robots = (health, robot, simulator, scene, link, live, control, parameters, profiles)
     kept = (sessions, marks, replay, storage, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

@@ -2,7 +2,7 @@
 import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
 import type { State } from './generated/topics';
-import { command, request, send, upload } from './http';
+import { command, request, send, upload, type Answer } from './http';
 
 export type { Answer } from './http';
 
@@ -33,6 +33,10 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
 export type ThesisTable = Schemas['ThesisTable'];
+export type ParameterChange = Schemas['Change'];
+export type Profile = Schemas['Profile'];
+export type ParameterValue = Profile['values'][string];
+export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
@@ -79,6 +83,10 @@ function order(method: string, path: string, body?: object, timeout?: number): P
   return refusal === null ? command(method, path, body, timeout) : Promise.resolve(refusal);
 }
 
+function orderFor<T>(method: string, path: string, body?: object): Promise<Answer<T>> {
+  return refusal === null ? request<T>(method, path, body) : Promise.resolve({ problem: refusal });
+}
+
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
   arm: (mode: Piloting) => order('POST', '/robot/arm', { mode }),
@@ -102,6 +110,15 @@ export const api = {
   steering: (by: Course) => order('PUT', '/robot/steering', { by }),
   card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
   vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
+  changeParameters: (values: Profile['values']) => order('PATCH', '/parameters', { values }),
+  parameterChanges: () => request<ParameterChange[]>('GET', '/parameters/changes'),
+  undoParameters: (change: ParameterChange['id']) => order('POST', '/parameters/undo', { change }),
+  profiles: () => request<Profile[]>('GET', '/profiles'),
+  saveProfile: (name: string, note: string) => request<Profile>('POST', '/profiles', { name, note }),
+  importProfile: (text: string) => request<Schemas['Imported']>('POST', '/profiles/file', { text }),
+  restoreProfile: (id: Profile['id']) => orderFor<Restored>('POST', `/profiles/${id}/restore`),
+  deleteProfile: (id: Profile['id']) => command('DELETE', `/profiles/${id}`),
+  profileFile: (id: Profile['id']) => `/api/profiles/${id}/file`,
   simulator: (here: boolean) => order('PUT', '/simulator', { here }),
   view: (view: View) => order('PUT', '/scene/view', view),
   health: () => request<Schemas['Health']>('GET', '/health'),

@@ -55,7 +55,8 @@ class Supervisor:
     """Holds the robot's state, which changes as `transitions` says and in no other way.
 
     `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
-    the board must be one for it; with `heartbeat` a server must be heard so often (s).
+    the board must be one for it; with `heartbeat` a server must be heard so often (s). `unsettled` tells what
+    the board has not been told yet, and why it is not to be armed therefore.
     """
 
     def __init__(
@@ -65,11 +66,12 @@ class Supervisor:
         tell: Callable[[Event], None],
         loop: InTheLoop | None = None,
         heartbeat: float | None = None,
+        unsettled: Callable[[], list[str]] = list,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.watch = Watch(clock, line, self.pilot, loop, heartbeat)
+        self.watch = Watch(clock, line, self.pilot, loop, heartbeat, unsettled)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line

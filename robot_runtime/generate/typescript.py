@@ -109,7 +109,14 @@ def _row_name(topic: Topic) -> str:
 
 
 def _documents() -> list[type]:
-    shared = [samples.Box, samples.Gain, samples.ControllerChoice, samples.Pace, samples.Alarm]
+    shared = [
+        samples.Box,
+        samples.Gain,
+        samples.ControllerChoice,
+        samples.Pace,
+        samples.Alarm,
+        samples.Parameter,
+    ]
     return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
 
 

@@ -24,7 +24,7 @@ class Detector:
 
     def __init__(self, colours: Mapping[str, ColourRange], area_min: float) -> None:
         self._colours = colours
-        self._area_min = area_min
+        self.area_min = area_min
 
     def find(self, picture: Picture, wanted: str) -> Patch | None:
         """The largest patch of the wanted colour or, without one, of any other; BGR (height, width, 3)."""
@@ -38,7 +38,7 @@ class Detector:
     def _largest(self, hsv: Picture, name: str) -> Patch | None:
         height, width = hsv.shape[:2]
         mask = find_colour(hsv, self._colours[name])
-        if cv2.countNonZero(mask) < self._area_min * width * height:
+        if cv2.countNonZero(mask) < self.area_min * width * height:
             return None
         # Opening removes specks, which noise makes, and keeps patches as they are.
         size = max(3, width // 100 | 1)
@@ -50,7 +50,7 @@ class Detector:
             return None
         largest = max(contours, key=cv2.contourArea)
         area = cv2.contourArea(largest) / (width * height)
-        if area < self._area_min:
+        if area < self.area_min:
             return None
         x, y, w, h = cv2.boundingRect(largest)
         return Patch(name, Box(x=x / width, y=y / height, width=w / width, height=h / height), area)

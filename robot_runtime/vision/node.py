@@ -56,6 +56,8 @@ class Vision:
             )
         self.colour = config.colour
         """The wanted colour, one of `colours`."""
+        self.area_min = config.area_min
+        """Share of the picture that a patch must have."""
         self.card: str | None = None
         """The colour of the card before the camera."""
         self._config = config
@@ -170,7 +172,8 @@ class Vision:
         from robot_runtime.vision import looking
 
         if self._detector is None:
-            self._detector = looking.Detector(self.colours, self._config.area_min)
+            self._detector = looking.Detector(self.colours, self.area_min)
+        self._detector.area_min = self.area_min
         begun = self._clock.now()
         patch = self._detector.find(frame.picture, self.colour)
         ended = self._clock.now()

@@ -15,7 +15,7 @@ from robot_runtime.topics import Block, Kind
 
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
-    *("controller", "set_points", "steering", "card", "vision"),
+    *("controller", "set_points", "steering", "card", "vision", "parameters"),
 )
 
 
@@ -38,6 +38,10 @@ class RuntimeEnd:
             self._answer(name, gate)
         self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
         self._messages.answer("query/frames", lambda _: self.frames)
+        self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
+        self._messages.answer("query/parameters", lambda _: self.parameters)
+        self.answer: dict[str, Any] = {}
+        """What every command is answered with."""
         self._cache = Cache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
             self._messages.answer_bytes(name, self._cache.answer)
@@ -74,6 +78,6 @@ class RuntimeEnd:
             gate.wait(30)
             if self.refusal is not None and name != "stop":
                 raise Refused(self.refusal)
-            return None
+            return self.answer
 
         self._messages.answer(f"command/{name}", handle)

@@ -59,6 +59,16 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/robot/steering"): "control",
     ("PUT", "/api/robot/card"): "control",
     ("PUT", "/api/robot/vision"): "control",
+    ("GET", "/api/parameters"): "viewer",
+    ("PATCH", "/api/parameters"): "control",
+    ("GET", "/api/parameters/changes"): "viewer",
+    ("POST", "/api/parameters/undo"): "control",
+    ("GET", "/api/profiles"): "viewer",
+    ("POST", "/api/profiles"): "operator",
+    ("POST", "/api/profiles/file"): "operator",
+    ("GET", "/api/profiles/{profile}/file"): "viewer",
+    ("POST", "/api/profiles/{profile}/restore"): "control",
+    ("DELETE", "/api/profiles/{profile}"): "operator",
     ("PUT", "/api/simulator"): "control",
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
@@ -122,7 +132,7 @@ SAFE = {"GET", "HEAD"}
 REFUSED = {401, 403, 423}
 FAULTS_ALLOWED = {503, 504, 507}
 """There is no scene and no simulator, and an import says that it is larger than the disk."""
-ABSENT = dict.fromkeys(("session", "mark", "run", "device"), "999") | {
+ABSENT = dict.fromkeys(("session", "mark", "run", "device", "profile"), "999") | {
     "export": "0" * 16,
     "path": "x.html",
 }

@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'c4f263b5';
+export const DEFINITIONS_HASH = '02624005';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -376,6 +376,7 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
+  parameters: 21,
   picture: 32,
   observer: 33,
   thumbnail: 34,
@@ -422,6 +423,22 @@ export interface Alarm {
   what: string;
   cause: string;
   remedy: string;
+}
+
+/** Something that may be tuned while the robot runs, and its value. */
+export interface Parameter {
+  name: string;
+  type: 'number' | 'whole' | 'choice' | 'switch';
+  value: number | string | boolean;
+  default: number | string | boolean;
+  minimum: number | null;
+  maximum: number | null;
+  unit: string;
+  meaning: string;
+  choices: string[];
+  where: 'runtime' | 'firmware';
+  while_armed: boolean;
+  pending: boolean;
 }
 
 /** The robot as a whole; sent once a second and at every change. */
@@ -479,10 +496,17 @@ export interface RobotEvent {
   text: string;
 }
 
+/** Every parameter; sent at each change and every ten seconds. */
+export interface Parameters {
+  time: number;
+  parameters: Parameter[];
+}
+
 export interface Documents {
   state: State;
   detection: Detection;
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
+  parameters: Parameters;
 }
