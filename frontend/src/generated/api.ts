@@ -1902,7 +1902,7 @@ export interface components {
         Difference: {
             /**
              * Group
-             * @description In force, Session, robot.toml or Scenario
+             * @description In force, Parameters, Session, robot.toml or Scenario
              */
             group: string;
             /** Name */
