@@ -12,8 +12,10 @@ from robot_runtime.errors import Refused
 from robot_runtime.samples import Mode
 from robot_runtime.vision_settings import VisionSettings
 
-CHANGING = ("controller", "loop", "set_points", "steering")
+CHANGING = ("controller", "loop", "parameters", "set_points", "steering")
 """What would change under an experiment what it measures."""
+
+Command = Callable[[Mapping[str, Any]], Mapping[str, Any] | None]
 
 
 class Commands:
@@ -21,44 +23,63 @@ class Commands:
 
     def __init__(self, robot: Core) -> None:
         self._robot = robot
-        handlers: dict[str, Callable[[Mapping[str, Any]], None]] = {
+        plain: dict[str, Command] = {
             "stop": self._stop,
             "arm": self._arm,
             "mode": self._mode,
             "check_fins": self._check_fins,
             "acknowledge": self._acknowledge,
             "lease": self._lease,
+            "card": self._card,
+        }
+        tuning: dict[str, Command] = {
+            "parameters": self._parameters,
             "controller": self._controller,
             "loop": self._loop,
             "set_points": self._set_points,
             "steering": self._steering,
-            "card": self._card,
             "vision": self._vision,
             "experiment": self._experiment,
             "end_experiment": self._end_experiment,
             "vision_settings": self._vision_settings,
         }
         for name in CHANGING:
-            handlers[name] = self._without_experiment(handlers[name])
-        self.do = {name: self._announcing(handler) for name, handler in handlers.items()}
+            tuning[name] = self._without_experiment(tuning[name])
+        self.do: dict[str, Command] = {name: self._announcing(handler) for name, handler in plain.items()}
+        self.do |= {name: self._tuning(handler) for name, handler in tuning.items()}
 
-    def _announcing(
-        self, handler: Callable[[Mapping[str, Any]], None]
-    ) -> Callable[[Mapping[str, Any]], None]:
+    def _announcing(self, handler: Command) -> Command:
         def handle(question: Mapping[str, Any]) -> None:
             handler(question)
             self._robot.announce()
 
         return handle
 
-    def _without_experiment(
-        self, handler: Callable[[Mapping[str, Any]], None]
-    ) -> Callable[[Mapping[str, Any]], None]:
-        def handle(question: Mapping[str, Any]) -> None:
+    def _without_experiment(self, handler: Command) -> Command:
+        def handle(question: Mapping[str, Any]) -> Mapping[str, Any] | None:
             self._robot.experiments.require_none()
-            handler(question)
+            return handler(question)
 
         return handle
+
+    def _tuning(self, handler: Command) -> Command:
+        """What changes parameters happens between two control ticks, and answers which it changed."""
+
+        def handle(question: Mapping[str, Any]) -> Mapping[str, Any]:
+            with self._robot.parameters.changing() as changed:
+                answer = handler(question) or {}
+            self._robot.announce()
+            return {"changed": {name: list(values) for name, values in changed.items()}, **answer}
+
+        return handle
+
+    def _parameters(self, question: Mapping[str, Any]) -> Mapping[str, Any]:
+        values, expected = question.get("values"), question.get("expected", {})
+        partly = question.get("partly", False)
+        if not isinstance(values, dict) or not isinstance(expected, dict) or not isinstance(partly, bool):
+            raise Refused("values and expected must be values by parameters' names, partly true or false")
+        left_out = self._robot.parameters.apply(values, expected, partly=partly)
+        return {"left_out": left_out}
 
     def _stop(self, _: Mapping[str, Any]) -> None:
         self._robot.supervisor.stop("Stopped by the operator.")

@@ -28,7 +28,20 @@ from robot_runtime.link.pace import periods
 from robot_runtime.link.session import Message
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
-from robot_runtime.packets import Beacon, Debug, Depth, Imu, Motor, Navigation, Status
+from robot_runtime.packets import (
+    Beacon,
+    Debug,
+    Depth,
+    Hello,
+    Imu,
+    Motor,
+    Navigation,
+    Parameter,
+    Status,
+)
+from robot_runtime.parameters.board import BoardParameters
+from robot_runtime.parameters.providers import runtime_entries
+from robot_runtime.parameters.registry import Registry
 from robot_runtime.samples import (
     ControllerChoice,
     DebugLine,
@@ -37,6 +50,7 @@ from robot_runtime.samples import (
     Gain,
     Loop,
     Pace,
+    Parameters,
     Severity,
     State,
     VisionInForce,
@@ -60,6 +74,7 @@ PUBLISH_EVERY = 0.1
 _STATE_EVERY = 1.0
 _STATISTICS_EVERY = 1.0
 _VISION_EVERY = 10.0
+_PARAMETERS_EVERY = 10.0
 
 
 class Core:
@@ -99,8 +114,15 @@ class Core:
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
+        self.board_parameters = BoardParameters(clock, line.send, config.link.baud)
         self.supervisor = Supervisor(
-            clock, self.line, self.tell, loop, heartbeat, lambda mode: self.control.change_mode(mode)
+            clock,
+            self.line,
+            self.tell,
+            loop,
+            heartbeat,
+            on_mode=lambda mode: self.control.change_mode(mode),
+            unsettled=self.board_parameters.refusals,
         )
         self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
         self.experiments = Experiments(clock, lambda told: self.bus.publish_document("experiment", told))
@@ -122,6 +144,11 @@ class Core:
         ]
         self._due = [clock.now()] * len(self._every)
         self._configure()
+        self.parameters = Registry(
+            [*runtime_entries(self.control, self.vision, self.set_vision), *self.board_parameters.entries()],
+            armed=lambda: self.supervisor.armed,
+        )
+        self._parameters_told: Parameters | None = None
         self._join()
 
     def tell(self, event: Event) -> None:
@@ -135,6 +162,10 @@ class Core:
 
     def control_tick(self) -> None:
         """Decide and command once; to be called at the control rate."""
+        with self.parameters.between_ticks:
+            self._control_tick()
+
+    def _control_tick(self) -> None:
         self.look()
         try:
             if self.control.depth.on and (reasons := self.supervisor.watch.depth_refusals()):
@@ -177,6 +208,7 @@ class Core:
         """Look for faults and send what waits; to be called every `PUBLISH_EVERY`."""
         # Here too, as the control loop may be slower.
         self.look()
+        self.board_parameters.tick()
         now = self.clock.now()
         for index, (seconds, action) in enumerate(self._every):
             if now >= self._due[index]:
@@ -185,6 +217,7 @@ class Core:
         if self._state_wanted.is_set():
             self._state_wanted.clear()
             self.bus.publish_document("state", self.state())
+            self._publish_parameters()
         self.outbox.flush()
 
     def state(self) -> State:
@@ -233,6 +266,10 @@ class Core:
         now, configured = self.vision.settings, self.config.vision.settings
         return {"settings": now.table(), "configured": configured.table()}
 
+    def list_parameters(self) -> Parameters:
+        """Everything that may be tuned, as it is now."""
+        return Parameters(time=self.clock.now(), parameters=self.parameters.listed())
+
     def frames(self) -> dict[str, Any]:
         """The last frames on the serial line, now and at the last fault, in words; for a JSON object."""
         fault = self.line.fault
@@ -268,6 +305,12 @@ class Core:
         if self.supervisor.mode == "test":
             self.supervisor.fin_check.see(Motor.from_bytes(record))
 
+    def _publish_parameters(self) -> None:
+        now, told = self.list_parameters(), self._parameters_told
+        if told is None or now.parameters != told.parameters or now.time - told.time >= _PARAMETERS_EVERY:
+            self._parameters_told = now
+            self.bus.publish_document("parameters", now)
+
     def _publish_statistics(self) -> None:
         self.bus.publish_row("link", self.clock.now(), self.line.statistics().to_bytes())
 
@@ -300,6 +343,11 @@ class Core:
                 attitude = message.payload
             elif message.type == Status.type:
                 self.supervisor.see_status(Status.from_bytes(message.payload))
+            elif message.type == Hello.type:
+                self.board_parameters.see_greeting()
+            elif message.type == Parameter.type:
+                if self.board_parameters.see(Parameter.from_bytes(message.payload)):
+                    self.announce()
             elif message.type == Debug.type:
                 debug = Debug.from_bytes(message.payload)
                 line = DebugLine(time=message.time, level=debug.level, text=debug.text)
@@ -307,6 +355,7 @@ class Core:
         if attitude is not None:
             # Of a hundred a second the newest of a batch will do: decoding one takes a Pi its time.
             watch.see_imu(Imu.from_bytes(attitude))
+        self.board_parameters.tick()
         self.look()
         self.outbox.flush()
 

@@ -186,6 +186,36 @@ class Pace:
     period: float
 
 
+ParameterType = Literal["number", "whole", "choice", "switch"]
+ParameterValue = float | str | bool
+Where = Literal["runtime", "firmware"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """Something that may be tuned while the robot runs, and its value."""
+
+    name: str
+    type: ParameterType
+    value: ParameterValue
+    default: ParameterValue = field(metadata={"meaning": "its value when the runtime started"})
+    minimum: float | None = field(metadata={"meaning": "of numbers"})
+    maximum: float | None
+    unit: str
+    meaning: str
+    choices: list[str] = field(metadata={"meaning": "empty but for a choice"})
+    where: Where
+    while_armed: bool = field(metadata={"meaning": "whether it may change while the robot is armed"})
+    pending: bool = field(metadata={"meaning": "whether the board has not confirmed the value yet"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameters(Document):
+    """Every parameter; sent at each change and every ten seconds."""
+
+    parameters: list[Parameter]
+
+
 Steering = Literal["none", "beacons"]
 Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
 

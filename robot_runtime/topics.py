@@ -68,6 +68,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic(18, "debug", Kind.DOCUMENTS, samples.DebugLine, "lines of text from the firmware"),
     Topic(19, "event", Kind.DOCUMENTS, samples.Event, "what happened, told by the runtime"),
     Topic(20, "notice", Kind.DOCUMENTS, samples.Event, "what happened, told by the server"),
+    Topic(21, "parameters", Kind.DOCUMENTS, samples.Parameters, "everything that may be tuned"),
     Topic(22, "experiment", Kind.DOCUMENTS, samples.Experiment, "how an experiment on a loop goes"),
     Topic(23, "vision", Kind.DOCUMENTS, samples.VisionInForce, "how the vision node looks"),
     Topic(32, "picture", Kind.PICTURE, None, "the camera's picture as the vision node saw it"),

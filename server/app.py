@@ -22,6 +22,7 @@ from server.layouts.library import UnknownLayout
 from server.live.bridge import RuntimeSilent
 from server.page import Page, make_router
 from server.panels.own import UnknownPanel
+from server.parameters.profiles import UnknownProfile
 from server.processes.parts import Command
 from server.routes import (
     access,
@@ -36,7 +37,9 @@ from server.routes import (
     live,
     marks,
     panels,
+    parameters,
     past,
+    profiles,
     replay,
     robot,
     scenarios,
@@ -103,13 +106,14 @@ def create_app(
     app.add_exception_handler(UnknownDevice, _absent)
     app.add_exception_handler(UnknownLayout, _absent)
     app.add_exception_handler(UnknownPanel, _absent)
+    app.add_exception_handler(UnknownProfile, _absent)
     app.add_exception_handler(UnknownRun, _absent)
     app.add_exception_handler(RuntimeSilent, _silent)
     app.add_exception_handler(StoreError, _not_stored)
     app.add_exception_handler(CopyFailed, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, vision, simulator, scene, link, live, past, control)
+    robots = (health, robot, vision, simulator, scene, link, live, past, control, parameters, profiles)
     kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

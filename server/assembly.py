@@ -32,6 +32,8 @@ from server.live.inspection import DOWN, Inspection
 from server.live.notices import Notices
 from server.models import SessionRow
 from server.page import Page
+from server.parameters.changes import Changes
+from server.parameters.profiles import Profiles
 from server.processes.parts import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
 from server.processes.pidfile import running_parts
 from server.scenarios.live import Live
@@ -69,6 +71,8 @@ class Assembly:
         self.store = Store(settings.data.database)
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
+        self.changes = Changes(self.store, self.bridge)
+        self.profiles = Profiles(self.store)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.telling = Telling(self.bridge.tell_lease)
         self.desk = Desk(

@@ -197,6 +197,23 @@ class ProfileRow(SQLModel, table=True):
     parameters: str
 
 
+class ParameterChangeRow(SQLModel, table=True):
+    """Parameters that somebody changed together; `changed` as JSON. Time is UTC (s since 1970).
+
+    `run` is the runtime's, `why` the profile that was restored, `undone` who took the change back.
+    """
+
+    __tablename__ = "parameter_change"
+
+    id: int | None = Field(default=None, primary_key=True)
+    time: float
+    run: str
+    who: str
+    why: str = ""
+    changed: str
+    undone: str = ""
+
+
 class TuningRunRow(SQLModel, table=True):
     """A step response or a relay experiment, and what came of it. Time is UTC (s since 1970).
 

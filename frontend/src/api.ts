@@ -3,6 +3,7 @@ import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
 import type { State } from './generated/topics';
 import { command, download, request, send, upload } from './http';
+import { command, request, send, upload, type Answer } from './http';
 
 export type { Answer, Downloaded } from './http';
 
@@ -47,6 +48,10 @@ export type ActiveTuning = Schemas['ActiveTuning'];
 export type Proposal = Schemas['Proposal'];
 export type LimitCycle = Schemas['LimitCycleFound'];
 export type LoopName = TuningRun['loop'];
+export type ParameterChange = Schemas['Change'];
+export type Profile = Schemas['Profile'];
+export type ParameterValue = Profile['values'][string];
+export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
 
@@ -95,6 +100,10 @@ function order(method: string, path: string, body?: object, timeout?: number): P
   return refusal === null ? command(method, path, body, timeout) : Promise.resolve(refusal);
 }
 
+function orderFor<T>(method: string, path: string, body?: object): Promise<Answer<T>> {
+  return refusal === null ? request<T>(method, path, body) : Promise.resolve({ problem: refusal });
+}
+
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
   arm: (mode: Piloting) => order('POST', '/robot/arm', { mode }),
@@ -124,6 +133,15 @@ export const api = {
   pick: (place: Schemas['PickPlace']) => request<Proposal>('POST', '/vision/pick', place),
   visionFile: '/api/vision/toml',
   readVision: (text: string) => request<VisionSettings>('POST', '/vision/read', { text }),
+  changeParameters: (values: Profile['values']) => order('PATCH', '/parameters', { values }),
+  parameterChanges: () => request<ParameterChange[]>('GET', '/parameters/changes'),
+  undoParameters: (change: ParameterChange['id']) => order('POST', '/parameters/undo', { change }),
+  profiles: () => request<Profile[]>('GET', '/profiles'),
+  saveProfile: (name: string, note: string) => request<Profile>('POST', '/profiles', { name, note }),
+  importProfile: (text: string) => request<Schemas['Imported']>('POST', '/profiles/file', { text }),
+  restoreProfile: (id: Profile['id']) => orderFor<Restored>('POST', `/profiles/${id}/restore`),
+  deleteProfile: (id: Profile['id']) => command('DELETE', `/profiles/${id}`),
+  profileFile: (id: Profile['id']) => `/api/profiles/${id}/file`,
   simulator: (here: boolean) => order('PUT', '/simulator', { here }),
   view: (view: View) => order('PUT', '/scene/view', view),
   /** the rows that the server has of these topics up to a time, s, steady clock */

@@ -1,4 +1,4 @@
-"""What people tune and arrange: profiles of parameters, step responses and relay runs, layouts of panels."""
+"""What people tune and arrange: parameters (profiles, changes), tuning runs, layouts of panels."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -18,6 +18,16 @@ def upgrade() -> None:
         sa.Column("saved", sa.Float, nullable=False),
         sa.Column("parameters", sa.String, nullable=False),
         sa.UniqueConstraint("name", name="profile_name"),
+    )
+    op.create_table(
+        "parameter_change",
+        sa.Column("id", sa.Integer, primary_key=True, nullable=False),
+        sa.Column("time", sa.Float, nullable=False),
+        sa.Column("run", sa.String, nullable=False),
+        sa.Column("who", sa.String, nullable=False),
+        sa.Column("why", sa.String, nullable=False),
+        sa.Column("changed", sa.String, nullable=False),
+        sa.Column("undone", sa.String, nullable=False),
     )
     op.create_table(
         "tuning_run",
@@ -46,4 +56,5 @@ def upgrade() -> None:
 def downgrade() -> None:
     op.drop_table("layout")
     op.drop_table("tuning_run")
+    op.drop_table("parameter_change")
     op.drop_table("profile")

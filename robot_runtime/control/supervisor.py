@@ -56,7 +56,8 @@ class Supervisor:
 
     `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
     the board must be one for it; with `heartbeat` a server must be heard so often (s). `on_mode` gets each
-    new mode, and may wait for nothing.
+    new mode, and may wait for nothing. `unsettled` tells what the board has not been told yet, and why it is
+    not to be armed therefore.
     """
 
     def __init__(
@@ -67,11 +68,12 @@ class Supervisor:
         loop: InTheLoop | None = None,
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
+        unsettled: Callable[[], list[str]] = list,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.watch = Watch(clock, line, self.pilot, loop, heartbeat)
+        self.watch = Watch(clock, line, self.pilot, loop, heartbeat, unsettled)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line

@@ -4,7 +4,7 @@ Arrivals count, not stamps: an emulated board that had to pause keeps its clock 
 steady clock, so that nobody who sets the computer's time changes anything.
 """
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from math import cos, pi
 from typing import Protocol
 
@@ -59,7 +59,13 @@ class Watch:
     """`see_...` say what came; `wrong` and `refusals` judge it. Without `heartbeat` no server is expected."""
 
     def __init__(
-        self, clock: Clock, line: Line, pilot: Pilot, loop: InTheLoop | None, heartbeat: float | None
+        self,
+        clock: Clock,
+        line: Line,
+        pilot: Pilot,
+        loop: InTheLoop | None,
+        heartbeat: float | None,
+        unsettled: Callable[[], list[str]],
     ) -> None:
         self.status: Status | None = None
         self.server_patience = heartbeat
@@ -68,6 +74,7 @@ class Watch:
         self._line = line
         self._pilot = pilot
         self._loop = loop
+        self._unsettled = unsettled
         baud = line.baud
         self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
         self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
@@ -158,7 +165,7 @@ class Watch:
         if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
             return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
         reasons = self._loop.refusals() if self._loop else []
-        return reasons or [*self.depth_refusals(), *self._other_refusals(status)]
+        return reasons or [*self.depth_refusals(), *self._other_refusals(status), *self._unsettled()]
 
     def depth_refusals(self) -> list[str]:
         """Why the depth cannot be steered by now; empty where it can."""

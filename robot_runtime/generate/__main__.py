@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, safety, typescript
+from robot_runtime.generate import cpp, json_schema, parameters, safety, typescript
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,6 +21,7 @@ def main() -> int:
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
+        "docs/parameters.md": parameters.weave((ROOT / "docs/parameters.md").read_text(encoding="utf-8")),
         "docs/safety.md": safety.weave((ROOT / "docs/safety.md").read_text(encoding="utf-8")),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]

@@ -25,7 +25,7 @@ CHIP_PARAMETERS: tuple[ChipParameter, ...] = (
     ChipParameter("fins.frequency", 1.3, 0.3, 2.0, "Hz", "strokes of a flapping fin each second"),
     ChipParameter("fins.amplitude", 1.6, 0.2, 1.6, "rad", "largest stroke, peak to peak, at full command"),
     # Slower, and the fins of a robot whose battery is low would not be down within the 1.5 s they have.
-    ChipParameter("fins.turn_rate", 4.908, 2.5, 4.908, "rad/s", "how fast the direction of a fin turns"),
+    ChipParameter("fins.turn_rate", 4.909, 2.5, 4.909, "rad/s", "how fast the direction of a fin turns"),
     ChipParameter("fins.gain", 0.625, 0.3, 1.2, "", "drive of a fin, in steps for each count of its error"),
     ChipParameter(
         "battery.alarm", 6.2, 6.2, 7.4, "V", "below it for 20 s the robot is stopped", while_armed=False

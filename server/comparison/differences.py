@@ -35,7 +35,7 @@ CHANGED = "changed while armed: "
 class Difference(BaseModel):
     """Something that is not the same in all sessions."""
 
-    group: str = Field(description="In force, Session, robot.toml or Scenario")
+    group: str = Field(description="In force, Parameters, Session, robot.toml or Scenario")
     name: str
     values: list[str] = Field(description="one for each session; empty where it has no such thing")
 
@@ -45,6 +45,7 @@ def find_differences(sessions: Sequence[tuple[SessionRow, History]]) -> list[Dif
     alone = len(sessions) == 1
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
+        ("Parameters", [dict(_parameters(history)) for _, history in sessions]),
         ("Session", [_of_row(row) for row, _ in sessions]),
     ]
     if not alone:
@@ -84,7 +85,8 @@ def _in_force(history: History) -> Iterator[tuple[str, str]]:
     for key, title in _STATE.items():
         if key in history.state:
             yield title, _words(history.state[key])
-    used = [one for one in history.controls if _rules(one.time, history)]
+    times = [one.time for one in history.controls]
+    used = [one for one in history.controls if _rules(one.time, times, history.armed)]
     controllers = list(dict.fromkeys(one.controller for one in used))
     if controllers:
         yield "Controller", _sequence(controllers)
@@ -96,13 +98,24 @@ def _in_force(history: History) -> Iterator[tuple[str, str]]:
         yield name, _sequence(list(dict.fromkeys(values)))
 
 
-def _rules(time: float, history: History) -> bool:
-    """Whether a controller that is chosen at `time` is in force at any time while armed."""
-    if not history.armed:
-        return time == history.controls[0].time
-    later = [one.time for one in history.controls if one.time > time]
-    in_force = Span(time, min(later, default=float("inf")))
-    return any(span.start < in_force.end and in_force.start < span.end for span in history.armed)
+def _parameters(history: History) -> Iterator[tuple[str, str]]:
+    """Every parameter with the values that it had while armed, in the order of time."""
+    times = [one.time for one in history.parameters]
+    values: dict[str, list[str]] = {}
+    for one in history.parameters:
+        if _rules(one.time, times, history.armed):
+            for name, value in one.values.items():
+                values.setdefault(name, []).append(_words(value))
+    for name, seen in values.items():
+        yield name, _sequence(list(dict.fromkeys(seen)))
+
+
+def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
+    """Whether what is chosen at `time`, one of `times`, is in force at any time while armed."""
+    if not armed:
+        return time == times[0]
+    in_force = Span(time, min((one for one in times if one > time), default=float("inf")))
+    return any(span.start < in_force.end and in_force.start < span.end for span in armed)
 
 
 def _sequence(values: Sequence[str]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from sqlmodel import col, select
 
-from server.comparison.moments import Control, History, Moment, Span
+from server.comparison.moments import Control, History, Moment, Span, Tuned
 from server.comparison.samples import Samples, Series
 from server.models import Gap, Marker
 from server.sessions.recording import Recording
@@ -37,6 +37,7 @@ def read_history(recording: Recording, samples: Samples) -> History:
         armed_at_start=bool(changes[0].get("armed")) and changes[0].get("armed_since") is None,
         controls=tuple(_controls(changes, origin)),
         state=(before or changes[:1])[-1],
+        parameters=tuple(_tuned(recording, origin)),
     )
 
 
@@ -109,6 +110,13 @@ def _spans_of_flags(flags: Series) -> tuple[Span, ...]:
 
 def _began_armed(armed: tuple[Span, ...], flags: Series | None) -> bool:
     return flags is not None and armed[0].start == flags.times[0]
+
+
+def _tuned(recording: Recording, origin: float) -> Iterator[Tuned]:
+    if "parameters" in recording.topics:
+        for document in recording.changes("parameters"):
+            values = {one["name"]: one["value"] for one in document["parameters"]}
+            yield Tuned(document["time"] - origin, values)
 
 
 def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[Control]:

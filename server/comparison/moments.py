@@ -32,6 +32,14 @@ class Control:
 
 
 @dataclass(frozen=True, slots=True)
+class Tuned:
+    """Every parameter's value from `time` on, by name."""
+
+    time: float
+    values: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
 class History:
     """When the robot was armed, and how it was controlled; times in s since the session's start."""
 
@@ -42,3 +50,5 @@ class History:
     controls: tuple[Control, ...]
     state: dict[str, Any]
     """The newest state document at the first arming, or the first of all; empty where there is none."""
+    parameters: tuple[Tuned, ...] = ()
+    """Empty in recordings from before there were any."""

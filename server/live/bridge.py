@@ -154,6 +154,10 @@ class Bridge:
             self.on_stop()
         await self._ask(f"command/{name}", payload, stop=name == "stop")
 
+    async def tune(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Have the runtime do what may change parameters; what it changed. Raises as `command` does."""
+        return await self._ask(f"command/{name}", payload, stop=False)
+
     async def disarm(self) -> None:
         """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilent."""
         await self._ask("command/stop", {}, stop=True)

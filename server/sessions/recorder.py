@@ -7,6 +7,7 @@ that a killed server has left goes on where what was missed is still to be had (
 """
 
 import asyncio
+import json
 import logging
 import zlib
 from collections import Counter
@@ -37,6 +38,8 @@ PERIOD = 0.8
 PROBE_PERIODS = 5
 """Periods between attempts to write while writing fails and nothing is recorded."""
 BACKLOG_BYTES = 8_000_000
+
+_PARAMETERS = BY_NAME["parameters"]
 
 
 class RecordingRefused(Exception):  # noqa: N818 - it says what happened
@@ -93,6 +96,7 @@ class Recorder:
         self._busy = asyncio.Lock()
         self._accepts = False
         self._started_steady = 0.0
+        self._standing: Block | None = None
         self._reset()
 
     async def recover(self) -> Left | None:
@@ -169,6 +173,9 @@ class Recorder:
             self._started_steady = row.started_steady
             self._reset()
             self._accepts = True
+            if self._standing is not None:
+                # They are told at each change and else rarely: the session begins with what is in force.
+                self.add(_as_of(self._standing, self._clock.now()))
         self._notices.tell("recording", "info", f"Recording of “{row.name}” has begun.")
         self._changed()
         return self.session
@@ -206,6 +213,8 @@ class Recorder:
     def add(self, block: Block) -> None:
         """Take in a block; without a session it is passed over."""
         topic = block.topic
+        if topic is _PARAMETERS:
+            self._standing = block
         if not self._accepts or topic not in RECORDED or (self._skip and self._is_stored(block)):
             return
         run = self._runs.get(topic.id)
@@ -323,6 +332,17 @@ class Recorder:
                 }
             )
             self._numbers[name] += 1
+
+
+def _as_of(block: Block, now: float) -> Block:
+    """The last document of a block once more, as of now (s, steady clock)."""
+    try:
+        document = json.loads(block.payload)[-1] | {"time": now}
+    except (ValueError, LookupError, TypeError, RecursionError):
+        # A damaged one is noted as such when it is stored.
+        return block
+    payload = json.dumps([document], separators=(",", ":")).encode()
+    return Block.of(block.topic, 1, (block.following - 1) % NUMBERS, payload)
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.packets import (
+    CHIP_PARAMETERS,
     Beacon,
     Debug,
     Depth,
@@ -16,6 +17,7 @@ from robot_runtime.packets import (
     Imu,
     Motor,
     Navigation,
+    Parameter,
     ResetCause,
     SensorFault,
     Start,
@@ -127,6 +129,28 @@ def test_it_keeps_100_hz(robot: Robot) -> None:
     assert status.loop_worst < 10_000
     assert (status.frames_invalid, status.bytes_lost) == (0, 0)
     assert robot.board.stats()["overruns"] == 0
+
+
+def test_its_parameters_are_taken_and_clamped_while_it_swims(robot: Robot) -> None:
+    numbers = {one.name: number for number, one in enumerate(CHIP_PARAMETERS)}
+    robot.arm()
+    robot.converse(1.0, DOWN)
+    for name, value in (("fins.amplitude", 0.4), ("fins.gain", 1.3), ("battery.alarm", 7.0)):
+        robot.send(Parameter(number=numbers[name], value=value))
+    answers = all_of(robot.converse(0.5, DOWN), Parameter)
+    in_force = {answer.number: answer.value for answer in answers}
+    # The second is out of range, and the third waits for the disarmed robot.
+    assert in_force == {
+        numbers["fins.amplitude"]: pytest.approx(0.4),
+        numbers["fins.gain"]: pytest.approx(0.625),
+        numbers["battery.alarm"]: pytest.approx(6.2),
+    }
+    packets = robot.converse(1.6, DOWN)
+    wanted = [motor.wanted[0] for motor in all_of(packets, Motor)]
+    assert max(wanted) - min(wanted) == pytest.approx(0.4, abs=0.02)
+    status = last(packets, Status)
+    assert status.loop_worst < 10_000
+    assert status.stack_free > 50
 
 
 def test_a_motor_packet_tells_when_the_fins_were_measured(robot: Robot) -> None:

@@ -22,12 +22,14 @@ from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import STREAM
 from robot_runtime.packets import (
+    CHIP_PARAMETERS,
     Debug,
     Depth,
     Hello,
     Imu,
     Navigation,
     Packet,
+    Parameter,
     Start,
     Status,
     StatusFlag,
@@ -43,12 +45,13 @@ ROOT = Path(__file__).resolve().parents[2]
 class Board:
     """A board that sends telemetry at 50 Hz, arms and stops as told, and notes what it hears."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, deaf_to_parameters: bool = False) -> None:
         self.path = path
         self.end = BoardEnd(path)
         self.heard: list[tuple[float, int, bytes]] = []
         self.depth = 0.2
         self.silent = False
+        self.deaf_to_parameters = deaf_to_parameters
         self._armed = False
         self._ending = threading.Event()
         self._changed = threading.Condition()
@@ -69,15 +72,22 @@ class Board:
     def count(self, type_: int) -> int:
         return sum(heard == type_ for _, heard, _ in self.heard)
 
+    def told(self, name: str) -> list[float]:
+        """What it was told of this parameter."""
+        packets = [
+            Parameter.from_bytes(payload) for _, type_, payload in self.heard if type_ == Parameter.type
+        ]
+        return [one.value for one in packets if CHIP_PARAMETERS[one.number].name == name]
+
     def _listen(self) -> None:
         while not self._ending.is_set():
             for type_, payload in self.end.listen(0.05):
-                self._answer(type_)
+                self._answer(type_, payload)
                 with self._changed:
                     self.heard.append((time.monotonic(), type_, payload))
                     self._changed.notify_all()
 
-    def _answer(self, type_: int) -> None:
+    def _answer(self, type_: int, payload: bytes) -> None:
         if type_ == Hello.type:
             self.end.say(hello())
         elif type_ == Start.type:
@@ -85,6 +95,8 @@ class Board:
             self.end.say(Debug(time=_micros(), level=1, text="armed"))
         elif type_ == Stop.type:
             self._armed = False
+        elif type_ == Parameter.type and not self.deaf_to_parameters:
+            self.end.say(Parameter.from_bytes(payload))
 
     def _report(self) -> None:
         # A sensor that hangs shows the same again and again; this one is well.
@@ -186,6 +198,10 @@ class Rig:
             ending.set()
             thread.join()
 
+    def newest_parameters(self) -> dict[str, dict[str, Any]]:
+        told = [document for name, document in self.listener.documents if name == "parameters"]
+        return {one["name"]: one for one in told[-1]["parameters"]} if told else {}
+
     def ready(self) -> None:
         self.listener.wait(lambda: self.listener.newest_state().get("refusals") == [])
 
@@ -253,6 +269,15 @@ def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
         ("card", {"colour": "plaid"}, "no card of colour 'plaid'"),
         ("vision", {"rate": 1000}, "must lie between 2 and 30"),
         ("vision", {"colour": "plaid"}, "colour is 'plaid'; it must be one of red"),
+        ("parameters", {"values": {"depth.pid.kp": 51}}, "kp is 51; it must lie between 0 and 50 1/m"),
+        ("parameters", {"values": {"depth.pid.kp": "3"}}, "must be a number"),
+        ("parameters", {"values": {"depth.pid.kp": True}}, "must be a number"),
+        ("parameters", {"values": {"control.steering": "home"}}, "one of none, beacons"),
+        ("parameters", {"values": {"fins.amplitude": 1.7}}, "between 0.2 and 1.6 rad"),
+        ("parameters", {"values": {"depth.pid.kp": 4, "nothing": 1}}, "no parameter 'nothing'"),
+        ("parameters", {"values": {"vision.rate": 5}, "expected": {"vision.rate": 6}}, "not 6 any more"),
+        ("parameters", {"values": [3]}, "by parameters' names"),
+        ("parameters", {}, "by parameters' names"),
     ],
 )
 def test_bad_commands_are_refused_with_the_reason(
@@ -407,3 +432,36 @@ def test_a_bad_configuration_is_one_clear_line(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert "rate is 1000; it must lie between 1 and 50" in done.stderr
+
+
+def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) -> None:
+    rig.ready()
+    rig.ask("controller", name="pid", gains={"kp": 7.0})
+    answer = rig.messages.ask(
+        "command/parameters", {"values": {"fins.amplitude": 0.8, "depth.pid.kp": 4, "vision.rate": 4.0}}
+    )
+    assert answer["changed"] == {"depth.pid.kp": [7.0, 4.0], "fins.amplitude": [1.6, 0.8]}
+    rig.board.wait(lambda: rig.board.told("fins.amplitude")[-1] == pytest.approx(0.8))
+    rig.listener.wait(lambda: rig.newest_parameters()["fins.amplitude"]["value"] == 0.8)
+    rig.listener.wait(lambda: not rig.newest_parameters()["fins.amplitude"]["pending"])
+    listed = rig.newest_parameters()
+    assert (listed["depth.pid.kp"]["value"], listed["depth.pid.kp"]["default"]) == (4.0, 3.0)
+    assert listed["depth.controller"]["value"] == "pid"
+    partly = {"values": {"nothing": 1, "depth.pid.kp": 5, "vision.rate": 99}, "partly": True}
+    answer = rig.messages.ask("command/parameters", partly)
+    assert answer["changed"] == {"depth.pid.kp": [4.0, 5.0]}
+    assert answer["left_out"].keys() == {"nothing", "vision.rate"}
+
+
+def test_a_board_that_forgot_is_told_again_before_it_is_armed(rig: Rig) -> None:
+    rig.ready()
+    rig.ask("parameters", values={"fins.amplitude": 0.8})
+    rig.board.close()
+    rig.listener.wait(lambda: not rig.listener.newest_state()["connected"])
+    rig.board = Board(rig.board.path, deaf_to_parameters=True)
+    rig.listener.wait(lambda: any("fins.amplitude" in why for why in rig.listener.newest_state()["refusals"]))
+    with pytest.raises(Refused, match="not confirmed"):
+        rig.ask("arm")
+    rig.board.deaf_to_parameters = False
+    rig.ready()
+    assert rig.board.told("fins.amplitude")[-1] == pytest.approx(0.8)

@@ -17,7 +17,7 @@ from robot_runtime.vision_settings import VisionSettings
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
     *("controller", "loop", "set_points", "steering", "card", "vision", "vision_settings"),
-    *("experiment", "end_experiment"),
+    *("experiment", "end_experiment", "parameters"),
 )
 
 
@@ -44,6 +44,10 @@ class RuntimeEnd:
         self._messages.answer("query/vision", lambda _: {"settings": settings, "configured": settings})
         self.picked: list[dict[str, Any]] = []
         self._messages.answer("query/pick", self._pick)
+        self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
+        self._messages.answer("query/parameters", lambda _: self.parameters)
+        self.answer: dict[str, Any] = {}
+        """What every command is answered with."""
         self._cache = Cache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
             self._messages.answer_bytes(name, self._cache.answer)
@@ -86,6 +90,6 @@ class RuntimeEnd:
             gate.wait(30)
             if self.refusal is not None and name != "stop":
                 raise Refused(self.refusal)
-            return None
+            return self.answer
 
         self._messages.answer(f"command/{name}", handle)

@@ -65,6 +65,16 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/vision/pick"): "viewer",
     ("GET", "/api/vision/toml"): "viewer",
     ("POST", "/api/vision/read"): "viewer",
+    ("GET", "/api/parameters"): "viewer",
+    ("PATCH", "/api/parameters"): "control",
+    ("GET", "/api/parameters/changes"): "viewer",
+    ("POST", "/api/parameters/undo"): "control",
+    ("GET", "/api/profiles"): "viewer",
+    ("POST", "/api/profiles"): "operator",
+    ("POST", "/api/profiles/file"): "operator",
+    ("GET", "/api/profiles/{profile}/file"): "viewer",
+    ("POST", "/api/profiles/{profile}/restore"): "control",
+    ("DELETE", "/api/profiles/{profile}"): "operator",
     ("PUT", "/api/simulator"): "control",
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
@@ -144,7 +154,7 @@ SAFE = {"GET", "HEAD"}
 REFUSED = {401, 403, 423}
 FAULTS_ALLOWED = {503, 504, 507}
 """There is no scene and no simulator, and an import says that it is larger than the disk."""
-ABSENT = dict.fromkeys(("session", "mark", "run", "device", "layout", "panel"), "999") | {
+ABSENT = dict.fromkeys(("session", "mark", "run", "device", "layout", "panel", "profile"), "999") | {
     "export": "0" * 16,
     "path": "x.html",
     "name": "heading",

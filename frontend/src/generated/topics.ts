@@ -1,7 +1,7 @@
 // Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
-export const DEFINITIONS_HASH = 'c4f263b5';
+export const DEFINITIONS_HASH = '02624005';
 
 export type Code = 'b' | 'B' | 'h' | 'H' | 'i' | 'I' | 'f' | 'd';
 
@@ -399,6 +399,7 @@ export const OTHER_TOPICS = {
   debug: 18,
   event: 19,
   notice: 20,
+  parameters: 21,
   experiment: 22,
   vision: 23,
   picture: 32,
@@ -474,6 +475,22 @@ export interface Candidate {
 export interface Marker {
   number: number;
   corners: number[];
+}
+
+/** Something that may be tuned while the robot runs, and its value. */
+export interface Parameter {
+  name: string;
+  type: 'number' | 'whole' | 'choice' | 'switch';
+  value: number | string | boolean;
+  default: number | string | boolean;
+  minimum: number | null;
+  maximum: number | null;
+  unit: string;
+  meaning: string;
+  choices: string[];
+  where: 'runtime' | 'firmware';
+  while_armed: boolean;
+  pending: boolean;
 }
 
 /** What counts as one colour: lowest and highest hue, saturation and value, both included.
@@ -573,6 +590,12 @@ export interface RobotEvent {
   text: string;
 }
 
+/** Every parameter; sent at each change and every ten seconds. */
+export interface Parameters {
+  time: number;
+  parameters: Parameter[];
+}
+
 /** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */
 export interface Experiment {
   time: number;
@@ -599,6 +622,7 @@ export interface Documents {
   debug: DebugLine;
   event: RobotEvent;
   notice: RobotEvent;
+  parameters: Parameters;
   experiment: Experiment;
   vision: VisionInForce;
 }

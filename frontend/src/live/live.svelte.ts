@@ -5,6 +5,8 @@ import {
   type Alarm,
   type DebugLine,
   type Detection,
+  type Parameter,
+  type Parameters,
   type RobotEvent,
   type Rows,
   type State,
@@ -52,6 +54,8 @@ export class Live {
   parts = $state.raw<readonly Part[]>([]);
   recording = $state.raw<Session | null>(null);
   state = $state.raw<State | null>(null);
+  /** everything that may be tuned; null until the runtime has told of it */
+  parameters = $state.raw<readonly Parameter[] | null>(null);
   detection = $state.raw<Detection | null>(null);
   /** Hz, as detections really come; null while there are fewer than two */
   detectionRate = $state<number | null>(null);
@@ -205,6 +209,7 @@ export class Live {
     this.debug.clear();
     this.events.clear();
     this.state = null;
+    this.parameters = null;
     this.detection = null;
     this.detectionRate = null;
     this.#detected = [];
@@ -245,6 +250,7 @@ export class Live {
 
   #keep(topic: number, documents: { time: number }[], last: { time: number }): void {
     if (topic === OTHER_TOPICS.state) this.state = last as State;
+    else if (topic === OTHER_TOPICS.parameters) this.parameters = (last as Parameters).parameters;
     else if (topic === OTHER_TOPICS.detection) this.#detect(documents, last as Detection);
     else if (topic === OTHER_TOPICS.vision) this.vision = last as VisionInForce;
     else if (topic === OTHER_TOPICS.debug) this.debug.append(documents as DebugLine[]);

@@ -1,0 +1,61 @@
+/** How parameters are found, grouped, checked and compared. */
+import type { ParameterValue } from '../../../api';
+import type { Parameter } from '../../../generated/topics';
+
+export interface Group {
+  readonly name: string;
+  readonly parameters: readonly Parameter[];
+}
+
+export interface Difference {
+  readonly name: string;
+  /** null where that side has no such parameter */
+  readonly left: ParameterValue | null;
+  readonly right: ParameterValue | null;
+}
+
+/** Those with each word in name, meaning or unit; with `changed` only those that are not at their default. */
+export function find(parameters: readonly Parameter[], search: string, changed: boolean): Parameter[] {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  return parameters.filter((one) => {
+    const text = `${one.name} ${one.meaning} ${one.unit}`.toLowerCase();
+    return words.every((word) => text.includes(word)) && (!changed || one.value !== one.default);
+  });
+}
+
+/** By all of the name but its last word, in the order in which they come. */
+export function group(parameters: readonly Parameter[]): Group[] {
+  const groups = new Map<string, Parameter[]>();
+  for (const one of parameters) {
+    const name = one.name.slice(0, one.name.lastIndexOf('.'));
+    groups.set(name, [...(groups.get(name) ?? []), one]);
+  }
+  return [...groups].map(([name, members]) => ({ name, parameters: members }));
+}
+
+/** Why the runtime would refuse this value; null where it would not. */
+export function wrong(parameter: Parameter, value: ParameterValue): string | null {
+  if (parameter.type === 'choice') return parameter.choices.includes(String(value)) ? null : 'No such choice';
+  if (parameter.type === 'switch') return null;
+  if (typeof value !== 'number' || Number.isNaN(value)) return 'A number is wanted';
+  if (parameter.type === 'whole' && !Number.isInteger(value)) return 'A whole number is wanted';
+  const { minimum, maximum } = parameter;
+  return minimum !== null && maximum !== null && value >= minimum && value <= maximum ? null : 'Out of range';
+}
+
+/** As a person reads it; six digits tell more than anybody can set. */
+export function words(value: ParameterValue | null): string {
+  if (value === null) return '–';
+  if (typeof value === 'boolean') return value ? 'on' : 'off';
+  return typeof value === 'number' ? String(Number(value.toPrecision(6))) : value.replaceAll('_', ' ');
+}
+
+/** What is not the same on both sides, in the order of the left one. */
+export function differences(
+  left: Readonly<Record<string, ParameterValue>>,
+  right: Readonly<Record<string, ParameterValue>>,
+): Difference[] {
+  return [...new Set([...Object.keys(left), ...Object.keys(right)])]
+    .map((name) => ({ name, left: left[name] ?? null, right: right[name] ?? null }))
+    .filter((one) => one.left !== one.right);
+}

@@ -1,0 +1,62 @@
+import { expect, test } from 'vitest';
+import type { Parameter } from '../src/generated/topics';
+import { differences, find, group, words, wrong } from '../src/pages/tune/parameters/list';
+
+function parameter(name: string, changes: Partial<Parameter> = {}): Parameter {
+  return {
+    name,
+    type: 'number',
+    value: 3,
+    default: 3,
+    minimum: 0,
+    maximum: 5,
+    unit: 'm',
+    meaning: 'what it is',
+    choices: [],
+    where: 'runtime',
+    while_armed: true,
+    pending: false,
+    ...changes,
+  };
+}
+
+const ALL = [
+  parameter('depth.controller', { type: 'choice', value: 'pid', default: 'bang_bang', choices: ['pid', 'bang_bang'] }),
+  parameter('depth.pid.kp', { meaning: 'command for each metre' }),
+  parameter('depth.pid.ki', { value: 4 }),
+  parameter('fins.frequency', { unit: 'Hz' }),
+];
+
+test('parameters are found by each word of name, meaning and unit', () => {
+  expect(find(ALL, 'PID metre', false).map((one) => one.name)).toEqual(['depth.pid.kp']);
+  expect(find(ALL, 'hz', false).map((one) => one.name)).toEqual(['fins.frequency']);
+  expect(find(ALL, '', true).map((one) => one.name)).toEqual(['depth.controller', 'depth.pid.ki']);
+});
+
+test('they are grouped by all of their name but its end, in their order', () => {
+  expect(group(ALL).map((one) => [one.name, one.parameters.length])).toEqual([
+    ['depth', 1],
+    ['depth.pid', 2],
+    ['fins', 1],
+  ]);
+});
+
+test.each([
+  [{}, 5, null],
+  [{}, 5.1, 'Out of range'],
+  [{}, NaN, 'A number is wanted'],
+  [{ type: 'whole' }, 1.5, 'A whole number is wanted'],
+  [{ type: 'choice', choices: ['a'] }, 'b', 'No such choice'],
+  [{ type: 'switch' }, true, null],
+] as const)('%o as %s: %s', (changes, value, problem) => {
+  expect(wrong(parameter('x', changes as Partial<Parameter>), value)).toBe(problem);
+});
+
+test('what differs is told of both sides, also where one lacks it', () => {
+  expect(differences({ a: 1, b: 'x', old: true }, { a: 2, b: 'x', new: 3 })).toEqual([
+    { name: 'a', left: 1, right: 2 },
+    { name: 'old', left: true, right: null },
+    { name: 'new', left: null, right: 3 },
+  ]);
+  expect([words(0.1 + 0.2), words('bang_bang'), words(true), words(null)]).toEqual(['0.3', 'bang bang', 'on', '–']);
+});

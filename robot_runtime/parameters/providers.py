@@ -1,0 +1,112 @@
+"""The runtime's own parameters, each with its range from where that stands anyway."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+
+from robot_runtime.config import SET_POINT, VISION_RATE
+from robot_runtime.control.controllers import Controller
+from robot_runtime.control.loop import ControlLoop
+from robot_runtime.control.node import ControlNode
+from robot_runtime.control.steering import STEERINGS
+from robot_runtime.parameters.entry import Entry
+from robot_runtime.samples import ParameterValue
+from robot_runtime.vision.node import Vision
+from robot_runtime.vision_settings import VisionSettings
+
+
+def runtime_entries(
+    control: ControlNode, vision: Vision, set_vision: Callable[[VisionSettings], None]
+) -> Iterator[Entry]:
+    """Every parameter of the control node and of the vision node, which `set_vision` has look otherwise."""
+    yield from _set_points(control)
+    yield Entry(
+        name="control.steering",
+        type="choice",
+        get=lambda: control.steering,
+        set=control.steer,
+        choices=lambda: STEERINGS,
+        meaning="where it swims while it holds its depth",
+    )
+    for loop in control.loops.values():
+        yield _controller(control, loop)
+        for controller in loop.controllers.values():
+            yield from _gains(loop.name, controller)
+    yield from _vision(vision, set_vision)
+
+
+def _controller(control: ControlNode, loop: ControlLoop) -> Entry:
+    return Entry(
+        name=f"{loop.name}.controller",
+        type="choice",
+        get=lambda: loop.controller.name,
+        set=lambda name: control.set_loop(loop.name, controller=name),
+        choices=lambda: list(loop.controllers),
+        meaning=f"what steers the {loop.name}",
+    )
+
+
+def _set_points(control: ControlNode) -> Iterator[Entry]:
+    low, high = SET_POINT.minimum, SET_POINT.maximum
+    yield Entry(
+        name="control.set_point",
+        get=lambda: control.set_point_default,
+        set=lambda depth: control.set_points(depth, control.set_point_detected),
+        minimum=low,
+        maximum=high,
+        unit="m",
+        meaning="wanted depth",
+    )
+    yield Entry(
+        name="control.set_point_detected",
+        get=lambda: control.set_point_detected,
+        set=lambda depth: control.set_points(control.set_point_default, depth),
+        minimum=low,
+        maximum=high,
+        unit="m",
+        meaning="wanted depth while the colour is seen",
+    )
+
+
+def _gains(loop: str, controller: Controller) -> Iterator[Entry]:
+    for name, gain in controller.limits.items():
+        yield Entry(
+            name=f"{loop}.{controller.name}.{name}",
+            get=partial(_gain, controller, name),
+            set=partial(_tune, controller, name),
+            minimum=gain.minimum,
+            maximum=gain.maximum,
+            unit=gain.unit,
+            meaning=gain.meaning,
+        )
+
+
+def _gain(controller: Controller, name: str) -> float:
+    return controller.gains[name]
+
+
+def _tune(controller: Controller, name: str, value: float) -> None:
+    controller.tune({name: value})
+
+
+def _vision(vision: Vision, set_vision: Callable[[VisionSettings], None]) -> Iterator[Entry]:
+    def change(name: str, value: ParameterValue) -> None:
+        set_vision(replace(vision.settings, **{name: value}))
+
+    yield Entry(
+        name="vision.rate",
+        get=lambda: vision.settings.rate,
+        set=partial(change, "rate"),
+        minimum=VISION_RATE.minimum,
+        maximum=VISION_RATE.maximum,
+        unit="Hz",
+        meaning="how often the vision node looks",
+    )
+    yield Entry(
+        name="vision.colour",
+        type="choice",
+        get=lambda: vision.settings.colour,
+        set=partial(change, "colour"),
+        choices=lambda: list(vision.settings.colours),
+        meaning="the colour that changes the set point",
+    )

@@ -1,0 +1,96 @@
+"""All parameters of one robot: listed, and changed all or none between two control ticks."""
+
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from robot_runtime.errors import Refused
+from robot_runtime.parameters.entry import Entry
+from robot_runtime.samples import Parameter, ParameterValue
+
+Changed = dict[str, tuple[ParameterValue, ParameterValue]]
+"""By name: the value before and after."""
+
+
+class Registry:
+    """The parameters of these entries. A default is what a parameter is when this is made.
+
+    A control tick holds `between_ticks`, and whoever changes parameters does: so a tick sees all of a change
+    or none. Every method may be called from any thread.
+    """
+
+    def __init__(self, entries: Iterable[Entry], armed: Callable[[], bool]) -> None:
+        self._entries = {entry.name: entry for entry in entries}
+        self._defaults = self.values()
+        self._armed = armed
+        self.between_ticks = threading.RLock()
+
+    def values(self) -> dict[str, ParameterValue]:
+        """What is in force, by name."""
+        return {name: entry.get() for name, entry in self._entries.items()}
+
+    def listed(self) -> list[Parameter]:
+        """Every parameter with its description and its value."""
+        return [
+            Parameter(
+                name=entry.name,
+                type=entry.type,
+                value=entry.get(),
+                default=self._defaults[entry.name],
+                minimum=entry.minimum,
+                maximum=entry.maximum,
+                unit=entry.unit,
+                meaning=entry.meaning,
+                choices=list(entry.choices()),
+                where=entry.where,
+                while_armed=entry.while_armed,
+                pending=entry.pending(),
+            )
+            for entry in self._entries.values()
+        ]
+
+    @contextmanager
+    def changing(self) -> Iterator[Changed]:
+        """Wait for the tick that runs, and keep the next one waiting; filled at the end with what changed."""
+        changed: Changed = {}
+        with self.between_ticks:
+            before = self.values()
+            yield changed
+            after = self.values()
+        changed |= {name: (before[name], after[name]) for name in after if before[name] != after[name]}
+
+    def apply(
+        self, values: Mapping[str, Any], expected: Mapping[str, Any] | None = None, *, partly: bool = False
+    ) -> dict[str, str]:
+        """Set all of these, or where `partly` those that can be; why the others cannot, by name.
+
+        Where something else is in force than `expected`, nothing is. Raises Refused with every reason; then
+        none is set.
+        """
+        problems: dict[str, str] = {}
+        checked: dict[str, ParameterValue] = {}
+        with self.between_ticks:
+            for name, value in (expected or {}).items():
+                if name in self._entries and (now := self._entries[name].get()) != value:
+                    problems[name] = f"{name} is {now} now, and not {value} any more"
+            for name, value in values.items():
+                try:
+                    checked[name] = self._check(name, value)
+                except ValueError as problem:
+                    problems[name] = str(problem)
+            if problems and not partly:
+                raise Refused("; ".join(problems.values()) + ". Nothing was changed.")
+            for name, value in checked.items():
+                if value != self._entries[name].get():
+                    self._entries[name].set(value)
+        return problems
+
+    def _check(self, name: str, value: object) -> ParameterValue:
+        entry = self._entries.get(name)
+        if entry is None:
+            raise ValueError(f"there is no parameter {name!r}")
+        checked = entry.check(value)
+        if checked != entry.get() and not entry.while_armed and self._armed():
+            raise ValueError(f"{name} can only be changed while the robot is disarmed")
+        return checked

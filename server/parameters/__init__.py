@@ -1,0 +1,1 @@
+"""Parameters as people tune them: who changed what, undo, and profiles kept under names."""

@@ -1,0 +1,152 @@
+"""The registry: what is refused, all or none, and never half of a change at a control tick."""
+
+import math
+import threading
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_runtime.errors import Refused
+from robot_runtime.parameters.entry import Entry
+from robot_runtime.parameters.registry import Registry
+
+
+class Box:
+    """Something with parameters."""
+
+    def __init__(self) -> None:
+        self.armed = False
+        self.held: dict[str, Any] = {"a": 1.0, "b": 2.0, "count": 3, "kind": "x", "on": False, "rest": 0.0}
+        self.registry = Registry(
+            [
+                self._number("a"),
+                self._number("b"),
+                self._number("rest", while_armed=False),
+                Entry(name="count", type="whole", minimum=0, maximum=9, meaning="", **self._ways("count")),
+                Entry(name="kind", type="choice", choices=lambda: "xy", meaning="", **self._ways("kind")),
+                Entry(name="on", type="switch", meaning="", **self._ways("on")),
+            ],
+            armed=lambda: self.armed,
+        )
+
+    def _number(self, name: str, *, while_armed: bool = True) -> Entry:
+        ways = self._ways(name)
+        return Entry(name=name, minimum=-5, maximum=5, unit="m", meaning="", while_armed=while_armed, **ways)
+
+    def _ways(self, name: str) -> dict[str, Any]:
+        return {"get": lambda: self.held[name], "set": lambda value: self.held.update({name: value})}
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        ({"a": 5.1}, "a is 5.1; it must lie between -5 and 5 m"),
+        ({"a": math.nan}, "a is nan; it must lie between"),
+        ({"a": math.inf}, "a is inf; it must lie between"),
+        ({"a": 10**400}, "a is too large; it must lie between"),
+        ({"a": "1"}, "a is '1'; it must be a number"),
+        ({"a": True}, "a is True; it must be a number"),
+        ({"a": None}, "a is None; it must be a number"),
+        ({"a": [1]}, "it must be a number"),
+        ({"count": 1.0}, "count is 1.0; it must be a whole number"),
+        ({"kind": "z"}, "kind is 'z'; it must be one of x, y"),
+        ({"kind": 1}, "kind is 1; it must be a text"),
+        ({"on": 1}, "on is 1; it must be true or false"),
+        ({"nothing": 1}, "there is no parameter 'nothing'"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_set(values: dict[str, Any], why: str) -> None:
+    box = Box()
+    before = dict(box.held)
+    with pytest.raises(Refused) as refused:
+        box.registry.apply({"b": -1, **values})
+    assert why in str(refused.value)
+    assert str(refused.value).endswith("Nothing was changed.")
+    assert box.held == before
+
+
+def test_each_type_is_set_as_it_is() -> None:
+    box = Box()
+    box.registry.apply({"a": 4, "count": 5, "kind": "y", "on": True})
+    assert box.registry.values() == box.held
+    assert box.held == {"a": 4.0, "b": 2.0, "count": 5, "kind": "y", "on": True, "rest": 0.0}
+    assert box.held == {"a": 4.0, "b": 2.0, "count": 5, "kind": "y", "on": True, "rest": 0.0}
+    assert type(box.held["a"]) is float
+
+
+ANYTHING = st.one_of(st.floats(), st.integers(), st.text(), st.booleans(), st.none(), st.lists(st.floats()))
+
+
+@given(values=st.dictionaries(st.sampled_from(["a", "b", "count", "kind", "on", "nothing"]), ANYTHING))
+def test_whatever_is_said_all_of_it_is_set_or_nothing(values: dict[str, Any]) -> None:
+    box = Box()
+    before = dict(box.held)
+    try:
+        box.registry.apply(values)
+    except Refused:
+        assert box.held == before
+    else:
+        assert box.held == before | values
+    assert all(-5 <= box.held[name] <= 5 for name in "ab")
+
+
+def test_partly_sets_what_can_be_and_says_why_the_rest_cannot() -> None:
+    box = Box()
+    left_out = box.registry.apply({"a": 4, "b": 9, "gone": 1}, partly=True)
+    assert (box.held["a"], box.held["b"]) == (4.0, 2.0)
+    assert left_out == {
+        "b": "b is 9; it must lie between -5 and 5 m",
+        "gone": "there is no parameter 'gone'",
+    }
+
+
+def test_what_waits_for_the_disarmed_robot_is_refused_while_it_is_armed() -> None:
+    box = Box()
+    box.armed = True
+    with pytest.raises(Refused, match="rest can only be changed while the robot is disarmed"):
+        box.registry.apply({"rest": 1, "a": 4})
+    # What it is already changes nothing.
+    box.registry.apply({"rest": 0, "a": 4})
+    assert box.held["a"] == 4.0
+
+
+def test_where_something_else_is_in_force_than_expected_nothing_is_set() -> None:
+    box = Box()
+    with pytest.raises(Refused, match="and not 3 any more"):
+        box.registry.apply({"a": 2}, expected={"a": 3})
+    box.registry.apply({"a": 2}, expected={"a": 1})
+    assert box.held["a"] == 2.0
+
+
+def test_what_changed_is_told_with_what_it_was() -> None:
+    box = Box()
+    with box.registry.changing() as changed:
+        box.registry.apply({"a": 4, "b": 2.0})
+    assert changed == {"a": (1.0, 4.0)}
+
+
+def test_defaults_are_what_was_there_at_the_start() -> None:
+    box = Box()
+    box.registry.apply({"a": 4})
+    listed = {one.name: one for one in box.registry.listed()}
+    assert (listed["a"].value, listed["a"].default) == (4.0, 1.0)
+
+
+def test_a_change_waits_for_the_tick_that_runs() -> None:
+    box = Box()
+    changed = threading.Event()
+
+    def change() -> None:
+        box.registry.apply({"a": 4, "b": 4})
+        changed.set()
+
+    with box.registry.between_ticks:
+        thread = threading.Thread(target=change)
+        thread.start()
+        seen = [(box.held["a"], box.held["b"]) for _ in range(1000)]
+        assert not changed.is_set()
+    thread.join()
+    assert set(seen) == {(1.0, 2.0)}
+    assert (box.held["a"], box.held["b"]) == (4.0, 4.0)

@@ -1,0 +1,100 @@
+"""The whole robot without its threads: a control tick sees all of a change or none of it."""
+
+import threading
+from typing import Any
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.commands import Commands
+from robot_runtime.config import Config
+from robot_runtime.control.controllers import Pid
+from robot_runtime.core import Core
+from robot_runtime.link.conversation import Conversation
+from robot_runtime.outbox import Outbox
+from robot_runtime.packets import Depth
+
+TICK_SECONDS = 0.1
+"""Real s for which a change has the chance to come into the middle of a tick."""
+
+CHANGES: dict[str, dict[str, Any]] = {
+    "parameters": {"values": {"depth.pid.kp": 9, "depth.pid.ki": 9, "depth.pid.kd": 9}},
+    "controller": {"name": "pid", "gains": {"kp": 9, "ki": 9, "kd": 9}},
+}
+
+
+class Swimmer(Core):
+    """It steers itself at a depth of 1 m, whatever may be wrong."""
+
+    def __init__(self) -> None:
+        clock = SimulatedClock()
+        line = Conversation("none", 250_000, clock, 1, lambda _: None, lambda: None)
+        outbox = Outbox(lambda *_: None, lambda _: False)
+        super().__init__(Config(), clock, "0" * 16, line, outbox, watched=lambda _: False)
+        self.control.choose("pid", {"kp": 1, "ki": 1, "kd": 1})
+        self.supervisor.mode = "automatic"
+        depth = Depth(time=0, depth=1.0, pressure=111_000, temperature=20.0)
+        self.bus.publish_row("depth", clock.now(), depth.to_bytes())
+
+    def look(self) -> None:
+        """Nothing is wrong."""
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_tick_sees_all_of_a_change_or_none(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = Swimmer()
+    command = Commands(robot).do[name]
+    changed = threading.Event()
+
+    def change() -> None:
+        command(CHANGES[name])
+        changed.set()
+
+    thread = threading.Thread(target=change)
+    seen: list[dict[str, float]] = []
+    came_between: list[bool] = []
+
+    def step(self: Pid, *_: Any) -> float:
+        seen.append(dict(self.gains))
+        if not thread.ident:
+            thread.start()
+            came_between.append(changed.wait(TICK_SECONDS))
+            seen.append(dict(self.gains))
+        return 0.0
+
+    monkeypatch.setattr(Pid, "step", step)
+    robot.control_tick()
+    thread.join()
+    robot.control_tick()
+    old, new = (dict.fromkeys(("kp", "ki", "kd"), value) for value in (1.0, 9.0))
+    assert seen == [old, old, new]
+    assert came_between == [False]
+
+
+def test_older_commands_are_seen_at_once_and_told_what_they_changed() -> None:
+    robot = Swimmer()
+    do = Commands(robot).do
+    assert do["set_points"]({"default": 2.0}) == {"changed": {"control.set_point": [0.5, 2.0]}}
+    assert do["vision"]({"rate": 10.0, "colour": "red"}) == {
+        "changed": {"vision.rate": [4.0, 10.0], "vision.colour": ["yellow", "red"]}
+    }
+    assert do["steering"]({"by": "beacons"}) == {"changed": {"control.steering": ["none", "beacons"]}}
+    values = robot.parameters.values()
+    assert (values["control.set_point"], values["vision.rate"], values["control.steering"]) == (
+        2.0,
+        10.0,
+        "beacons",
+    )
+
+
+def test_every_parameter_takes_its_own_default_and_says_what_it_is() -> None:
+    robot = Swimmer()
+    robot.supervisor.mode = "disarmed"
+    for one in robot.parameters.listed():
+        assert one.meaning
+        robot.parameters.apply({one.name: one.default})
+        if one.type == "number":
+            assert one.minimum is not None
+            assert one.maximum is not None
+            robot.parameters.apply({one.name: one.minimum})
+            robot.parameters.apply({one.name: one.maximum})
