@@ -33,6 +33,7 @@ class Swimmer(Core):
         super().__init__(Config(), clock, "0" * 16, line, outbox, watched=lambda _: False)
         self.control.choose("pid", {"kp": 1, "ki": 1, "kd": 1})
         self.supervisor.mode = "automatic"
+        self.control.change_mode("automatic")
         depth = Depth(time=0, depth=1.0, pressure=111_000, temperature=20.0)
         self.bus.publish_row("depth", clock.now(), depth.to_bytes())
 
