@@ -13,7 +13,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test check bench figures control fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -56,6 +56,9 @@ figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in doc
 	@rm -rf build/figures
 	.venv/bin/mucat scenario run figure_14 --data build/figures
 	$(PYTHON) -m bench.figures 1 --data build/figures
+
+control: setup-test host-firmware ## remake the table of docs/control.md: each depth controller on each craft
+	$(PYTHON) -m bench.control
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
 	$(PYTHON) -m server.comm_tests.samples
