@@ -13,7 +13,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -59,6 +59,9 @@ figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in doc
 
 screenshots: setup-test ## every page at both sizes and in both themes, for docs/pages.md
 	$(PYTHON) -m tests.browser.screenshots docs/screenshots
+
+control: setup-test host-firmware ## remake the table of docs/control.md: each depth controller on each craft
+	$(PYTHON) -m bench.control
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
 	$(PYTHON) -m server.comm_tests.samples

@@ -14,6 +14,7 @@ PARTS = (
     "emulator",
     "physics",
     "scenario",
+    "control",
     "camera",
     "vision",
     "codec",

@@ -48,6 +48,8 @@ class ControlLoop:
         self.set_point = 0.0
         self.lent: Loan | None = None
         self.measured: float | None = None
+        self.mean: float | None = None
+        """Of what was measured since the last tick, where that was more than one value."""
         self.output: float | None = None
         """The newest command; None where this loop does not steer."""
         self._is_angle = name != "depth"
@@ -69,6 +71,8 @@ class ControlLoop:
             controller.start()
             self._running, self._counted_on = controller, self.measured
         set_point, measured = self.wanted, self.measured
+        if controller.averages and self.mean is not None:
+            measured = self.mean
         if self._is_angle:
             self._counted_on += wrapped(measured - self._counted_on)
             set_point = self._counted_on + wrapped(set_point - measured)

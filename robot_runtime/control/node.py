@@ -1,6 +1,7 @@
 """The control node: depth, attitude, beacons and vision in, navigation commands out, once a tick."""
 
 import threading
+from collections import deque
 from collections.abc import Callable, Mapping
 from math import nan
 from typing import Any
@@ -22,6 +23,10 @@ VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
 """s after which, at a tick, what the vision node saw no longer counts."""
 STICK_MIDDLE = 0.05
 """Share of its way up to which a stick is in the middle."""
+
+
+_DEPTHS_MAX = 50
+"""Of them come in a second, which is the longest between two ticks."""
 
 
 class ControlNode:
@@ -51,7 +56,8 @@ class ControlNode:
         self._send = send
         self._pilot = pilot
         self._sending = threading.Lock()
-        self._depth: tuple[float, bytes] | None = None
+        self._depths: deque[tuple[float, bytes]] = deque(maxlen=_DEPTHS_MAX)
+        self._depth_taken: float | None = None
         self._imu: bytes | None = None
         self._sight: Detection | None = None
         self._used: Detection | None = None
@@ -230,11 +236,14 @@ class ControlNode:
             angles = turned(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.turning, angles, strict=True):
                 loop.measured = angle
-        if self._depth is None:
-            return None
-        time, record = self._depth
-        self.depth.measured = Depth.from_bytes(record).depth
-        return time
+        depths = []
+        while self._depths:
+            self._depth_taken, record = self._depths.popleft()
+            depths.append(Depth.from_bytes(record).depth)
+        if depths:
+            self.depth.measured = depths[-1]
+        self.depth.mean = sum(depths) / len(depths) if depths else None
+        return self._depth_taken
 
     def _publish(self, now: float, taken: float | None) -> None:
         depth = self.depth.measured
@@ -289,7 +298,7 @@ class ControlNode:
             self.depth.set_point = wanted
 
     def _take_depth(self, _: str, time: float, record: bytes) -> None:
-        self._depth = (time, record)
+        self._depths.append((time, record))
 
     def _take_imu(self, _topic: str, _time: float, record: bytes) -> None:
         self._imu = record

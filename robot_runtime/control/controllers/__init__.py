@@ -3,12 +3,13 @@
 from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.controllers.pid import Pid
+from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.controllers.turning import HeadingPid, PitchPid, RollPid, TurnDeadZone
 
-__all__ = ["CONTROLLERS", "BangBang", "BangBangDeadZone", "Controller", "GainLimits", "Pid"]
+__all__ = ["CONTROLLERS", "BangBang", "BangBangDeadZone", "Controller", "GainLimits", "Pid", "Predictive"]
 
 CONTROLLERS: dict[str, tuple[type[Controller], ...]] = {
-    "depth": (BangBang, BangBangDeadZone, Pid),
+    "depth": (BangBang, BangBangDeadZone, Pid, Predictive),
     "heading": (HeadingPid, TurnDeadZone),
     "pitch": (PitchPid,),
     "roll": (RollPid,),

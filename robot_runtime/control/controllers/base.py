@@ -29,6 +29,8 @@ class Controller(ABC):
     name: ClassVar[str]
     title: ClassVar[str]
     limits: ClassVar[Mapping[str, GainLimits]]
+    averages: ClassVar[bool] = False
+    """Whether it sees the mean of what was measured since the last step, instead of the newest."""
 
     def __init__(self) -> None:
         self.gains = {name: limits.default for name, limits in self.limits.items()}

@@ -19,19 +19,19 @@ def _pid_limits(kp: float, ki: float, kd: float) -> Mapping[str, GainLimits]:
 class HeadingPid(Pid):
     """Nothing but water holds the heading."""
 
-    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(1.5, 0.1, 0.8)
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.3, 0.0, 0.3)
 
 
 class PitchPid(Pid):
-    """Buoyancy rights the hull, so that the integral does most of the work."""
+    """Buoyancy rights the hull, faster than the fins turn round: only the integral is of use."""
 
-    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.5, 1.0, 0.3)
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.6, 0.0)
 
 
 class RollPid(Pid):
     """As `PitchPid`."""
 
-    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.5, 1.0, 0.2)
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)
 
 
 class TurnDeadZone(BangBangDeadZone):
