@@ -219,10 +219,11 @@ class TuningRunRow(SQLModel, table=True):
 
     Kinds: "step", "relay". States: "running", "complete", "stopped", "failed", "interrupted". `settings`
     (what was asked), `parameters` (the controller in force, and what a PID's gains may be) and `figures` are
-    JSON; `curve` is what was measured, in zlib.
+    JSON; `curve` is what was measured, in zlib. A number is never given again: pages hold on to them.
     """
 
     __tablename__ = "tuning_run"
+    __table_args__ = ({"sqlite_autoincrement": True},)
 
     id: int | None = Field(default=None, primary_key=True)
     name: str

@@ -42,6 +42,7 @@ def upgrade() -> None:
         sa.Column("parameters", sa.String, nullable=False),
         sa.Column("figures", sa.String, nullable=False),
         sa.Column("curve", sa.LargeBinary, nullable=False),
+        sqlite_autoincrement=True,
     )
     op.create_table(
         "layout",

@@ -78,4 +78,4 @@ async def rename(request: Request, run: Identifier, wanted: TuningName) -> Tunin
 )
 async def delete(request: Request, run: Identifier) -> None:
     """For good; refused while it runs."""
-    await Assembly.of(request).tuning.runs.delete(run)
+    await Assembly.of(request).tuning.delete(run)

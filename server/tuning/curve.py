@@ -34,8 +34,8 @@ class Curve:
             column.append(number)
 
     def between(self, start: float, end: float, zero: float) -> "Curve":
-        """The ticks of these times, counted from `zero` on."""
-        inside = [place for place, time in enumerate(self.times) if start <= time <= end]
+        """The ticks from `start` until before `end`, counted from `zero` on."""
+        inside = [place for place, time in enumerate(self.times) if start <= time < end]
         times = [round(self.times[place] - zero, DIGITS) for place in inside]
         rest = ([round(column[place], DIGITS) for place in inside] for column in self._columns()[1:])
         return Curve(times, *rest)

@@ -116,6 +116,13 @@ class TuningLab:
         self.announce()
         return run
 
+    async def delete(self, run: int) -> None:
+        """Remove a run for good. Raises NotNow while it is on, UnknownRun, StoreError."""
+        await self.runs.delete(run)
+        if self._last is not None and self._last.id == run:
+            self._last = None
+            self.announce()
+
     async def stop(self) -> None:
         """End what runs; the curve so far is kept. Raises Refused where nothing runs, RuntimeSilent."""
         if self._active is None:

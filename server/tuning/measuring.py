@@ -5,7 +5,7 @@ from typing import Any
 
 from server.tuning.curve import Curve, Gathering
 from server.tuning.figures import measure_response
-from server.tuning.relay import find_ultimate
+from server.tuning.relay import SAME, find_ultimate
 from server.tuning.shapes import RelayStart, RunState, StepStart
 
 LEAD = 3.0
@@ -44,7 +44,8 @@ def _relay(
     ended: float,
     problem: str,
 ) -> tuple[dict[str, Any], Curve, str]:
-    curve = gathering.curve.between(began, ended, began)
+    # The relay ends in its last tick, a step before the tick in which the set point is the usual one again.
+    curve = gathering.curve.between(began, ended + SAME, began)
     if problem or "running" not in starts:
         return {}, curve, problem
     try:

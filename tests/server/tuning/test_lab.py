@@ -139,7 +139,7 @@ def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
         assert kept["settings"] == STEP
         assert kept["name"] == "PID, 0.4 m to 0.7 m"
         assert kept["curve"]["times"][0] == pytest.approx(-3.0)
-        assert kept["curve"]["times"][-1] == pytest.approx(6.0)
+        assert kept["curve"]["times"][-1] == pytest.approx(5.9)
         assert kept["figures"]["rise_time"]["value"] == pytest.approx(1.2)
         assert kept["figures"]["overshoot"]["value"] == pytest.approx(0.0, abs=1e-3)
         assert kept["figures"]["effort"]["value"] == pytest.approx(50.0)

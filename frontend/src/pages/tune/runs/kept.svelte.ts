@@ -47,13 +47,14 @@ export class KeptRuns {
 
   /** Lay a run over those that are shown. */
   async show(id: number): Promise<void> {
-    if (this.chosen.includes(id)) return;
+    if (this.chosen.includes(id) || !this.#has(id)) return;
     this.chosen = [...this.chosen, id].slice(-MOST_SHOWN);
     await this.#fetch(id);
   }
 
   /** Show this one alone. */
   async only(id: number): Promise<void> {
+    if (!this.#has(id)) return;
     this.chosen = [id];
     await this.#fetch(id);
   }
@@ -75,6 +76,10 @@ export class KeptRuns {
     if (problem === null) this.hide(id);
     await this.load();
     return problem;
+  }
+
+  #has(id: number): boolean {
+    return this.runs.some((run) => run.id === id);
   }
 
   async #fetch(id: number): Promise<void> {
