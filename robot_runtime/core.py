@@ -181,7 +181,7 @@ class Core:
     def take_pilot(self, payload: bytes) -> None:
         """Do at once what the pilot's sticks say, without waiting for the next tick."""
         if self.supervisor.pilot.take(payload):
-            self.control.drive()
+            self._drive()
 
     def pilot_tick(self) -> float:
         """Let the fins rest as soon as the pilot has fallen silent; when to look again (s, steady clock)."""
@@ -190,7 +190,7 @@ class Core:
             return inf
         if pilot.quiet:
             if self._piloted:
-                self.control.drive()
+                self._drive()
             self._piloted = False
             return now + PILOT_LOOK
         self._piloted = True
@@ -283,6 +283,13 @@ class Core:
                 "frames": [asdict(dissect(frame)) for frame in fault.frames],
             },
         }
+
+    def _drive(self) -> None:
+        try:
+            self.control.drive()
+        except Exception:
+            log.exception("the pilot's input could not be sent")
+            self.supervisor.fail("control_failed")
 
     def _configure(self) -> None:
         settings = self.config.control

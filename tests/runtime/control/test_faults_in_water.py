@@ -183,6 +183,21 @@ def test_the_pilot_s_input_goes_out_when_it_comes(flight: Flight) -> None:
     assert (flight.sent[-1][0], flight.sent[-1][1].z) == (flight.now, 1.0)
 
 
+def test_a_pilot_s_input_that_cannot_be_sent_stops_the_robot(
+    flight: Flight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> None:
+        raise RuntimeError("out of order")
+
+    flight.sticks = [0.0] * 6
+    flight.arm("manual")
+    flight.run(0.43)
+    monkeypatch.setattr(flight.robot.control, "_send", fail)
+    flight.push([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], sequence=1_000)
+    assert [alarm.fault for alarm in flight.supervisor.alarms] == ["control_failed"]
+    assert flight.supervisor.mode == "failsafe"
+
+
 def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: Flight) -> None:
     flight.sticks = [0.0] * 6
     flight.arm("manual")
