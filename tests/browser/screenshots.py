@@ -22,6 +22,11 @@ SIZES = {"desktop": (DESKTOP, 1.0), "phone": (PHONE, 1.5)}
 """The window, and dots for each of its pixels."""
 QUALITY = 50
 """Of the JPEG: letters stay sharp, and a picture takes less than 90 kB."""
+SHOWN = """() => [...document.images].every((one) => {
+    const { left, top } = one.getBoundingClientRect();
+    return one.complete || left > innerWidth || top > innerHeight;
+})"""
+"""Whether all pictures in the window are there; others are fetched when they come into it."""
 CONTROLLERS = ("bang_bang", "pid")
 DEPTH = 0.5
 
@@ -49,6 +54,7 @@ def prepare(stack: Stack, watcher: Page) -> None:
         dive(stack, watcher, name, controller)
     stack.api.post("/sessions", json={"name": "Hovering", "note": ""}).raise_for_status()
     wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    stack.api.put("/robot/vision", json={"colour": "green"}).raise_for_status()
     stack.api.put("/robot/card", json={"colour": "green"}).raise_for_status()
     wait_for_depth(watcher, DEPTH - 0.05, 1.0)
 
@@ -81,7 +87,7 @@ def draw(page: Page) -> None:
     """Wait until pictures and charts are there."""
     settle(page)
     expect(page.get_by_text(re.compile("being drawn"))).to_have_count(0)
-    page.wait_for_function("[...document.images].every(one => one.complete)")
+    page.wait_for_function(SHOWN)
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
