@@ -26,7 +26,6 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
             whole = {"type": "number", "default": 0, "minimum": 0, "maximum": 9, "unit": "", "meaning": ""}
             whole |= {"choices": [], "where": "runtime", "while_armed": True, "pending": False}
             served.runtime.parameters["parameters"] = [whole | one for one in LISTED]
-            await served.take_control()
             await scenario(served)
 
     asyncio.run(run())

@@ -1,0 +1,69 @@
+"""Parameters on the page: a gain changed while the robot swims, undone, kept in a profile and restored."""
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.people import somebody
+from tests.stack import Stack
+
+KP = "depth.pid.kp"
+AMPLITUDE = "fins.amplitude"
+
+
+def value(stack: Stack, name: str) -> object:
+    listed = stack.api.get("/parameters").raise_for_status().json()["parameters"]
+    return next(one["value"] for one in listed if one["name"] == name)
+
+
+def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: Stack) -> None:
+    page = any_page
+    page.goto(f"{stack.url}/#/tune/parameters")
+    page.get_by_label("Find parameters").fill("pid metre")
+    gain = page.get_by_label(KP, exact=True)
+    before = str(value(stack, KP)).removesuffix(".0")
+    expect(gain).to_have_value(before)
+
+    gain.fill("51")
+    expect(page.get_by_role("button", name="Apply 1 change")).to_be_disabled()
+    gain.fill("4.5")
+    gain.press("Enter")
+    changes = page.get_by_role("region", name="Changes")
+    expect(changes.get_by_text(f"{before} → 4.5").first).to_be_visible()
+    assert value(stack, KP) == 4.5
+
+    changes.get_by_role("button", name="Undo").click()
+    expect(gain).to_have_value(before)
+    expect(changes.get_by_text("undone by Chromium").first).to_be_visible()
+
+    # What the chip keeps is changed the same way, and confirmed by the chip.
+    page.get_by_label("Find parameters").fill("")
+    page.get_by_label(AMPLITUDE, exact=True).fill("0.9")
+    page.get_by_role("button", name="Apply 1 change").click()
+    row = page.get_by_role("listitem").filter(has=page.get_by_label(AMPLITUDE, exact=True))
+    expect(row.get_by_role("button", name="Default 1.6")).to_be_visible()
+    name = f"small strokes {page.viewport_size and page.viewport_size['width']}"
+    page.get_by_label("Save what is in force as").fill(name)
+    page.get_by_role("button", name="Save", exact=True).click()
+    restore = page.get_by_role("button", name=f"Restore {name}", exact=True)
+    expect(restore).to_be_visible()
+
+    row.get_by_role("button", name="Default 1.6").click()
+    page.get_by_role("button", name="Apply 1 change").click()
+    expect(page.get_by_label(AMPLITUDE, exact=True)).to_have_value("1.6")
+    page.get_by_text("Compare", exact=True).click()
+    page.get_by_label("Compare this profile").select_option(label=name)
+    difference = page.get_by_role("row").filter(has_text=AMPLITUDE)
+    expect(difference).to_have_text(f"{AMPLITUDE}0.91.6")
+
+    restore.click()
+    expect(page.get_by_text("1 parameter was changed")).to_be_visible()
+    expect(page.get_by_label(AMPLITUDE, exact=True)).to_have_value("0.9")
+    assert value(stack, AMPLITUDE) == 0.9
+    stack.api.patch("/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
+
+
+def test_a_viewer_sees_them_and_is_told_why_they_are_fixed(browser: Browser, stack: Stack) -> None:
+    with somebody(browser, stack, "viewer") as page:
+        page.goto(f"{stack.url}/#/tune/parameters")
+        expect(page.get_by_label(KP, exact=True)).to_be_disabled()
+        expect(page.get_by_role("note")).to_contain_text("Viewers may watch")
+        expect(page.get_by_role("button", name="Undo")).to_be_disabled()
