@@ -23,7 +23,7 @@ run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 
 	@exec .venv/bin/mucat run --port $(PORT)
 
 test: setup-test check host-firmware ## every test, after every check
-	$(PYTHON) -m pytest
+	$(PYTHON) -m pytest --numprocesses 2 --dist loadgroup
 	cd frontend && npm test --silent
 
 check: setup-test ## style, types, imports, and whether generated files are current

@@ -306,7 +306,7 @@ def _state(start: float, since: float) -> State:
                     for name, limits in one.limits.items()
                 ],
             )
-            for one in CONTROLLERS
+            for one in CONTROLLERS["depth"]
         ],
         set_point=set_point,
         set_point_default=SHALLOW,

@@ -1,12 +1,13 @@
-"""From the chip to the page: how old a depth is when a real browser has it and draws."""
+"""Between chip and browser: how old a depth is when it is drawn, and how soon a key moves a fin."""
 
+import random
 import tempfile
 import time
 from pathlib import Path
 from statistics import median, quantiles
 from typing import Any
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Page, expect, sync_playwright
 
 from robot_runtime.simulation.board import Board
 from robot_runtime.topics import BY_NAME
@@ -15,6 +16,12 @@ from tests.stack import Stack
 
 _SECONDS = 20
 _ROWS_PER_SECOND = 50
+_PRESSES = 60
+_KEYS = ("w", "s", "r", "f", "a", "d")
+_REST = 0.1
+"""s without any drive, before a key is pressed."""
+_LATE = 5.0
+"""s after which a key has moved nothing."""
 
 # Runs before the page's own code: notes the board's stamp of each depth, and when it has been drawn.
 _WATCH = """
@@ -45,8 +52,19 @@ _WATCH = """
 """
 
 
+# When keys went down, by the computer's clock.
+_KEYS_DOWN = """
+() => {
+  globalThis.keys = [];
+  addEventListener('keydown', ({ timeStamp }) => {
+    globalThis.keys.push((performance.timeOrigin + timeStamp) / 1000);
+  }, true);
+}
+"""
+
+
 def measure() -> dict[str, float]:
-    """ms from the moment that the chip stamped a depth until the page has it in a drawn frame."""
+    """ms from the chip's stamp of a depth to the drawn frame, and from a key to the H-bridges' commands."""
     topic = {"id": BY_NAME["depth"].id, "bytes": BY_NAME["depth"].row_bytes}
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -66,6 +84,7 @@ def measure() -> dict[str, float]:
             page.wait_for_function(f"() => globalThis.seen.length > {wanted}", timeout=2000 * _SECONDS)
             seen: list[list[Any]] = page.evaluate("() => globalThis.seen")
             after = _started(board)
+            keys = _press_keys(page, board)
         browser.close()
     # The board's clock falls back where the computer is too slow for it; half of that is the best guess.
     started = (before + after) / 2
@@ -74,7 +93,49 @@ def measure() -> dict[str, float]:
         "latency.uart_to_page_ms_p50": median(ages),
         "latency.uart_to_page_ms_p95": quantiles(ages, n=20)[-1],
         "latency.board_fell_back_ms": (after - before) * 1000,
+        "latency.key_to_fin_ms_p50": median(keys),
+        "latency.key_to_fin_ms_p95": quantiles(keys, n=20)[-1],
     }
+
+
+def _press_keys(page: Page, board: Board) -> list[float]:
+    """ms from each press, at a random moment of the control loop's and the chip's ticks, to a fin's drive."""
+    chance = random.Random(1)
+    page.get_by_role("button", name="Manual", exact=True).click()
+    page.get_by_role("button", name="Hold to arm").hover()
+    page.mouse.down()
+    expect(page.get_by_role("region", name="Drive")).to_be_visible(timeout=10_000)
+    page.mouse.up()
+    page.evaluate(_KEYS_DOWN)
+    found = []
+    for press in range(_PRESSES):
+        _wait_for_rest(board)
+        time.sleep(chance.uniform(0.0, 0.1))
+        key = _KEYS[press % len(_KEYS)]
+        page.keyboard.down(key)
+        moved = _wait_for_drive(board)
+        page.keyboard.up(key)
+        found.append((moved - page.evaluate("() => globalThis.keys.at(-1)")) * 1000)
+    page.keyboard.press("Escape")
+    return found
+
+
+def _wait_for_rest(board: Board) -> None:
+    rested = time.monotonic()
+    while time.monotonic() < rested + _REST:
+        if any(board.fins().drives):
+            rested = time.monotonic()
+        time.sleep(0.002)
+
+
+def _wait_for_drive(board: Board) -> float:
+    """When it was, s since 1970."""
+    end = time.monotonic() + _LATE
+    while not any(board.fins().drives):
+        if time.monotonic() > end:
+            raise TimeoutError("a key moved no fin")
+        time.sleep(0.0005)
+    return time.time()
 
 
 def _started(board: Board) -> float:

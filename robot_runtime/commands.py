@@ -23,6 +23,7 @@ class Commands:
             "acknowledge": self._acknowledge,
             "lease": self._lease,
             "controller": self._controller,
+            "loop": self._loop,
             "set_points": self._set_points,
             "steering": self._steering,
             "card": self._card,
@@ -62,10 +63,21 @@ class Commands:
         self._robot.supervisor.pilot.change_lease(epoch)
 
     def _controller(self, question: Mapping[str, Any]) -> None:
-        gains = question.get("gains") or {}
-        if not isinstance(gains, dict):
-            raise Refused("gains must be numbers by name")
-        self._robot.control.choose(_text(question, "name"), gains)
+        self._robot.control.choose(_text(question, "name"), _gains(question))
+
+    def _loop(self, question: Mapping[str, Any]) -> None:
+        name, on = _text(question, "name"), question.get("on")
+        if on is not None and not isinstance(on, bool):
+            raise Refused(f"on is {on!r}; it must be true or false")
+        if on and name == "depth" and (reasons := self._robot.supervisor.watch.depth_refusals()):
+            raise Refused(" ".join(reasons))
+        self._robot.control.set_loop(
+            name,
+            on=on,
+            set_point=None if question.get("set_point") is None else _number(question, "set_point", 0.0),
+            controller=None if question.get("controller") is None else _text(question, "controller"),
+            gains=_gains(question),
+        )
 
     def _set_points(self, question: Mapping[str, Any]) -> None:
         control = self._robot.control
@@ -101,6 +113,13 @@ def _mode(question: Mapping[str, Any]) -> Mode:
     if mode not in modes:
         raise Refused(f"mode is {mode!r}; it must be automatic or manual")
     return modes[mode]
+
+
+def _gains(question: Mapping[str, Any]) -> dict[str, Any]:
+    gains = question.get("gains") or {}
+    if not isinstance(gains, dict):
+        raise Refused("gains must be numbers by name")
+    return gains
 
 
 def _text(question: Mapping[str, Any], name: str) -> str:

@@ -8,6 +8,7 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import asdict
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ from robot_runtime.clock import Clock
 from robot_runtime.config import Config
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
+from robot_runtime.control.pilot import PILOT_LOOK
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.conversation import Conversation
 from robot_runtime.link.dissection import dissect
@@ -25,7 +28,17 @@ from robot_runtime.link.session import Message
 from robot_runtime.messages import Messages
 from robot_runtime.outbox import Outbox
 from robot_runtime.packets import Beacon, Debug, Depth, Imu, Motor, Navigation, Status
-from robot_runtime.samples import ControllerChoice, DebugLine, Detection, Event, Gain, Pace, Severity, State
+from robot_runtime.samples import (
+    ControllerChoice,
+    DebugLine,
+    Detection,
+    Event,
+    Gain,
+    Loop,
+    Pace,
+    Severity,
+    State,
+)
 from robot_runtime.topics import TOPICS, Kind
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.node import Vision
@@ -52,7 +65,8 @@ class Core:
     `loop` stands for sensors that the board has not. With `heartbeat` a server must be heard so often (s).
 
     `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
-    That, `control_tick`, `publish_tick` and `vision.tick` may each have a thread of their own.
+    That, `take_pilot`, `publish_tick` and `vision.tick` may each have a thread of their own, and so may
+    `control_tick` with `pilot_tick`.
     """
 
     def __init__(
@@ -75,13 +89,16 @@ class Core:
         self.outbox = outbox
         self._run = run
         self._state_wanted = threading.Event()
+        self._piloted = False
         self.line = line
         self._paces = [
             Pace(topic=_ROW_OF[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
-        self.supervisor = Supervisor(clock, self.line, self.tell, loop, heartbeat)
-        self.control = ControlNode(self.bus, clock, self._navigate)
+        self.supervisor = Supervisor(
+            clock, self.line, self.tell, loop, heartbeat, lambda mode: self.control.change_mode(mode)
+        )
+        self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
         self.vision = Vision(
             config.vision,
             clock,
@@ -114,15 +131,32 @@ class Core:
         """Decide and command once; to be called at the control rate."""
         self.look()
         try:
-            mode = self.supervisor.mode
-            self.control.tick(mode == "automatic")
-            if mode == "manual":
-                self.control.command(self.supervisor.pilot.command())
-            elif mode == "test":
+            if self.control.depth.on and (reasons := self.supervisor.watch.depth_refusals()):
+                self.control.let_go(self.control.depth, reasons[0])
+            self.control.tick()
+            if self.supervisor.mode == "test":
                 self._check_fins()
         except Exception:
             log.exception("a control tick failed")
             self.supervisor.fail("control_failed")
+
+    def take_pilot(self, payload: bytes) -> None:
+        """Do at once what the pilot's sticks say, without waiting for the next tick."""
+        if self.supervisor.pilot.take(payload):
+            self.control.drive()
+
+    def pilot_tick(self) -> float:
+        """Let the fins rest as soon as the pilot has fallen silent; when to look again (s, steady clock)."""
+        pilot, now = self.supervisor.pilot, self.clock.now()
+        if self.supervisor.mode != "manual":
+            return inf
+        if pilot.quiet:
+            if self._piloted:
+                self.control.drive()
+            self._piloted = False
+            return now + PILOT_LOOK
+        self._piloted = True
+        return min(now + PILOT_LOOK, pilot.until)
 
     def look(self) -> None:
         """Look for faults; to be called every `PUBLISH_EVERY` at least."""
@@ -149,6 +183,7 @@ class Core:
     def state(self) -> State:
         """The robot as a whole, now."""
         board = self.line.board
+        loops = [_describe(loop) for loop in self.control.loops.values()]
         return State(
             time=self.clock.now(),
             run=self._run,
@@ -163,9 +198,9 @@ class Core:
             baud=self.line.baud,
             paces=self._paces,
             epoch=board.epoch if board and self.line.connected else None,
-            controller=self.control.controller.name,
-            controllers=[_choice(one) for one in self.control.controllers.values()],
-            set_point=self.control.set_point,
+            controller=loops[0].controller,
+            controllers=loops[0].controllers,
+            set_point=loops[0].set_point,
             set_point_default=self.control.set_point_default,
             set_point_detected=self.control.set_point_detected,
             steering=self.control.steering,
@@ -175,6 +210,7 @@ class Core:
             colours=list(self.vision.colours),
             card=self.vision.card,
             camera=self.vision.text,
+            loops=loops,
             pilot_dropped=self.supervisor.pilot.dropped.total(),
         )
 
@@ -263,6 +299,16 @@ class Core:
     def _take_detection(self, detection: Detection) -> None:
         self.supervisor.watch.see_picture(detection.taken)
         self.bus.publish_document("detection", detection)
+
+
+def _describe(loop: ControlLoop) -> Loop:
+    return Loop(
+        name=loop.name,
+        on=loop.on,
+        set_point=loop.wanted,
+        controller=loop.controller.name,
+        controllers=[_choice(one) for one in loop.controllers.values()],
+    )
 
 
 def _choice(controller: Controller) -> ControllerChoice:

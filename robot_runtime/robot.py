@@ -54,9 +54,9 @@ class Robot(Core):
             messages=messages,
             heartbeat=heartbeat,
         )
-        watch, pilot = self.supervisor.watch, self.supervisor.pilot
+        watch = self.supervisor.watch
         messages.subscribe(HEARTBEAT, lambda *_: watch.see_server())
-        messages.subscribe(PILOT, lambda _, payload: pilot.take(payload))
+        messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def answer(self) -> None:
         """From now on do what the other processes ask, and answer their queries, which change nothing."""
@@ -90,7 +90,9 @@ class Robot(Core):
     def _control_loop(self) -> None:
         period = 1 / self.config.control.rate
         due = self.clock.now() + period
-        while not self._ending.wait(max(due - self.clock.now(), 0.0)):
+        while not self._ending.wait(max(min(due, self.pilot_tick()) - self.clock.now(), 0.0)):
+            if self.clock.now() < due:
+                continue
             self.control_tick()
             # A tick that came late is not made up for.
             due = max(due + period, self.clock.now())

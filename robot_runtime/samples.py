@@ -21,6 +21,24 @@ class Control(Record):
     latency: Annotated[float, Wire("f", unit="s", meaning="age of the depth when it was used")]
 
 
+_TURNS = "heading, pitch, roll"
+
+
+@record()
+class Turning(Record):
+    """The same tick, for the angles: right, nose up and right side down count as more."""
+
+    set_point: Annotated[
+        tuple[float, float, float],
+        Wire("f", unit="rad", count=3, meaning=f"wanted {_TURNS}; NaN where it is not steered"),
+    ]
+    measured: Annotated[tuple[float, float, float], Wire("f", unit="rad", count=3, meaning=_TURNS)]
+    output: Annotated[
+        tuple[float, float, float],
+        Wire("f", count=3, meaning="commands yaw, pitch, roll, -1 to 1; NaN where it is not steered"),
+    ]
+
+
 @record()
 class Truth(Record):
     """What the simulated body really does; north, east, down and forward, right, down."""
@@ -105,6 +123,19 @@ class ControllerChoice:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """One thing that the robot steers by: depth (m), heading, pitch or roll (rad)."""
+
+    name: str
+    on: bool = field(
+        metadata={"meaning": "whether it is steered, in manual held; in automatic the depth always is"}
+    )
+    set_point: float
+    controller: str
+    controllers: list[ControllerChoice]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Pace:
     """How often the board sends a topic on this line: s between two samples."""
 
@@ -162,6 +193,7 @@ class State(Document):
     colours: list[str]
     card: str | None
     camera: str
+    loops: list[Loop] = field(default_factory=list)
     pilot_dropped: int = field(
         default=0,
         metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},

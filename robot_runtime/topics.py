@@ -62,6 +62,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic(7, "control", Kind.ROWS, samples.Control, "ticks of the control node"),
     Topic(8, "link", Kind.ROWS, LinkStatistics, "the serial line"),
     Topic(9, "truth", Kind.ROWS, samples.Truth, "the simulated body"),
+    Topic(10, "turning", Kind.ROWS, samples.Turning, "the same ticks, for heading, pitch and roll"),
     Topic(16, "state", Kind.DOCUMENTS, samples.State, "the robot as a whole"),
     Topic(17, "detection", Kind.DOCUMENTS, samples.Detection, "what the vision node found"),
     Topic(18, "debug", Kind.DOCUMENTS, samples.DebugLine, "lines of text from the firmware"),

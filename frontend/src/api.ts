@@ -100,6 +100,7 @@ export const api = {
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
   makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
   controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
+  changeLoop: (name: string, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
   setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
   steering: (by: Course) => order('PUT', '/robot/steering', { by }),
   card: (colour: string | null) => order('PUT', '/robot/card', { colour }),

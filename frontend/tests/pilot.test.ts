@@ -8,16 +8,19 @@ let now: number;
 let page: EventTarget;
 let pilot: Pilot;
 let end: () => void;
+let kept: Set<number>;
 
 beforeEach(() => {
   vi.useFakeTimers();
   said = [];
   lease = 5;
   now = 100;
+  kept = new Set();
   page = new EventTarget();
   vi.stubGlobal('window', new EventTarget());
   vi.stubGlobal('document', page);
-  pilot = new Pilot({ say: (one) => said.push(one), now: () => now, lease: () => lease });
+  pilot = new Pilot({ say: (one) => said.push(one), now: () => now, lease: () => lease, keeps: (axis) => kept.has(axis) });
+  pilot.handling.setSpeed(9);
   end = pilot.start();
 });
 
@@ -37,14 +40,35 @@ describe('Pilot', () => {
     expect(last()).toEqual(NEUTRAL);
   });
 
-  it('says twenty times a second what is held, and neutral at the first tick after it', () => {
+  it('says at once that something is held or let go, and twenty times a second what is held', () => {
     pilot.hold('w', forwards);
+    expect(last()?.[X]).toBeGreaterThan(0);
     vi.advanceTimersByTime(1000);
-    expect(said).toHaveLength(20);
+    expect(said).toHaveLength(21);
     expect(last()?.[X]).toBe(1);
     pilot.hold('w', []);
+    expect(said).toHaveLength(22);
+    expect(last()).toEqual(NEUTRAL);
+  });
+
+  it('goes as far as the speed step lets it, and adds the trim while something is held', () => {
+    pilot.handling.setSpeed(3);
+    pilot.handling.setTrim(YAW, 0.05);
+    vi.advanceTimersByTime(200);
+    expect(last()).toEqual(NEUTRAL);
+    pilot.hold('w', forwards);
+    vi.advanceTimersByTime(1000);
+    expect(last()?.[X]).toBeCloseTo(1 / 3, 9);
+    expect(last()?.[YAW]).toBeCloseTo(0.06, 9);
+    kept.add(YAW);
     vi.advanceTimersByTime(50);
-    expect(said).toHaveLength(21);
+    expect(last()?.[YAW]).toBe(0);
+    pilot.hold('d', [{ axis: YAW, amount: 1 }]);
+    vi.advanceTimersByTime(1000);
+    expect(last()?.[YAW]).toBeCloseTo(1 / 3 + 0.06, 9);
+    pilot.handling.resetTrim();
+    pilot.hold('d', []);
+    pilot.hold('w', []);
     expect(last()).toEqual(NEUTRAL);
   });
 

@@ -1,72 +1,138 @@
-"""The control node: depth, beacons and vision in, navigation commands out, once a tick."""
+"""The control node: depth, attitude, beacons and vision in, navigation commands out, once a tick."""
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Mapping
+from math import nan
+from typing import Any
 
 from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
-from robot_runtime.config import SET_POINT
-from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.attitude import turned
 from robot_runtime.control.faults import BY_NAME, LOOK
+from robot_runtime.control.loop import ControlLoop
+from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Beacon, Depth, Navigation
-from robot_runtime.samples import Control, Detection, Document, Event, Steering
+from robot_runtime.packets import Beacon, Depth, Imu, Navigation
+from robot_runtime.samples import Control, Detection, Document, Event, Mode, Steering, Turning
 
 BEACON_STALE = 0.5
 """s after which what the beacon detectors saw no longer counts."""
 VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
 """s after which, at a tick, what the vision node saw no longer counts."""
+STICK_MIDDLE = 0.05
+"""Share of its way up to which a stick is in the middle."""
 
 
 class ControlNode:
-    """Holds the depth: the default set point, or another while the wanted colour is seen.
+    """Steers the loops: all that are wanted in automatic, those that hold while the pilot drives in manual.
 
-    Meanwhile it may steer towards a light beacon.
+    In automatic the depth is always held: at the default set point, or another while the wanted colour is
+    seen. Meanwhile it may swim towards a light beacon.
 
     `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread, since each change is one assignment that the next tick picks up.
+    thread. Whatever is changed under `changing` is changed between two ticks.
     """
 
-    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None]) -> None:
-        self.controllers = {cls.name: cls() for cls in CONTROLLERS}
-        self.controller: Controller = self.controllers[CONTROLLERS[0].name]
+    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None], pilot: Pilot) -> None:
+        self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
+        self.turning = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
+        self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.turning)}
+        self.changing = threading.RLock()
+        self.mode: Mode = "disarmed"
         self.set_point_default = 0.5
         self.set_point_detected = 1.0
         self.steering: Steering = "none"
         self.colour = ""
-        self.set_point = self.set_point_default
+        self.depth.set_point = self.set_point_default
+        self._wanted = self.set_point_default
         self._bus = bus
         self._clock = clock
         self._send = send
-        self._depth: tuple[float, float] | None = None
+        self._pilot = pilot
+        self._sending = threading.Lock()
+        self._depth: tuple[float, bytes] | None = None
+        self._imu: bytes | None = None
         self._seen = float("-inf")
         self._ticked: float | None = None
         self._towards_light = BeaconSteering()
+        self._course = (0.0, 0.0)
         self._lights = (float("-inf"), False, False)
         bus.on_row("depth", self._take_depth)
+        bus.on_row("imu", self._take_imu)
         bus.on_row("beacon", self._take_beacon)
         bus.on_document("detection", self._take_detection)
 
-    def choose(self, name: str, gains: dict[str, float] | None = None) -> None:
-        """Take another controller, or other gains. Raises Refused where either is unknown or out of range."""
-        controller = self.controllers.get(name)
-        if controller is None:
-            raise Refused(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")
-        try:
-            controller.tune(gains or {})
-        except ValueError as problem:
-            raise Refused(str(problem)) from problem
-        if controller is not self.controller:
-            controller.start()
-            self.controller = controller
-            self._tell("controller", f"Controller: {controller.title}.")
+    def change_mode(self, mode: Mode) -> None:
+        """From now on the robot is in this mode. Waits for nothing: a STOP comes this way, too."""
+        was, self.mode = self.mode, mode
+        for loop in self.loops.values():
+            if "manual" in (was, mode):
+                loop.on = False
+            loop.lent = None
+
+    def choose(self, name: str, gains: Mapping[str, Any] | None = None) -> None:
+        """Take another depth controller, or other gains. Raises Refused where either is unknown or wrong."""
+        self.set_loop("depth", controller=name, gains=gains)
+
+    def set_loop(
+        self,
+        name: str,
+        *,
+        on: bool | None = None,
+        set_point: float | None = None,
+        controller: str | None = None,
+        gains: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Change a loop; all of it, or nothing where that raises Refused. `gains` are the named controller's.
+
+        A hold that is switched on in manual holds what is measured. The depth's set point is its hold's
+        where it is held in manual, the default one otherwise.
+        """
+        with self.changing:
+            loop = self._find(name)
+            chosen = loop.controller if controller is None else loop.find(controller)
+            try:
+                chosen.check(gains or {})
+            except ValueError as problem:
+                raise Refused(str(problem)) from problem
+            if set_point is not None:
+                loop.check(set_point)
+            if on:
+                self._check_on(loop)
+            chosen.tune(gains or {})
+            if chosen is not loop.controller:
+                loop.controller = chosen
+                whose = "Controller" if loop is self.depth else f"{loop.title} controller"
+                self._tell("controller", f"{whose}: {chosen.title}.")
+            if on and not loop.on and self.mode == "manual":
+                loop.follow()
+            holds_depth = self.mode == "manual" and (loop.on if on is None else on)
+            if set_point is not None and loop is self.depth and not holds_depth:
+                self.set_points(set_point, self.set_point_detected)
+            elif set_point is not None:
+                loop.set_point = set_point
+            if on is not None and on != loop.on:
+                loop.on = on
+                words = f"held at {loop.words(loop.set_point)}" if on else "no longer held"
+                self._tell("loop", f"{loop.title} {words}.")
+
+    def let_go(self, loop: ControlLoop, why: str) -> None:
+        """Hold no more what cannot be held."""
+        if loop.on:
+            loop.on = False
+            event = Event(
+                time=self._clock.now(),
+                kind="loop",
+                severity="caution",
+                text=f"{loop.title} no longer held. {why}",
+            )
+            self._bus.publish_document("event", event)
 
     def set_points(self, default: float, detected: float) -> None:
         """Set both wanted depths, m. Raises Refused where one is not between 0 and 10."""
-        low, high = SET_POINT.minimum, SET_POINT.maximum
         for depth in (default, detected):
-            if not low <= depth <= high:
-                raise Refused(f"a set point of {depth} m is not between {low:g} and {high:g} m")
+            self.depth.check(depth)
         self.set_point_default, self.set_point_detected = default, detected
 
     def steer(self, by: str) -> None:
@@ -77,48 +143,147 @@ class ControlNode:
                 return
         raise Refused(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
-    def tick(self, armed: bool) -> None:
-        """Decide, and send the command where the robot is armed and steers itself."""
-        now = self._clock.now()
-        self._choose_set_point(now)
-        if self._depth is None:
-            return
-        time, depth = self._depth
-        if armed and self._ticked is None:
-            self.controller.start()
-            self._towards_light.start()
-        seconds = now - (self._ticked or now)
-        output = self.controller.step(self.set_point, depth, seconds) if armed else 0.0
-        self._ticked = now if armed else None
-        if armed:
-            surge, yaw = self._course(now, seconds)
-            self.command(Navigation(x=surge, y=0.0, z=output, roll=0.0, pitch=0.0, yaw=yaw))
-        error = self.set_point - depth
-        tick = Control(set_point=self.set_point, depth=depth, error=error, output=output, latency=now - time)
-        self._bus.publish_row("control", now, tick.to_bytes())
+    def tick(self) -> None:
+        """Decide, and send the command where the robot is steered."""
+        with self.changing:
+            now, mode = self._clock.now(), self.mode
+            taken = self._measure()
+            self._choose_set_point(now, mode)
+            steered = mode == "manual" or (mode == "automatic" and taken is not None)
+            if steered and self._ticked is None:
+                self._towards_light.start()
+            seconds = now - (self._ticked or now)
+            self._ticked = now if steered else None
+            self._step_loops(mode if steered else "disarmed", seconds)
+            if steered:
+                self._course = self._find_course(now, seconds)
+                self._send_newest(mode)
+            self._publish(now, taken)
+
+    def drive(self) -> None:
+        """Send what the pilot wants now, with what is held meanwhile; the loops do not step."""
+        if self.mode == "manual":
+            self._send_newest("manual")
 
     def command(self, command: Navigation) -> None:
         """Send a command to the board, and tell what it was."""
         self._send(command)
         self._bus.publish_row("navigation", self._clock.now(), command.to_bytes())
 
-    def _course(self, now: float, seconds: float) -> tuple[float, float]:
+    def _send_newest(self, mode: Mode) -> None:
+        # One after the other, so that no older input comes after a newer one.
+        with self._sending:
+            self.command(Navigation(**self._axes(mode)))
+
+    def _axes(self, mode: Mode) -> dict[str, float]:
+        if mode == "automatic":
+            axes = dict.fromkeys(AXES, 0.0)
+            axes["x"], axes["yaw"] = self._course
+        else:
+            pilot = self._pilot.command()
+            axes = {name: getattr(pilot, name) for name in AXES}
+            if self._pilot.quiet:
+                return axes
+        for loop in self.loops.values():
+            if loop.output is not None and (mode == "automatic" or abs(axes[loop.axis]) <= STICK_MIDDLE):
+                axes[loop.axis] = loop.output
+        return axes
+
+    def _step_loops(self, mode: Mode, seconds: float) -> None:
+        pilot = self._pilot.command() if mode == "manual" else NEUTRAL
+        for loop in self.loops.values():
+            pushed = loop.on and abs(getattr(pilot, loop.axis)) > STICK_MIDDLE
+            if pushed:
+                loop.follow()
+            if loop.measured is not None and not pushed and self._steers(loop, mode):
+                loop.step(seconds)
+            else:
+                loop.rest()
+
+    def _steers(self, loop: ControlLoop, mode: Mode) -> bool:
+        if mode == "manual":
+            return loop.on and not self._pilot.quiet
+        if mode != "automatic":
+            return False
+        if loop is self.heading and self.steering == "beacons":
+            return False
+        return loop is self.depth or loop.on or loop.lent is not None
+
+    def _check_on(self, loop: ControlLoop) -> None:
+        if loop is self.depth and self.mode != "manual":
+            raise Refused("The depth is always held in automatic. Its hold is for driving by hand.")
+        if self.mode == "manual" and loop.measured is None:
+            raise Refused(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+
+    def _find(self, name: str) -> ControlLoop:
+        loop = self.loops.get(name)
+        if loop is None:
+            raise Refused(f"there is no loop {name!r}; there are {', '.join(self.loops)}")
+        return loop
+
+    def _measure(self) -> float | None:
+        """Read what came last; when the depth was taken, if there was one."""
+        if self._imu is not None:
+            angles = turned(Imu.from_bytes(self._imu).attitude)
+            for loop, angle in zip(self.turning, angles, strict=True):
+                loop.measured = angle
+        if self._depth is None:
+            return None
+        time, record = self._depth
+        self.depth.measured = Depth.from_bytes(record).depth
+        return time
+
+    def _publish(self, now: float, taken: float | None) -> None:
+        depth = self.depth.measured
+        if depth is not None and taken is not None:
+            wanted = self.depth.wanted
+            tick = Control(
+                set_point=wanted,
+                depth=depth,
+                error=wanted - depth,
+                output=self.depth.output or 0.0,
+                latency=now - taken,
+            )
+            self._bus.publish_row("control", now, tick.to_bytes())
+        if self._imu is not None:
+            self._bus.publish_row("turning", now, self._turning().to_bytes())
+
+    def _turning(self) -> Turning:
+        wanted, measured, output = zip(
+            *(
+                (
+                    nan if loop.output is None else loop.wanted,
+                    nan if loop.measured is None else loop.measured,
+                    nan if loop.output is None else loop.output,
+                )
+                for loop in self.turning
+            ),
+            strict=True,
+        )
+        return Turning(set_point=wanted, measured=measured, output=output)
+
+    def _find_course(self, now: float, seconds: float) -> tuple[float, float]:
         if self.steering == "none":
             return 0.0, 0.0
         time, right, left = self._lights
         fresh = now - time <= BEACON_STALE
         return self._towards_light.step(fresh and right, fresh and left, seconds)
 
-    def _choose_set_point(self, now: float) -> None:
+    def _choose_set_point(self, now: float, mode: Mode) -> None:
         seen = now - self._seen <= VISION_STALE
         wanted = self.set_point_detected if seen else self.set_point_default
-        if wanted != self.set_point:
-            self.set_point = wanted
+        if wanted != self._wanted:
+            self._wanted = wanted
             because = f": {self.colour} is seen" if seen else ""
             self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
+        if mode != "manual" or not self.depth.on:
+            self.depth.set_point = wanted
 
     def _take_depth(self, _: str, time: float, record: bytes) -> None:
-        self._depth = (time, Depth.from_bytes(record).depth)
+        self._depth = (time, record)
+
+    def _take_imu(self, _topic: str, _time: float, record: bytes) -> None:
+        self._imu = record
 
     def _take_beacon(self, _: str, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)

@@ -6,7 +6,6 @@ from collections import Counter
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.errors import Refused
 from robot_runtime.packets import Navigation
 
@@ -14,8 +13,13 @@ PILOT = "pilot"
 """The name under which the server sends it."""
 AGE_MAX = 0.3
 """s by which an input may be old, or ahead of this clock."""
-PATIENCE = BY_NAME["pilot_quiet"].limit - LOOK - 0.05
-"""s for which, at a look, an input counts: the next look, and the way to the board, are to come."""
+PATIENCE = 0.2
+"""s for which an input counts. While anything is held they come 20 times a second, so that some may be late.
+
+Fins that flap take a quarter of a second to rest: together less than half a second.
+"""
+PILOT_LOOK = 0.05
+"""s between two looks at most whether the pilot has fallen silent."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 
@@ -44,13 +48,16 @@ class Pilot:
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 
-    def take(self, payload: bytes) -> None:
-        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1)."""
+    def take(self, payload: bytes) -> bool:
+        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
+
+        Whether it counts.
+        """
         try:
             lease, sequence, taken, axes = _read(json.loads(payload))
         except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
             self.dropped["invalid"] += 1
-            return
+            return False
         now = self._clock.now()
         if lease != self.lease:
             self.dropped["lease"] += 1
@@ -61,10 +68,22 @@ class Pilot:
         else:
             self._sequence = sequence
             self.taken, self._command = min(taken, now), Navigation(**dict(zip(AXES, axes, strict=True)))
+            return True
+        return False
+
+    @property
+    def quiet(self) -> bool:
+        """Whether the newest input is too old to count."""
+        return not self._clock.now() - self.taken <= PATIENCE
+
+    @property
+    def until(self) -> float:
+        """s, steady clock; from when on the newest input is too old."""
+        return self.taken + PATIENCE
 
     def command(self) -> Navigation:
         """The newest input; neutral where that is too old."""
-        return self._command if self._clock.now() - self.taken <= PATIENCE else NEUTRAL
+        return NEUTRAL if self.quiet else self._command
 
 
 def _read(words: Any) -> tuple[int, int, float, list[float]]:

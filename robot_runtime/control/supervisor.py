@@ -55,7 +55,8 @@ class Supervisor:
     """Holds the robot's state, which changes as `transitions` says and in no other way.
 
     `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
-    the board must be one for it; with `heartbeat` a server must be heard so often (s).
+    the board must be one for it; with `heartbeat` a server must be heard so often (s). `on_mode` gets each
+    new mode, and may wait for nothing.
     """
 
     def __init__(
@@ -65,6 +66,7 @@ class Supervisor:
         tell: Callable[[Event], None],
         loop: InTheLoop | None = None,
         heartbeat: float | None = None,
+        on_mode: Callable[[Mode], None] = lambda _: None,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
@@ -76,6 +78,7 @@ class Supervisor:
         self._tell = tell
         self._loop = loop
         self._heartbeat = heartbeat
+        self._on_mode = on_mode
         self._alarms = Alarms(clock, tell)
         self._arming: Arming | None = None
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
@@ -280,6 +283,7 @@ class Supervisor:
         after = follow(self.mode, trigger)
         if after is not None:
             self.mode = after
+            self._on_mode(after)
         return after is not None
 
     def _event(self, kind: str, severity: Severity, text: str) -> None:

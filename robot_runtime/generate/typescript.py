@@ -109,7 +109,7 @@ def _row_name(topic: Topic) -> str:
 
 
 def _documents() -> list[type]:
-    shared = [samples.Box, samples.Gain, samples.ControllerChoice, samples.Pace, samples.Alarm]
+    shared = [samples.Box, samples.Gain, samples.ControllerChoice, samples.Loop, samples.Pace, samples.Alarm]
     return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
 
 

@@ -161,7 +161,7 @@ class Scenario:
         except ValueError as problem:
             problems.append(f"start: {problem}")
         try:
-            check_controller(self.control.controller, self.control.gains)
+            check_controller("depth", self.control.controller, self.control.gains)
         except ValueError as problem:
             problems.append(f"control: {problem}")
         return problems

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from robot_runtime.config import SET_POINT, VISION_RATE, ConfigError, Range, parse, place
 from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.loop import SET_POINTS, LoopName
 from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.samples import Steering
 from robot_runtime.simulation.faults import Fault, Kind, check_sensor
@@ -124,13 +125,46 @@ class ChooseController(Event):
     gains: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        check_controller(self.name, {self.name: self.gains})
+        check_controller("depth", self.name, {self.name: self.gains})
 
     @property
     def words(self) -> str:
         """What happens, in a few words."""
         gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
         return f"Controller {self.name}" + (f": {gains}" if gains else "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeLoop(Event):
+    """Steer heading, pitch or roll, or the depth, otherwise; set point in rad, the depth's in m."""
+
+    do = "loop"
+    to = "runtime"
+
+    name: LoopName
+    on: bool | None = None
+    set_point: float | None = None
+    controller: str | None = None
+    gains: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.on is None and self.set_point is None and self.controller is None:
+            raise ValueError("loop needs on, set_point or controller")
+        span = SET_POINTS[self.name]
+        if self.set_point is not None and not span.minimum <= self.set_point <= span.maximum:
+            raise ValueError(f"set_point must lie between {span.minimum:.3g} and {span.maximum:.3g}")
+        if self.gains and self.controller is None:
+            raise ValueError("gains need the controller whose they are")
+        if self.controller is not None:
+            check_controller(self.name, self.controller, {self.controller: self.gains})
+
+    @property
+    def words(self) -> str:
+        """What happens, in a few words."""
+        parts = [] if self.on is None else ["on" if self.on else "off"]
+        parts += [] if self.set_point is None else [f"set point {self.set_point:g}"]
+        parts += [] if self.controller is None else [self.controller]
+        return f"{self.name.capitalize()}: {', '.join(parts)}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -359,6 +393,7 @@ EVENTS: tuple[type[Event], ...] = (
     Acknowledge,
     SetPoints,
     ChooseController,
+    ChangeLoop,
     Steer,
     Card,
     Look,
@@ -385,11 +420,11 @@ def read_event(table: Any, where: str) -> Event:
     return parse(event, {name: value for name, value in table.items() if name != "do"}, where)
 
 
-def check_controller(name: str, gains: Mapping[str, Mapping[str, float]]) -> None:
-    """Raises ValueError where there is no such controller, or gains are unknown or out of range."""
-    controllers = {one.name: one for one in CONTROLLERS}
+def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:
+    """Raises ValueError where the loop has no such controller, or gains are unknown or out of range."""
+    controllers = {one.name: one for one in CONTROLLERS[loop]}
     for wanted in (name, *gains):
         if wanted not in controllers:
             raise ValueError(f"there is no controller {wanted!r}; there are {', '.join(controllers)}")
     for tuned, numbers in gains.items():
-        controllers[tuned]().tune(numbers)
+        controllers[tuned].check(numbers)

@@ -150,7 +150,7 @@ class _Performance:
             self._converse(now)
             for rhythm in self._rhythms:
                 rhythm.keep(now)
-            due = [end, self._look_at, *(rhythm.due for rhythm in self._rhythms)]
+            due = [end, self._look_at, stage.robot.pilot_tick(), *(rhythm.due for rhythm in self._rhythms)]
             if self._arming is not None:
                 self._go_on_arming(now)
                 due.append(self._ask_again)

@@ -32,6 +32,7 @@ OPERATIONS: dict[str, Need] = {
     "checkFins": Need.CONTROL,
     "acknowledgeAlarms": Need.CONTROL,
     "putController": Need.CONTROL,
+    "putLoop": Need.CONTROL,
     "putSetPoints": Need.CONTROL,
     "putSteering": Need.CONTROL,
     "putCard": Need.CONTROL,

@@ -32,6 +32,18 @@ class Controller(BaseModel):
     gains: Annotated[dict[Name, FiniteFloat], Field(max_length=32)] = {}
 
 
+class LoopChange(BaseModel):
+    """What is to change about a loop; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    on: Annotated[bool | None, Field(description="steer it; in manual: hold it")] = None
+    set_point: Annotated[FiniteFloat | None, Field(description="m, of the angles rad")] = None
+    controller: Name | None = None
+    gains: Annotated[
+        dict[Name, FiniteFloat], Field(max_length=32, description="of this or the chosen controller")
+    ] = {}
+
+
 class SetPoints(BaseModel):
     """Wanted depths, m; what is left out stays as it is."""
 
@@ -136,6 +148,21 @@ async def acknowledge(request: Request) -> None:
 async def put_controller(request: Request, controller: Controller) -> None:
     """Choose a controller, and set gains of it."""
     await Assembly.of(request).bridge.command("controller", controller.model_dump())
+
+
+@router.put(
+    "/loops/{name}",
+    status_code=204,
+    summary="Steer or hold depth or an angle",
+    operation_id="putLoop",
+    responses=COMMAND,
+)
+async def put_loop(
+    request: Request, name: Literal["depth", "heading", "pitch", "roll"], change: LoopChange
+) -> None:
+    """Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing."""
+    question = {"name": name, **change.model_dump(exclude_none=True)}
+    await Assembly.of(request).bridge.command("loop", question)
 
 
 @router.put(

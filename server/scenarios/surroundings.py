@@ -1,12 +1,12 @@
 """Sets up the running robot and its water for a scenario, and puts back what was there before."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import Refused
 from robot_runtime.scenario.document import Scenario
 from robot_runtime.scenario.events import Event, Line
@@ -16,6 +16,7 @@ from server.live.bridge import Bridge, RuntimeSilent
 
 Question = Mapping[str, Any]
 STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
+TURNING = tuple(loop for loop in CONTROLLERS if loop != "depth")
 DIRECTIONS = ("to_board", "from_board")
 
 
@@ -64,6 +65,8 @@ class Surroundings:
         await self._bridge.command(
             "set_points", {"default": control.set_point, "detected": control.set_point_detected}
         )
+        for loop in TURNING:
+            await self._bridge.command("loop", _at_rest(loop))
         await self._bridge.command("steering", {"by": control.steering})
         await self._bridge.command("vision", {"rate": vision.rate, "colour": vision.colour})
         if vision.camera == "card":
@@ -94,7 +97,7 @@ class Surroundings:
             *(
                 lambda one=one: self._bridge.command(
                     "controller",
-                    {"name": one["name"], "gains": {gain["name"]: gain["value"] for gain in one["gains"]}},
+                    {"name": one["name"], "gains": _values(one["gains"])},
                 )
                 for one in robot["controllers"]
             ),
@@ -102,6 +105,10 @@ class Surroundings:
             lambda: self._bridge.command(
                 "set_points",
                 {"default": robot["set_point_default"], "detected": robot["set_point_detected"]},
+            ),
+            *(
+                lambda question=question: self._bridge.command("loop", question)
+                for question in _loops_of(robot)
             ),
             lambda: self._bridge.command("steering", {"by": robot["steering"]}),
             lambda: self._bridge.command(
@@ -188,7 +195,41 @@ def _sight_of(scenario: Scenario) -> Question:
 def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
     """Every gain of every controller: the default where the scenario says nothing, so that it repeats."""
     return {
-        one.name: {name: limits.default for name, limits in one.limits.items()}
-        | scenario.control.gains.get(one.name, {})
-        for one in CONTROLLERS
+        one.name: _defaults(one) | scenario.control.gains.get(one.name, {}) for one in CONTROLLERS["depth"]
     }
+
+
+def _at_rest(loop: str) -> Question:
+    """The command that leaves a loop as it is at the runtime's start."""
+    first = CONTROLLERS[loop][0]
+    return {
+        "name": loop,
+        "on": False,
+        "set_point": 0.0,
+        "controller": first.name,
+        "gains": _defaults(first),
+    }
+
+
+def _loops_of(robot: Question) -> list[Question]:
+    """The commands that make heading, pitch and roll as they were."""
+    questions: list[Question] = []
+    for loop in robot["loops"]:
+        if loop["name"] not in TURNING:
+            continue
+        name, chosen = {"name": loop["name"]}, {"controller": loop["controller"]}
+        questions += [
+            name
+            | {"controller": one["name"], "gains": {gain["name"]: gain["value"] for gain in one["gains"]}}
+            for one in loop["controllers"]
+        ]
+        questions.append(name | chosen | {"on": loop["on"], "set_point": loop["set_point"]})
+    return questions
+
+
+def _values(gains: Sequence[Question]) -> dict[str, float]:
+    return {gain["name"]: gain["value"] for gain in gains}
+
+
+def _defaults(controller: type[Controller]) -> dict[str, float]:
+    return {name: limits.default for name, limits in controller.limits.items()}

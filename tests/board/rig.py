@@ -1,9 +1,11 @@
 """A board under test whose time the test alone lets pass, with a host at its serial port."""
 
+import fcntl
 import os
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
@@ -20,9 +22,20 @@ PATIENCE = 10.0
 """s of real time for what the operating system does between two processes."""
 
 
+@contextmanager
+def building() -> Iterator[None]:
+    """Nobody else builds meanwhile: make does not know of another one at the same files."""
+    lock = ROOT / "build/.building"
+    lock.parent.mkdir(exist_ok=True)
+    with lock.open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
 def build(folder: Path, *targets: str) -> None:
     """Bring what `folder` builds up to date, or fail with what make says."""
-    made = subprocess.run(["make", "-s", "-C", str(folder), *targets], capture_output=True, text=True)
+    with building():
+        made = subprocess.run(["make", "-s", "-C", str(folder), *targets], capture_output=True, text=True)
     assert made.returncode == 0, made.stdout + made.stderr
 
 

@@ -1,7 +1,6 @@
 """The firmware compiled for this computer, with the types of its C names."""
 
 import ctypes
-import subprocess
 from ctypes import (
     POINTER,
     c_bool,
@@ -17,10 +16,11 @@ from ctypes import (
     c_uint64,
     c_void_p,
 )
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
+from tests.board import rig
+from tests.board.rig import ROOT
+
 PATH = ROOT / "build/firmware/libfirmware_host.so"
 
 I2C_BUS = ctypes.CFUNCTYPE(c_uint8, c_uint8, POINTER(c_uint8), c_uint8, POINTER(c_uint8), c_uint8)
@@ -95,9 +95,8 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
 
 
 def build() -> None:
-    """Compile the library. Raises CalledProcessError with the compiler's words where it does not compile."""
-    command = ["make", "--no-print-directory", "-C", str(ROOT / "firmware"), "host"]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    """Compile the library, or fail with what make says."""
+    rig.build(ROOT / "firmware", "host")
 
 
 def load() -> ctypes.CDLL:

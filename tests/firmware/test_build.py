@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.library import ROOT
+from tests.board.rig import ROOT, build
 
 FIRMWARE = ROOT / "firmware"
 FLASH_BYTES = 30720
@@ -17,8 +17,7 @@ STACK_BYTES = 500
 
 @pytest.fixture(scope="module")
 def elf() -> Path:
-    command = ["make", "--no-print-directory", "-C", str(FIRMWARE), "robot", "hang"]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    build(FIRMWARE, "robot", "hang")
     return ROOT / "build/firmware/robot.elf"
 
 

@@ -186,6 +186,18 @@ def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int)
     )
 
 
+@pytest.mark.parametrize("turned", [20, 150, 400])
+def test_fins_that_are_turning_round_rest_too(robot: Robot, turned: int) -> None:
+    """Half a turn takes 0.64 s; who lets go meanwhile waits no longer for rest than anybody else."""
+    robot.arm()
+    robot.swim(1000, navigation(z=1))
+    robot.swim(turned, navigation(z=-1))
+    robot.swim(200, navigation())
+    robot.received.clear()
+    robot.swim(500, navigation())
+    assert span(robot.received) < RESTING
+
+
 def test_commands_that_come_again_are_followed_again(robot: Robot) -> None:
     robot.arm()
     robot.swim(500, FORWARD)

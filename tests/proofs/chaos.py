@@ -176,13 +176,15 @@ class Storm:
                     size += room
                 except OSError:
                     room //= 2
-        wait(lambda: self._world.viewer.tells("store_failing"), "the alarm of the full disk")
-        time.sleep(self._chance.uniform(0.0, 2.0))
+        # Storing may go on for a while, in the room that the write-ahead log has on the disk already.
+        wait(lambda: self._is_told("disk_low"), "the alarm of the full disk")
+        time.sleep(self._chance.uniform(0.0, 4.0))
         ballast.unlink()
-        wait(lambda: not self._is_failing(), "the database to store again")
+        wait(lambda: not self._is_told("disk_low"), "room on the disk")
+        wait(lambda: not self._is_told("store_failing"), "the database to store again")
 
-    def _is_failing(self) -> bool:
-        return any(one["fault"] == "store_failing" and one["active"] for one in self._world.viewer.alarms)
+    def _is_told(self, fault: str) -> bool:
+        return any(one["fault"] == fault and one["active"] for one in self._world.viewer.alarms)
 
     # In between
 
@@ -231,7 +233,7 @@ class Storm:
         for name in PARTS:
             self._expect(f"{name}_down", report.alarms[f"{name}_down"], done[f"{name} killed"])
         self._expect("server_restarted", report.alarms["server_restarted"], done["server killed"])
-        self._expect("store_failing", report.alarms["store_failing"], done["disk full"])
+        self._expect("disk_low", report.alarms["disk_low"], done["disk full"])
         self._expect("restarted state", report.gaps.pop("restarted state", 0), done["runtime killed"])
         self._expect("restarted truth", report.gaps.pop("restarted truth", 0), done["simulator killed"])
         others = {name: count for name, count in report.gaps.items() if not name.startswith("restarted ")}

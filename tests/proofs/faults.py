@@ -204,7 +204,7 @@ def _all_stop(fault: str, wrong: Callable[[Swim], Wrong], **more: bool | str) ->
 
 
 ROWS = (
-    Row(name="pilot_quiet", wrong=_no_pilot, fault="pilot_quiet", told=0.5, mode="manual"),
+    Row(name="pilot_quiet", wrong=_no_pilot, fault="pilot_quiet", told=0.5, rest=0.5, mode="manual"),
     _all_stop("pilot_lost", _no_pilot, mode="manual"),
     _all_stop("server_silent", _no_server),
     Row(

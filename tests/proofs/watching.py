@@ -24,7 +24,11 @@ MOVING = 1.0
 """rad/s, over `SPAN`. A stroke reaches 7."""
 SPAN = 0.05
 """s. In less, the chip's smallest corrections end: they put a resting fin right by up to 0.03 rad."""
+SILENCE = 0.1
+"""s without a byte: a runtime that lives sends as often."""
 _LOOK = 0.004
+_APART = 0.003
+"""s of the board's time in which it was asked for its time and its fins, at most."""
 _AGAIN = 0.01
 
 
@@ -38,6 +42,8 @@ class Seen(NamedTuple):
     board: float
     moving: bool
     powered: bool
+    heard: float
+    """Bytes that the chip has received; where there is no board it is 0, as are the times."""
 
 
 class Motion:
@@ -49,6 +55,9 @@ class Motion:
     def see(self, time: float, fins: FinMotion) -> bool:
         """Whether any has moved in the last `SPAN`; `time` in s."""
         looks = self._looks
+        if looks and time > looks[-1][0] + SPAN / 2:
+            # Nobody knows when in between it moved.
+            looks.clear()
         looks.append((time, fins.angles))
         while len(looks) > 1 and looks[1][0] <= time - SPAN:
             looks.popleft()
@@ -79,6 +88,15 @@ class Fins:
         """How long their motors had power since then, in the board's time (s)."""
         return self._last(since, lambda one: one.powered)
 
+    def silence(self, since: float) -> float:
+        """When the chip had received the last that was under way then (s, steady clock)."""
+        seen = [one for one in self.seen if one.time >= since]
+        for index, one in enumerate(seen):
+            later = next((other for other in seen[index:] if other.board >= one.board + SILENCE), None)
+            if later is not None and later.heard == one.heard:
+                return one.time
+        raise AssertionError("the chip was never without a byte")
+
     def _last(self, since: float, wanted: Callable[[Seen], bool]) -> float:
         seen = [one for one in self.seen if one.time >= since]
         return max((one.board for one in seen if wanted(one)), default=seen[0].board) - seen[0].board
@@ -88,9 +106,11 @@ class Fins:
             with suppress(BoardError), Board(self._socket) as board:
                 motion = Motion()
                 while not self._ending.wait(_LOOK):
-                    now, fins, there = time.monotonic(), board.fins(), board.stats()["time"]
-                    self.seen.append(Seen(now, there, motion.see(there, fins), fins.powered))
-            self.seen.append(Seen(time.monotonic(), 0.0, moving=False, powered=False))
+                    now, before, fins, stats = time.monotonic(), board.stats(), board.fins(), board.stats()
+                    there, heard = stats["time"], stats["bytes_to_board"]
+                    if there - before["time"] <= _APART:
+                        self.seen.append(Seen(now, there, motion.see(there, fins), fins.powered, heard))
+            self.seen.append(Seen(time.monotonic(), 0.0, moving=False, powered=False, heard=0.0))
             self._ending.wait(_AGAIN)
 
 

@@ -60,6 +60,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "controller": "pid",
         "controllers": [],
         "steering": "none",
+        "loops": [],
         "set_point": 0.5,
         "set_point_default": 0.5,
         "set_point_detected": 1.0,

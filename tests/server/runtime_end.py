@@ -15,7 +15,7 @@ from robot_runtime.topics import Block, Kind
 
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
-    *("controller", "set_points", "steering", "card", "vision"),
+    *("controller", "loop", "set_points", "steering", "card", "vision"),
 )
 
 

@@ -55,6 +55,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/robot/mode"): "control",
     ("POST", "/api/robot/check-fins"): "control",
     ("PUT", "/api/robot/controller"): "control",
+    ("PUT", "/api/robot/loops/{name}"): "control",
     ("PUT", "/api/robot/set-points"): "control",
     ("PUT", "/api/robot/steering"): "control",
     ("PUT", "/api/robot/card"): "control",
@@ -132,6 +133,7 @@ FAULTS_ALLOWED = {503, 504, 507}
 ABSENT = dict.fromkeys(("session", "mark", "run", "device", "layout", "panel"), "999") | {
     "export": "0" * 16,
     "path": "x.html",
+    "name": "heading",
 }
 
 

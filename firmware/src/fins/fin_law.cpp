@@ -15,14 +15,10 @@ float wrap_angle(float angle) {
   return angle;
 }
 
-void FinLaw::start(float angle) {
-  now_ = {wrap_angle(angle), 0};
-  arrived_ = true;
-}
+void FinLaw::start(float angle) { now_ = {wrap_angle(angle), 0}; }
 
 float FinLaw::step(const FinDemand& demand, uint16_t phase) {
   const float turn = wrap_angle(demand.direction - now_.direction);
-  arrived_ = turn == 0;
   now_.direction = fabsf(turn) <= kDirectionPerTick
                        ? demand.direction
                        : wrap_angle(now_.direction + limit(turn, kDirectionPerTick));

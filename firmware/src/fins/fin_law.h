@@ -29,12 +29,11 @@ class FinLaw {
   // Moves one tick on; returns the wanted angle, within -π to π.
   float step(const FinDemand& demand, uint16_t phase);
   bool flapping() const { return now_.amplitude > 0; }
-  // Whether the direction has reached the demanded one.
-  bool arrived() const { return arrived_; }
+  // About which it flaps now (rad).
+  float direction() const { return now_.direction; }
 
  private:
   FinDemand now_ = {0, 0};
-  bool arrived_ = true;
 };
 
 }  // namespace mucat

@@ -53,14 +53,10 @@ void Fins::step(Motion motion) {
 }
 
 FinDemand Fins::demand(uint8_t fin) const {
-  switch (motion_) {
-    case Motion::kSwim:
-      return demands_[fin];
-    case Motion::kDown:
-      return {kTipsDown, 0};
-    default:
-      return {demands_[fin].direction, 0};
-  }
+  if (motion_ == Motion::kDown) return {kTipsDown, 0};
+  // A fin that is to push nothing stops where it points: one told to turn round would go on for 0.6 s.
+  if (motion_ == Motion::kRest || demands_[fin].amplitude == 0) return {laws_[fin].direction(), 0};
+  return demands_[fin];
 }
 
 void Fins::read_encoders() {
@@ -108,13 +104,6 @@ bool Fins::neutral() const {
     if (law.flapping()) return false;
   }
   return motion_ != Motion::kSwim;
-}
-
-bool Fins::settled() const {
-  for (const FinLaw& law : laws_) {
-    if (!law.arrived()) return false;
-  }
-  return neutral();
 }
 
 uint8_t Fins::faults() const {

@@ -29,8 +29,6 @@ class Fins {
 
   // No fin flaps, and none is told to.
   bool neutral() const;
-  // Neutral, and every fin has turned where it should.
-  bool settled() const;
   bool powered() const { return motion_ != Motion::kOff; }
   // Bits of SensorFault: encoders that gave nonsense, H-bridges that failed while powered.
   uint8_t faults() const;

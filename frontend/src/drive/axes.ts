@@ -13,11 +13,26 @@ export interface Push {
 
 export const isNeutral = (axes: Axes): boolean => axes.every((value) => value === 0);
 
+const within = (value: number): number => Math.min(1, Math.max(-1, value));
+
 /** Everything that is held, together; opposites cancel out. */
 export function combine(held: Iterable<readonly Push[]>): Axes {
   const sum: number[] = [...NEUTRAL];
   for (const pushes of held) for (const { axis, amount } of pushes) sum[axis] = (sum[axis] ?? 0) + amount;
-  return sum.map((value) => Math.min(1, Math.max(-1, value))) as unknown as Axes;
+  return sum.map(within) as unknown as Axes;
+}
+
+/**
+ * What the sticks ask for at this share of full speed, with the trim; neutral where they are in the middle.
+ *
+ * @param kept whether the robot holds this axis by itself: then only the stick moves it
+ */
+export function driven(sticks: Axes, share: number, trim: Axes, kept: (axis: Axis) => boolean): Axes {
+  if (isNeutral(sticks)) return NEUTRAL;
+  return sticks.map((value, axis) => {
+    const own = value === 0 && kept(axis as Axis) ? 0 : (trim[axis] ?? 0);
+    return within(value * share + own);
+  }) as unknown as Axes;
 }
 
 /** Go from `now` towards `wanted` by at most `step` on each axis; back towards neutral, at once. */

@@ -1,34 +1,72 @@
 import { PITCH, ROLL, X, Y, YAW, Z, type Push } from './axes';
+import { SPEEDS } from './handling.svelte';
+import type { Holdable } from './holds';
 
-/** By where a key lies, as on a US keyboard, so that hands find it on others too. */
-export const KEYS: Readonly<Record<string, Push>> = {
-  KeyW: { axis: X, amount: 1 },
-  KeyS: { axis: X, amount: -1 },
-  KeyA: { axis: YAW, amount: -1 },
-  KeyD: { axis: YAW, amount: 1 },
-  KeyQ: { axis: Y, amount: -1 },
-  KeyE: { axis: Y, amount: 1 },
-  KeyR: { axis: Z, amount: -1 },
-  KeyF: { axis: Z, amount: 1 },
-  ArrowUp: { axis: PITCH, amount: 1 },
-  ArrowDown: { axis: PITCH, amount: -1 },
-  ArrowLeft: { axis: ROLL, amount: -1 },
-  ArrowRight: { axis: ROLL, amount: 1 },
-};
+/** A key of the map: where it lies (as on a US keyboard, so that hands find it on others too), and what it does. */
+export interface Key {
+  readonly code: string;
+  readonly cap: string;
+  readonly what: string;
+  readonly push: Push;
+}
 
-export const LEGEND = [
-  { keys: 'W S', what: 'ahead, back' },
-  { keys: 'A D', what: 'turn left, right' },
-  { keys: 'R F', what: 'up, down' },
-  { keys: 'Q E', what: 'left, right' },
-  { keys: '↑ ↓', what: 'nose up, down' },
-  { keys: '← →', what: 'roll left, right' },
-] as const;
+const key = (code: string, cap: string, what: string, axis: Push['axis'], amount: number): Key => ({
+  code,
+  cap,
+  what,
+  push: { axis, amount },
+});
+
+/** In rows, as they lie. */
+export const LEFT_HAND: readonly (readonly Key[])[] = [
+  [
+    key('KeyQ', 'Q', 'left', Y, -1),
+    key('KeyW', 'W', 'ahead', X, 1),
+    key('KeyE', 'E', 'right', Y, 1),
+    key('KeyR', 'R', 'up', Z, -1),
+  ],
+  [
+    key('KeyA', 'A', 'turn ‹', YAW, -1),
+    key('KeyS', 'S', 'back', X, -1),
+    key('KeyD', 'D', 'turn ›', YAW, 1),
+    key('KeyF', 'F', 'down', Z, 1),
+  ],
+];
+export const RIGHT_HAND: readonly (readonly Key[])[] = [
+  [key('ArrowUp', '↑', 'nose ↑', PITCH, 1)],
+  [
+    key('ArrowLeft', '←', 'roll ‹', ROLL, -1),
+    key('ArrowDown', '↓', 'nose ↓', PITCH, -1),
+    key('ArrowRight', '→', 'roll ›', ROLL, 1),
+  ],
+];
+const PUSHES = new Map([...LEFT_HAND, ...RIGHT_HAND].flat().map(({ code, push }) => [code, push]));
+/** With shift the arrows alone will do: ahead, back and turning. */
+const SHIFTED = new Map<string, Push>([
+  ['ArrowUp', { axis: X, amount: 1 }],
+  ['ArrowDown', { axis: X, amount: -1 }],
+  ['ArrowLeft', { axis: YAW, amount: -1 }],
+  ['ArrowRight', { axis: YAW, amount: 1 }],
+]);
+const HOLDS: Readonly<Record<string, Holdable>> = { KeyG: 'depth', KeyH: 'heading' };
+/** Where letters are typed, and where keys choose or move something themselves. */
+const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), textarea, select, [contenteditable]';
+const TURNED = 'input, [role="tablist"], [role="slider"], [role="radiogroup"]';
+
+export type Action =
+  | { readonly do: 'push'; readonly push: Push }
+  | { readonly do: 'speed'; readonly speed: number }
+  | { readonly do: 'hold'; readonly loop: Holdable };
 
 /** What a key that goes down asks for; null where it is meant for something else, a field to type in above all. */
-export function pushOf(event: KeyboardEvent): Push | null {
+export function actionOf(event: KeyboardEvent): Action | null {
   if (event.ctrlKey || event.metaKey || event.altKey) return null;
   const place = event.target instanceof Element ? event.target : null;
-  if (place?.closest('input, textarea, select, [contenteditable], [role="tablist"], [role="slider"]')) return null;
-  return KEYS[event.code] ?? null;
+  if (place?.closest(event.code.startsWith('Arrow') ? `${TYPED}, ${TURNED}` : TYPED)) return null;
+  const push = (event.shiftKey ? SHIFTED.get(event.code) : undefined) ?? PUSHES.get(event.code);
+  if (push !== undefined) return { do: 'push', push };
+  const [, digit] = /^(?:Digit|Numpad)([1-9])$/.exec(event.code) ?? [];
+  if (digit !== undefined && Number(digit) <= SPEEDS) return { do: 'speed', speed: Number(digit) };
+  const loop = HOLDS[event.code];
+  return loop === undefined ? null : { do: 'hold', loop };
 }

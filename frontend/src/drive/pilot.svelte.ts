@@ -1,6 +1,7 @@
 import { createContext } from 'svelte';
 import { SvelteMap } from 'svelte/reactivity';
-import { approach, combine, isNeutral, NEUTRAL, type Axes, type Push } from './axes';
+import { approach, combine, isNeutral, NEUTRAL, type Axes, type Axis, type Push } from './axes';
+import { Handling } from './handling.svelte';
 
 /** ms; 20 Hz while something is held */
 const TICK = 50;
@@ -24,6 +25,8 @@ export interface PilotPlace {
   now(): number;
   /** the epoch of the control lease; null while this page may not drive or nobody sits before it */
   lease(): number | null;
+  /** whether the robot holds this axis by itself */
+  keeps(axis: Axis): boolean;
 }
 
 /**
@@ -34,6 +37,7 @@ export interface PilotPlace {
 export class Pilot {
   /** what was sent last */
   axes = $state.raw<Axes>(NEUTRAL);
+  readonly handling = new Handling();
   readonly #held = new SvelteMap<string, readonly Push[]>();
   #sequence = 0;
   #ticks = 0;
@@ -56,10 +60,18 @@ export class Pilot {
     };
   }
 
+  /** whether what is held now would move the robot */
+  get steers(): boolean {
+    return this.place.lease() !== null;
+  }
+
   /** Something is held, from now on at `pushes`; nothing new of it is held where there are none. */
   hold(source: string, pushes: readonly Push[]): void {
-    if (pushes.length === 0) this.#held.delete(source);
-    else this.#held.set(source, pushes);
+    const begins = pushes.length > 0 && !this.#held.has(source);
+    const ends = pushes.length === 0 && this.#held.delete(source);
+    if (pushes.length > 0) this.#held.set(source, pushes);
+    // What begins or ends is said at once; how far a stick moves, with the next tick.
+    if (begins || ends) this.#say();
   }
 
   holds(source: string): boolean {
@@ -70,24 +82,28 @@ export class Pilot {
   readonly rest = (): void => {
     this.#held.clear();
     if (this.#lease === null) return;
-    this.#say(this.#lease, NEUTRAL);
+    this.#send(this.#lease, NEUTRAL);
     this.#lease = null;
   };
 
   #tick(): void {
+    this.#ticks += 1;
+    const still = isNeutral(this.axes) && this.#held.size === 0;
+    if (!still || this.#ticks % NEUTRAL_EVERY === 0 || this.place.lease() === null) this.#say();
+  }
+
+  #say(): void {
     const lease = this.place.lease();
     if (lease === null) {
       this.rest();
       return;
     }
     this.#lease = lease;
-    this.#ticks += 1;
-    const axes = approach(this.axes, combine(this.#held.values()), STEP);
-    const still = isNeutral(axes) && isNeutral(this.axes);
-    if (!still || this.#ticks % NEUTRAL_EVERY === 0) this.#say(lease, axes);
+    const wanted = this.handling.shape(combine(this.#held.values()), (axis) => this.place.keeps(axis));
+    this.#send(lease, approach(this.axes, wanted, STEP));
   }
 
-  #say(lease: number, axes: Axes): void {
+  #send(lease: number, axes: Axes): void {
     this.axes = axes;
     const taken = this.place.now();
     if (Number.isNaN(taken)) return;

@@ -868,6 +868,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/robot/loops/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Steer or hold depth or an angle
+         * @description Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing.
+         */
+        put: operations["putLoop"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robot/mode": {
         parameters: {
             query?: never;
@@ -2252,6 +2272,48 @@ export interface components {
             time: number;
         };
         /**
+         * Loop
+         * @description One thing that the robot steers by: depth (m), heading, pitch or roll (rad).
+         */
+        Loop: {
+            /** Controller */
+            controller: string;
+            /** Controllers */
+            controllers: components["schemas"]["ControllerChoice"][];
+            /** Name */
+            name: string;
+            /** On */
+            on: boolean;
+            /** Set Point */
+            set_point: number;
+        };
+        /**
+         * LoopChange
+         * @description What is to change about a loop; what is left out stays as it is.
+         */
+        LoopChange: {
+            /** Controller */
+            controller?: string | null;
+            /**
+             * Gains
+             * @description of this or the chosen controller
+             * @default {}
+             */
+            gains: {
+                [key: string]: number;
+            };
+            /**
+             * On
+             * @description steer it; in manual: hold it
+             */
+            on?: boolean | null;
+            /**
+             * Set Point
+             * @description m, of the angles rad
+             */
+            set_point?: number | null;
+        };
+        /**
          * MadeCode
          * @description A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
          */
@@ -3240,6 +3302,8 @@ export interface components {
             controllers: components["schemas"]["ControllerChoice"][];
             /** Epoch */
             epoch: number | null;
+            /** Loops */
+            loops?: components["schemas"]["Loop"][];
             /**
              * Mode
              * @enum {string}
@@ -5790,6 +5854,84 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["Controller"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putLoop: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: "depth" | "heading" | "pitch" | "roll";
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LoopChange"];
             };
         };
         responses: {

@@ -191,6 +191,17 @@ export const ROW_TOPICS = {
       { name: 'fins', code: 'f', offset: 60, count: 4, scale: 1, unit: 'rad', meaning: 'fin angles' },
     ],
   },
+  turning: {
+    id: 10,
+    name: 'turning',
+    rowBytes: 44,
+    meaning: 'the same ticks, for heading, pitch and roll',
+    fields: [
+      { name: 'set_point', code: 'f', offset: 8, count: 3, scale: 1, unit: 'rad', meaning: 'wanted heading, pitch, roll; NaN where it is not steered' },
+      { name: 'measured', code: 'f', offset: 20, count: 3, scale: 1, unit: 'rad', meaning: 'heading, pitch, roll' },
+      { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN where it is not steered' },
+    ],
+  },
 } as const;
 
 export interface ImuRow {
@@ -358,6 +369,17 @@ export interface TruthRow {
   fins: number[];
 }
 
+export interface TurningRow {
+  /** s, steady clock of the robot's computer */
+  time: number;
+  /** rad, wanted heading, pitch, roll; NaN where it is not steered */
+  set_point: number[];
+  /** rad, heading, pitch, roll */
+  measured: number[];
+  /** commands yaw, pitch, roll, -1 to 1; NaN where it is not steered */
+  output: number[];
+}
+
 export interface Rows {
   imu: ImuRow;
   depth: DepthRow;
@@ -368,6 +390,7 @@ export interface Rows {
   control: ControlRow;
   link: LinkRow;
   truth: TruthRow;
+  turning: TurningRow;
 }
 
 export const OTHER_TOPICS = {
@@ -404,6 +427,15 @@ export interface ControllerChoice {
   name: string;
   title: string;
   gains: Gain[];
+}
+
+/** One thing that the robot steers by: depth (m), heading, pitch or roll (rad). */
+export interface Loop {
+  name: string;
+  on: boolean;
+  set_point: number;
+  controller: string;
+  controllers: ControllerChoice[];
 }
 
 /** How often the board sends a topic on this line: s between two samples. */
@@ -451,6 +483,7 @@ export interface State {
   colours: string[];
   card: string | null;
   camera: string;
+  loops: Loop[];
   pilot_dropped: number;
 }
 

@@ -1,6 +1,7 @@
 import type { Access } from '../access/access.svelte';
 import { api } from '../api';
 import { Control } from '../control/control.svelte';
+import { keeps } from '../drive/holds';
 import { Pilot } from '../drive/pilot.svelte';
 import { DEFINITIONS_HASH } from '../generated/topics';
 import { sitOn } from '../http';
@@ -46,6 +47,7 @@ export class LiveFeed {
       say: (said) => this.#socket.send({ op: 'drive', ...said }),
       now: () => this.#steady.now(),
       lease: () => this.#lease(),
+      keeps: (axis) => keeps(this.live.state, axis),
     });
     this.live.onObserve = () => this.#watch();
   }

@@ -11,6 +11,7 @@ export const PERIODS: Record<keyof Rows | 'state', number> = {
   status: 0.1,
   navigation: 0.1,
   control: 0.1,
+  turning: 0.1,
   link: 1,
   truth: 0.02,
   state: 1,

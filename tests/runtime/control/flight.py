@@ -16,10 +16,12 @@ from tests.runtime.scenario.staging import Told, document
 
 STEP = 0.02
 """s, in which what the test does between two looks falls."""
+PUSH_EVERY = 0.05
+"""s between two inputs of the pilot's."""
 
 
 class Flight:
-    """From the moment at which everything is well; `sticks` are sent every 0.1 s where there are some."""
+    """From the moment at which everything is well; `sticks` are sent every 0.05 s where there are some."""
 
     def __init__(self, board: str | MakeBoard = "host", more: str = "") -> None:
         make = boards()[board] if isinstance(board, str) else board
@@ -57,7 +59,7 @@ class Flight:
         while self.now < end - 1e-6:
             if self.server:
                 self.supervisor.watch.see_server()
-            if self.sticks is not None and self._sequence * 0.1 <= self.now:
+            if self.sticks is not None and self._sequence * PUSH_EVERY <= self.now:
                 self.push(self.sticks)
             self._performance._until(min(self.now + STEP, end))
 
@@ -71,9 +73,9 @@ class Flight:
 
     def push(self, axes: list[float], **more: Any) -> None:
         """An input of the pilot's, as the server passes it on."""
-        self._sequence = int(self.now / 0.1) + 1
+        self._sequence = int(self.now / PUSH_EVERY) + 1
         words = {"lease": 0, "sequence": self._sequence, "taken": self.now, "axes": axes} | more
-        self.supervisor.pilot.take(json.dumps(words).encode())
+        self.robot.take_pilot(json.dumps(words).encode())
 
     def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
         arming = self.supervisor.begin_arming(mode, alone)

@@ -81,7 +81,7 @@ def test_start_forgets_the_past() -> None:
     assert used.step(1.0, 0.4, SECONDS) == fresh.step(1.0, 0.4, SECONDS)
 
 
-@pytest.mark.parametrize("make", CONTROLLERS, ids=lambda cls: cls.name)
+@pytest.mark.parametrize("make", CONTROLLERS["depth"], ids=lambda cls: cls.name)
 @pytest.mark.parametrize(
     "spoil",
     [
@@ -113,5 +113,5 @@ def test_an_unknown_gain_is_refused_with_the_known_ones() -> None:
 
 @given(st.floats(0, 10), st.floats(-1, 11), st.floats(0, 1))
 def test_commands_stay_within_their_limits(set_point: float, depth: float, seconds: float) -> None:
-    for cls in CONTROLLERS:
+    for cls in CONTROLLERS["depth"]:
         assert -1.0 <= cls().step(set_point, depth, seconds) <= 1.0

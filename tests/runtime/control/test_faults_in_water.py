@@ -6,8 +6,10 @@ from math import acos
 import pytest
 
 from robot_runtime.control.faults import BY_NAME
+from robot_runtime.control.pilot import PATIENCE
 from robot_runtime.control.watch import TILT_MAX
 from robot_runtime.errors import Refused
+from robot_runtime.simulation.stepped_board import PERIOD
 from tests.runtime.control.flight import Flight
 
 LATE = 0.03
@@ -32,7 +34,7 @@ ROWS: list[tuple[str, Break]] = [
     ("imu_stale", absent("gyroscope")),
     ("board_silent", lambda flight: flight.cut(on=True)),
     ("server_silent", lambda flight: setattr(flight, "server", False)),
-    ("control_failed", lambda flight: setattr(flight.robot.control.controller, "step", None)),
+    ("control_failed", lambda flight: setattr(flight.robot.control.depth.controller, "step", None)),
 ]
 
 
@@ -156,12 +158,13 @@ def test_the_pilot_s_sticks_move_the_fins_and_their_silence_ends_it(flight: Flig
     flight.run(2.0)
     assert {command.x for _, command in flight.sent[-10:]} == {1.0}
     assert flight.stage.simulator.truth().position[0] > 0.05
-    last, flight.sticks = flight.now, None
-    flight.until(lambda: flight.sent[-1][1].x == 0.0, BY_NAME["pilot_quiet"].limit + LATE)
-    flight.until(lambda: flight.alarm("pilot_quiet"), 0.2)
+    taken, flight.sticks = flight.supervisor.pilot.taken, None
+    flight.until(lambda: flight.sent[-1][1].x == 0.0, PATIENCE + LATE)
+    assert PATIENCE <= flight.sent[-1][0] - taken <= PATIENCE + 2 * PERIOD
+    flight.until(lambda: flight.alarm("pilot_quiet"), BY_NAME["pilot_quiet"].limit + LATE)
     assert flight.supervisor.mode == "manual"
     flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["pilot_lost"].limit + LATE)
-    assert 2.8 < flight.now - last <= 3.0 + LATE
+    assert 2.8 < flight.now - taken <= 3.0 + LATE
     flight.sticks = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     flight.run(1.0)
     assert flight.supervisor.mode == "failsafe"
@@ -169,6 +172,15 @@ def test_the_pilot_s_sticks_move_the_fins_and_their_silence_ends_it(flight: Flig
     flight.arm("manual")
     flight.run(0.5)
     assert flight.sent[-1][1].x == 1.0
+
+
+def test_the_pilot_s_input_goes_out_when_it_comes(flight: Flight) -> None:
+    flight.sticks = [0.0] * 6
+    flight.arm("manual")
+    # The next tick of the control loop is in 70 ms.
+    flight.run(0.43)
+    flight.push([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], sequence=1_000)
+    assert (flight.sent[-1][0], flight.sent[-1][1].z) == (flight.now, 1.0)
 
 
 def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: Flight) -> None:

@@ -5,9 +5,10 @@ import pytest
 from robot_runtime.bus import Bus
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.control.node import BEACON_STALE, ControlNode
+from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import Refused
 from robot_runtime.packets import Beacon, Depth, Navigation
-from robot_runtime.samples import Control, Detection, Document, Event
+from robot_runtime.samples import Control, Detection, Document, Event, Mode
 
 
 class Rig:
@@ -18,7 +19,9 @@ class Rig:
         self.commands: list[Navigation] = []
         self.ticks: list[Control] = []
         self.events: list[str] = []
-        self.node = ControlNode(self.bus, self.clock, self.commands.append)
+        self.pilot = Pilot(self.clock)
+        self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
+        self.node.change_mode("automatic")
         self.node.colour = "yellow"
         self.bus.on_row(
             "control", lambda _topic, _time, record: self.ticks.append(Control.from_bytes(record))
@@ -42,9 +45,9 @@ class Rig:
         seen = Detection(time=now, taken=now, colour=colour, box=None, area=0.1, processing=0.001)
         self.bus.publish_document("detection", seen)
 
-    def tick(self, armed: bool = True) -> None:
+    def tick(self) -> None:
         self.clock.forward(0.1)
-        self.node.tick(armed)
+        self.node.tick()
 
 
 @pytest.fixture
@@ -60,9 +63,11 @@ def test_nothing_is_sent_before_a_depth_came(rig: Rig) -> None:
 
 def test_commands_go_out_only_while_armed(rig: Rig) -> None:
     rig.depth(0.2)
-    rig.tick(armed=False)
+    rig.node.change_mode("disarmed")
+    rig.tick()
     assert rig.commands == []
     assert (rig.ticks[0].output, rig.ticks[0].error) == (0.0, pytest.approx(0.3))
+    rig.node.change_mode("automatic")
     rig.tick()
     assert [command.z for command in rig.commands] == [1.0]
     assert rig.ticks[1].latency == pytest.approx(0.2)
@@ -98,8 +103,10 @@ def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
 def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
     rig.node.choose("pid", {"kp": 0.0, "ki": 1.0, "kd": 0.0})
     rig.depth(0.0)
-    for armed in (True, True, True, True, False, True):
-        rig.tick(armed)
+    modes: tuple[Mode, ...] = (*("automatic",) * 4, "disarmed", "automatic")
+    for mode in modes:
+        rig.node.change_mode(mode)
+        rig.tick()
     outputs = [command.z for command in rig.commands]
     assert outputs[3] > outputs[2] > outputs[1] == 0
     assert outputs[4] == 0
@@ -116,10 +123,10 @@ def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
 def test_bad_choices_are_refused_and_the_old_one_stays(
     rig: Rig, name: str, gains: dict[str, float], why: str
 ) -> None:
-    before = rig.node.controller
+    before = rig.node.depth.controller
     with pytest.raises(Refused, match=why):
         rig.node.choose(name, gains)
-    assert rig.node.controller is before
+    assert rig.node.depth.controller is before
 
 
 @pytest.mark.parametrize("depth", [-0.1, 10.1, float("nan"), float("inf")])

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.control.pilot import AGE_MAX, NEUTRAL, Pilot
+from robot_runtime.control.pilot import AGE_MAX, NEUTRAL, PATIENCE, Pilot
 from robot_runtime.errors import Refused
 
 LEFT = [0.0, -1.0, 0.0, 0.0, 0.0, 0.25]
@@ -35,8 +35,9 @@ def test_the_newest_input_counts_until_it_is_old(pilot: Pilot, clock: SimulatedC
     assert pilot.command() == NEUTRAL
     pilot.take(words())
     assert (pilot.command().y, pilot.command().yaw) == (-1.0, 0.25)
-    clock.forward(0.34)
+    clock.forward(PATIENCE - 0.01)
     assert pilot.command().y == -1.0
+    assert pilot.until == pytest.approx(clock.now() + 0.01)
     clock.forward(0.02)
     assert pilot.command() == NEUTRAL
     assert not pilot.dropped

@@ -20,7 +20,7 @@ from tests.shell import shell_headers
 from tests.stack import Stack
 
 TICK = 0.05
-STOP_SECONDS = 3.0
+REST_SECONDS, STOP_SECONDS = 0.5, 3.0
 NEUTRALS = 10
 """Of the 25 that go out until the all-stop; when the first does is measured in simulated time elsewhere."""
 
@@ -111,9 +111,11 @@ def test_a_driver_whose_line_is_cut_lets_the_fins_rest_and_then_the_robot_stops(
     whole = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0, "end": 120}).raise_for_status()
     sent = commands(whole.content, since)
     steered = [time for time, command in sent if command.z]
-    neutral, off = max(steered, default=since) - since, fins.powered_for(since)
-    told = f"steered for {neutral:.3f} s after the last command, power for {off:.3f} s of the board's time"
+    neutral, rest, off = max(steered, default=since) - since, fins.moved_for(since), fins.powered_for(since)
+    told = f"steered for {neutral:.3f} s after the last command; by the board's time the fins moved for"
+    told += f" {rest:.3f} s and had power for {off:.3f} s"
     assert len([time for time, _ in sent if time > since + neutral]) >= NEUTRALS, told
+    assert rest <= REST_SECONDS, told
     assert off <= STOP_SECONDS, told
     wait(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
     control = stack.api.get("/control").json()

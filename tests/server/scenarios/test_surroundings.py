@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import pytest
 
+from robot_runtime.control.controllers.turning import HeadingPid
 from robot_runtime.errors import Refused
 from robot_runtime.firmware import firmware_path
 from robot_runtime.scenario.document import read_scenario
@@ -26,6 +27,19 @@ STATE = {
     "set_point_default": 0.9,
     "set_point_detected": 1.1,
     "steering": "beacons",
+    "loops": [
+        {"name": "depth", "on": False, "set_point": 0.9, "controller": "bang_bang", "controllers": []},
+        {
+            "name": "heading",
+            "on": True,
+            "set_point": 0.4,
+            "controller": "pid",
+            "controllers": [
+                {"name": "pid", "gains": [{"name": "kp", "value": 2.0}]},
+                {"name": "bang_bang_dead_zone", "gains": []},
+            ],
+        },
+    ],
     "vision_rate": 4.0,
     "vision_colour": "yellow",
     "card": "red",
@@ -135,8 +149,11 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
     assert (now.trim, now.beacons) == (SCENARIO.trim, ((1.0, 0.0, 0.5),))
     assert {fault.kind for fault in now.faults.values()} == {"none"}
     assert simulator.truth().position == pytest.approx((1.0, 0.0, 0.7))
-    gains = [question["gains"] for name, question in bridge.commands if question.get("name") == "pid"]
+    gains = [question["gains"] for _, question in bridge.commands if question.get("name") == "pid"]
     assert gains == [{"kp": 4.0, "ki": 0.4, "kd": 2.0}]
+    loops = {question["name"]: question for name, question in bridge.commands if name == "loop"}
+    assert [(loop["on"], loop["set_point"]) for loop in loops.values()] == [(False, 0.0)] * 3
+    assert loops["heading"]["gains"] == HeadingPid().gains
     assert bridge.commands[-1] == ("card", {"colour": None})
     assert bridge.sight["world"] == {"kind": "pool", "turbidity": 0.1}
     target = {"colour": "green", "position": [2.0, 0.0, 1.0], "size": 0.2}
@@ -163,6 +180,9 @@ def test_everything_is_put_back(
         ("controller", {"name": "pid", "gains": {"kp": 7.0}}),
         ("controller", {"name": "bang_bang"}),
         ("set_points", {"default": 0.9, "detected": 1.1}),
+        ("loop", {"name": "heading", "controller": "pid", "gains": {"kp": 2.0}}),
+        ("loop", {"name": "heading", "controller": "bang_bang_dead_zone", "gains": {}}),
+        ("loop", {"name": "heading", "controller": "pid", "on": True, "set_point": 0.4}),
         ("steering", {"by": "beacons"}),
         ("vision", {"rate": 4.0, "colour": "yellow"}),
         ("card", {"colour": "red"}),

@@ -1,0 +1,16 @@
+"""The controllers of each loop, the first of which it begins with."""
+
+from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
+from robot_runtime.control.controllers.base import Controller, GainLimits
+from robot_runtime.control.controllers.pid import Pid
+from robot_runtime.control.controllers.turning import HeadingPid, PitchPid, RollPid, TurnDeadZone
+
+__all__ = ["CONTROLLERS", "BangBang", "BangBangDeadZone", "Controller", "GainLimits", "Pid"]
+
+CONTROLLERS: dict[str, tuple[type[Controller], ...]] = {
+    "depth": (BangBang, BangBangDeadZone, Pid),
+    "heading": (HeadingPid, TurnDeadZone),
+    "pitch": (PitchPid,),
+    "roll": (RollPid,),
+}
+"""By the loop's name."""

@@ -1,0 +1,58 @@
+"""What every controller is: from set point and measured value to a command between -1 and 1.
+
+A controller is one small class: a name, a title, its gains with their limits, and `step`.
+docs/control.md says how one is added.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+
+@dataclass(frozen=True, slots=True)
+class GainLimits:
+    """What a gain may be: its default, its least and its most."""
+
+    default: float
+    minimum: float
+    maximum: float
+    unit: str
+    meaning: str
+
+
+class Controller(ABC):
+    """Base of all controllers. They see numbers alone: m of depth, downwards, or rad, of which a full turn
+    counts on instead of starting again."""
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    limits: ClassVar[Mapping[str, GainLimits]]
+
+    def __init__(self) -> None:
+        self.gains = {name: limits.default for name, limits in self.limits.items()}
+
+    @classmethod
+    def check(cls, gains: Mapping[str, float]) -> None:
+        """Raises ValueError on unknown names and values out of range."""
+        for name, value in gains.items():
+            limits = cls.limits.get(name)
+            if limits is None:
+                raise ValueError(f"{cls.title} has no gain {name!r}; it has {', '.join(cls.limits)}")
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not number or not math.isfinite(value) or not limits.minimum <= value <= limits.maximum:
+                span = f"{limits.minimum:g} and {limits.maximum:g} {limits.unit}".strip()
+                raise ValueError(f"{name} is {value!r}; it must be a number between {span}")
+
+    def tune(self, gains: Mapping[str, float]) -> None:
+        """Set some gains, all or none. Raises ValueError on unknown names and values out of range."""
+        self.check(gains)
+        self.gains |= {name: float(value) for name, value in gains.items()}
+
+    def start(self) -> None:  # noqa: B027 - most controllers have no past
+        """Forget the past: called whenever the controller takes over."""
+
+    @abstractmethod
+    def step(self, set_point: float, measured: float, seconds: float) -> float:
+        """The command, -1 to 1; `seconds` since the last step, 0 at the first."""

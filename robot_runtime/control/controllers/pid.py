@@ -1,0 +1,48 @@
+"""The PID controller."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from robot_runtime.control.controllers.base import Controller, GainLimits
+
+
+class Pid(Controller):
+    """PID in its parallel form: derivative on the filtered measurement, integral clamped against wind-up.
+
+    Åström and Hägglund, Advanced PID Control, 2006, chapter 3. The integral stops growing while the command
+    is at its limit and the error would drive it further.
+    """
+
+    name = "pid"
+    title = "PID"
+    limits: ClassVar[Mapping[str, GainLimits]] = {
+        "kp": GainLimits(3.0, 0.0, 50.0, "1/m", "command for each metre of error"),
+        "ki": GainLimits(0.4, 0.0, 20.0, "1/(m s)", "command for each metre of error and second"),
+        "kd": GainLimits(2.0, 0.0, 50.0, "s/m", "command against each m/s of speed"),
+    }
+    _filter = 0.2  # s, time constant of the speed: the depth comes in steps of some millimetres
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._integral = 0.0
+        self._speed = 0.0
+        self._last: float | None = None
+
+    def start(self) -> None:
+        """Forget integral and speed."""
+        self._integral = 0.0
+        self._speed = 0.0
+        self._last = None
+
+    def step(self, set_point: float, measured: float, seconds: float) -> float:
+        """kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
+        error = set_point - measured
+        if self._last is not None and seconds > 0:
+            speed = (measured - self._last) / seconds
+            self._speed += (speed - self._speed) * seconds / (self._filter + seconds)
+        self._last = measured
+        wanted = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed
+        limited = min(max(wanted, -1.0), 1.0)
+        if wanted == limited or (wanted > 0) != (error > 0):
+            self._integral = min(max(self._integral + self.gains["ki"] * error * seconds, -1.0), 1.0)
+        return limited

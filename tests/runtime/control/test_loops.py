@@ -1,0 +1,251 @@
+"""The loops: what steers when, holds while driving by hand, and what is refused."""
+
+import json
+from math import isnan, pi
+
+import pytest
+
+from robot_runtime.bus import Bus
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.controllers import BangBang
+from robot_runtime.control.loop import Loan
+from robot_runtime.control.node import ControlNode
+from robot_runtime.control.pilot import Pilot
+from robot_runtime.errors import Refused
+from robot_runtime.packets import Depth, Imu, Navigation
+from robot_runtime.samples import Mode, Turning
+from tests.runtime.control.attitudes import quaternion
+
+
+class Rig:
+    """A control node with a pilot, and everything it sent."""
+
+    def __init__(self, mode: Mode) -> None:
+        self.clock, self.bus = SimulatedClock(100.0), Bus()
+        self.commands: list[Navigation] = []
+        self.turning: list[Turning] = []
+        self.pilot = Pilot(self.clock)
+        self.node = ControlNode(self.bus, self.clock, self.commands.append, self.pilot)
+        self.bus.on_row("turning", lambda _, __, record: self.turning.append(Turning.from_bytes(record)))
+        self.node.change_mode(mode)
+        self._sequence = 0
+        self._sticks: dict[str, float] = {}
+        self.depth(0.6)
+        self.attitude(heading=1.0)
+
+    def depth(self, metres: float) -> None:
+        record = Depth(time=0, depth=metres, pressure=0, temperature=0.0)
+        self.bus.publish_row("depth", self.clock.now(), record.to_bytes())
+
+    def attitude(self, heading: float = 0.0, pitch: float = 0.0, roll: float = 0.0) -> None:
+        rest = (0.0, 0.0, 0.0)
+        record = Imu(time=0, attitude=quaternion(heading, pitch, roll), rate=rest, force=rest)
+        self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
+
+    def push(self, **axes: float) -> None:
+        """Where the sticks are now."""
+        self._sequence += 1
+        sticks = [axes.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
+        words = {"lease": 0, "sequence": self._sequence, "taken": self.clock.now(), "axes": sticks}
+        assert self.pilot.take(json.dumps(words).encode())
+
+    def tick(self) -> Navigation | None:
+        """One tick on; what it sent."""
+        self.clock.forward(0.1)
+        self.push(**self._sticks)
+        before = len(self.commands)
+        self.node.tick()
+        return self.commands[-1] if len(self.commands) > before else None
+
+    def hold(self, **sticks: float) -> None:
+        """Keep the sticks there from now on."""
+        self._sticks = sticks
+
+
+def test_angles_are_steered_only_where_they_are_switched_on() -> None:
+    rig = Rig("automatic")
+    command = rig.tick()
+    assert command is not None
+    assert (command.yaw, command.pitch, command.roll) == (0.0, 0.0, 0.0)
+    assert all(isnan(one) for one in (*rig.turning[-1].set_point, *rig.turning[-1].output))
+    assert rig.turning[-1].measured == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
+    rig.node.set_loop("heading", on=True, set_point=1.5)
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw > 0
+    assert (command.pitch, command.roll) == (0.0, 0.0)
+    assert rig.turning[-1].set_point[0] == pytest.approx(1.5)
+    assert rig.turning[-1].output[0] == pytest.approx(command.yaw, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "measured", "side"), [(3.0, -3.0, -1), (-3.0, 3.0, 1), (0.1, -0.1, 1), (-pi, 3.0, 1)]
+)
+def test_a_heading_is_reached_the_short_way_round(wanted: float, measured: float, side: int) -> None:
+    rig = Rig("automatic")
+    rig.attitude(heading=measured)
+    rig.node.set_loop("heading", on=True, set_point=wanted)
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw * side > 0
+
+
+def test_passing_south_is_no_jump_for_the_controllers_speed() -> None:
+    rig = Rig("automatic")
+    rig.node.set_loop("heading", on=True, set_point=pi, gains={"kp": 0.0, "ki": 0.0, "kd": 1.0})
+    outputs = []
+    for heading in (3.0, 3.1, -3.083, -2.983):
+        rig.attitude(heading=heading)
+        command = rig.tick()
+        assert command is not None
+        outputs.append(command.yaw)
+    assert all(-0.9 < output < 0 for output in outputs[1:])
+
+
+def test_pitch_and_roll_push_against_their_error() -> None:
+    rig = Rig("automatic")
+    rig.attitude(pitch=0.2, roll=-0.2)
+    for name in ("pitch", "roll"):
+        rig.node.set_loop(name, on=True)
+    command = rig.tick()
+    assert command is not None
+    assert command.pitch < 0 < command.roll
+
+
+def test_the_way_to_a_light_has_the_yaw_to_itself() -> None:
+    rig = Rig("automatic")
+    rig.node.set_loop("heading", on=True, set_point=-2.0)
+    rig.node.steer("beacons")
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw == pytest.approx(0.5, abs=0.01)
+    assert isnan(rig.turning[-1].output[0])
+
+
+def test_everything_is_off_when_control_by_hand_begins_and_when_it_ends() -> None:
+    rig = Rig("automatic")
+    rig.node.set_loop("heading", on=True)
+    modes: tuple[Mode, ...] = ("manual", "automatic", "manual", "disarmed", "manual")
+    for mode in modes:
+        rig.node.change_mode(mode)
+        assert not any(loop.on for loop in rig.node.loops.values())
+        if mode == "manual":
+            rig.tick()
+            for name in rig.node.loops:
+                rig.node.set_loop(name, on=True)
+
+
+def test_by_hand_nothing_is_held_unasked() -> None:
+    rig = Rig("manual")
+    rig.hold(z=0.0, x=0.5)
+    command = rig.tick()
+    assert command == Navigation(x=0.5, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
+
+
+@pytest.mark.parametrize("name", ["depth", "heading"])
+def test_a_hold_keeps_what_was_when_it_was_switched_on_or_the_stick_let_go(name: str) -> None:
+    axis = {"depth": "z", "heading": "yaw"}[name]
+    rig = Rig("manual")
+    loop = rig.node.loops[name]
+
+    def be(value: float) -> Navigation:
+        rig.depth(value) if name == "depth" else rig.attitude(heading=value)
+        command = rig.tick()
+        assert command is not None
+        return command
+
+    be(0.6)
+    rig.node.set_loop(name, on=True)
+    assert loop.set_point == pytest.approx(0.6, abs=1e-3)
+    assert getattr(be(0.5), axis) > 0
+    rig.hold(**{axis: -0.7, "x": 1.0})
+    for value in (0.45, 0.3, 0.2):
+        command = be(value)
+        assert (getattr(command, axis), command.x) == (-0.7, 1.0)
+    assert loop.set_point == pytest.approx(0.2, abs=1e-3)
+    rig.hold(x=1.0)
+    assert getattr(be(0.1), axis) > 0
+    assert loop.set_point == pytest.approx(0.2, abs=1e-3)
+    rig.node.set_loop(name, on=False)
+    assert getattr(be(0.1), axis) == 0.0
+
+
+def test_a_hold_rests_with_the_fins_while_the_pilot_is_quiet() -> None:
+    rig = Rig("manual")
+    rig.tick()
+    rig.node.set_loop("depth", on=True, set_point=2.0)
+    command = rig.tick()
+    assert command is not None
+    assert command.z > 0
+    rig.clock.forward(0.5)
+    rig.node.tick()
+    assert rig.commands[-1].z == 0.0
+
+
+def test_the_pilots_input_goes_out_at_once_with_what_is_held() -> None:
+    rig = Rig("manual")
+    rig.tick()
+    rig.node.set_loop("depth", on=True, set_point=2.0)
+    rig.tick()
+    rig.push(x=-1.0)
+    rig.node.drive()
+    assert rig.commands[-1].x == -1.0
+    assert rig.commands[-1].z > 0
+    rig.node.change_mode("disarmed")
+    before = len(rig.commands)
+    rig.node.drive()
+    assert len(rig.commands) == before
+
+
+def test_a_loan_steers_until_the_mode_changes() -> None:
+    rig = Rig("automatic")
+    rig.node.heading.lent = Loan(BangBang(), set_point=-1.0)
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw == -1.0
+    assert rig.turning[-1].set_point[0] == -1.0
+    rig.node.change_mode("disarmed")
+    rig.node.change_mode("automatic")
+    command = rig.tick()
+    assert command is not None
+    assert command.yaw == 0.0
+
+
+def test_the_depths_set_point_is_the_default_one_but_where_it_is_held_by_hand() -> None:
+    rig = Rig("automatic")
+    rig.node.set_loop("depth", set_point=0.8)
+    rig.tick()
+    assert (rig.node.set_point_default, rig.node.depth.set_point) == (0.8, 0.8)
+    rig.node.change_mode("manual")
+    rig.tick()
+    rig.node.set_loop("depth", on=True, set_point=1.2)
+    rig.tick()
+    assert (rig.node.set_point_default, rig.node.depth.set_point) == (0.8, 1.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "why"),
+    [
+        ("yaw", {}, "no loop 'yaw'; there are depth, heading, pitch, roll"),
+        ("heading", {"set_point": 3.2}, "183 is not between -180 and 180 °"),
+        ("heading", {"set_point": float("nan")}, "not between"),
+        ("pitch", {"set_point": -0.6}, "-34 is not between"),
+        ("depth", {"set_point": 10.1}, "10.1 is not between 0 and 10 m"),
+        ("depth", {"on": True}, "always held in automatic"),
+        ("heading", {"controller": "bang_bang"}, "no controller 'bang_bang'; there are pid"),
+        ("heading", {"gains": {"kp": 1e9}}, "kp is 1000000000.0"),
+        ("heading", {"on": True, "set_point": 1.0, "gains": {"kq": 1.0}}, "no gain 'kq'"),
+    ],
+)
+def test_what_is_wrong_is_refused_and_changes_nothing(name: str, change: dict[str, object], why: str) -> None:
+    rig = Rig("automatic")
+    before = [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()]
+    with pytest.raises(Refused, match=why):
+        rig.node.set_loop(name, **change)  # type: ignore[arg-type]
+    assert [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()] == before
+
+
+def test_nothing_is_held_that_is_not_measured() -> None:
+    rig = Rig("manual")
+    with pytest.raises(Refused, match="Nothing is known of the heading yet"):
+        rig.node.set_loop("heading", on=True)
