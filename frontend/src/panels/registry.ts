@@ -23,7 +23,7 @@ export interface PanelKind {
   readonly tab?: 'motion' | 'sensors' | 'console' | 'events';
 }
 
-/** Those of the standard layout come with the page, the others when they are first shown. */
+/** What an operator looks at first comes with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
 
 /** Every panel that comes with the program, but for charts, of which there may be several (docs/panels.md). */
@@ -49,7 +49,7 @@ export const PANELS: readonly PanelKind[] = [
     title: 'Attitude',
     about: 'The artificial horizon',
     load: here(Horizon),
-    size: { width: 7, height: 9 },
+    size: { width: 7, height: 6 },
     least: { width: 5, height: 5 },
     tab: 'motion',
   },
@@ -67,8 +67,17 @@ export const PANELS: readonly PanelKind[] = [
     title: 'Fins',
     about: 'Angles, commanded and measured, and the drive of the motors',
     load: here(Fins),
-    size: { width: 7, height: 8 },
+    size: { width: 7, height: 6 },
     least: { width: 6, height: 6 },
+    tab: 'motion',
+  },
+  {
+    name: 'robot',
+    title: 'Robot',
+    about: 'The robot in space, its fins as the encoders say',
+    load: () => import('./robot3d/Robot3d.svelte'),
+    size: { width: 7, height: 6 },
+    least: { width: 5, height: 5 },
     tab: 'motion',
   },
   {
