@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from math import remainder, tau
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,7 +63,7 @@ class Motion:
         while len(looks) > 1 and looks[1][0] <= time - SPAN:
             looks.popleft()
         pairs = zip(fins.angles, looks[0][1], strict=True)
-        return any(abs(now - then) > MOVING * SPAN for now, then in pairs)
+        return any(abs(remainder(now - then, tau)) > MOVING * SPAN for now, then in pairs)
 
 
 class Fins:
