@@ -2452,11 +2452,6 @@ export interface components {
             until: number;
         };
         /**
-         * RowTopic
-         * @enum {string}
-         */
-        RowTopic: "imu" | "depth" | "beacon" | "motor" | "status" | "navigation" | "control" | "link" | "truth";
-        /**
          * Run
          * @description A run with its configuration and its cells.
          */
@@ -4947,7 +4942,7 @@ export interface operations {
         parameters: {
             query: {
                 /** @description of rows; may be given several times */
-                topic: components["schemas"]["RowTopic"][];
+                topic: string[];
                 /** @description s, steady clock; a little more may come */
                 until: number;
             };
