@@ -9,8 +9,7 @@ from types import TracebackType
 from typing import Self
 
 from websockets.client import ClientProtocol
-from websockets.frames import Opcode
-from websockets.http11 import Response
+from websockets.frames import Frame, Opcode
 from websockets.protocol import State
 from websockets.uri import parse_uri
 
@@ -95,12 +94,13 @@ class Viewer:
             raise ConnectionError("the other end has closed")
         self._protocol.receive_data(data)
         for event in self._protocol.events_received():
-            if isinstance(event, Response):
+            if not isinstance(event, Frame):
                 continue
+            data = bytes(event.data)
             if event.opcode is Opcode.TEXT:
-                self._ready.append(event.data.decode())
+                self._ready.append(data.decode())
             elif event.opcode is Opcode.BINARY:
-                self._ready.append(bytes(event.data))
+                self._ready.append(data)
         self._flush()
         return self._protocol.state is State.OPEN
 

@@ -48,7 +48,7 @@ def measure() -> dict[str, float]:
         ):
             wait_for_samples(lambda: open_viewer(data, port))
             browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
-            figures = {}
+            figures: dict[str, float] = {}
             for name, path in (("page", ""), ("uplot", "bare.html")):
                 page, devtools = _open(browser, url, data, f"{url}/{path}")
                 figures |= {f"{name}.{figure}": value for figure, value in _draw(page, devtools).items()}

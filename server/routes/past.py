@@ -1,17 +1,18 @@
 """The minutes before a page was opened, for the charts that show them."""
 
-from enum import StrEnum
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
+from pydantic import StringConstraints
 
 from robot_runtime.topics import TOPICS, Kind
 from server.assembly import Assembly
 
 router = APIRouter(prefix="/api/past", tags=["live"])
 
-RowTopic = StrEnum("RowTopic", {topic.name: topic.name for topic in TOPICS if topic.kind is Kind.ROWS})
+_ROWS = "|".join(topic.name for topic in TOPICS if topic.kind is Kind.ROWS)
+RowTopic = Annotated[str, StringConstraints(pattern=f"^({_ROWS})$")]
 
 
 @router.get(
