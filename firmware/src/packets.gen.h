@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-constexpr uint32_t kDefinitionsHash = 0xc4f263b5UL;
+constexpr uint32_t kDefinitionsHash = 0x02624005UL;
 constexpr uint8_t kFinCount = 4;
 constexpr uint8_t kFrameBytesMax = 64;
 constexpr uint8_t kNotReady = 128;

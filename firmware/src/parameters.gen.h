@@ -26,7 +26,7 @@ struct ParameterLimits {
 const ParameterLimits kParameterLimits[kParameterCount] PROGMEM = {
     {1300, 300, 2000, true},
     {1600, 200, 1600, true},
-    {4908, 2500, 4908, true},
+    {4909, 2500, 4909, true},
     {625, 300, 1200, true},
     {6200, 6200, 7400, false},
 };
