@@ -23,7 +23,14 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
             served.runtime.publish(state_block(0))
             await until(served.assembly.watch.state, "the state")
             await served.reached()
-            whole = {"type": "number", "default": 0, "minimum": 0, "maximum": 9, "unit": "", "meaning": ""}
+            whole: dict[str, object] = {
+                "type": "number",
+                "default": 0,
+                "minimum": 0,
+                "maximum": 9,
+                "unit": "",
+                "meaning": "",
+            }
             whole |= {"choices": [], "where": "runtime", "while_armed": True, "pending": False}
             served.runtime.parameters["parameters"] = [whole | one for one in LISTED]
             await scenario(served)
