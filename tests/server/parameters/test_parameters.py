@@ -13,7 +13,10 @@ from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
-LISTED = [{"name": "depth.pid.kp", "value": 3.0}, {"name": "vision.colour", "value": "red"}]
+LISTED: list[dict[str, Any]] = [
+    {"name": "depth.pid.kp", "value": 3.0},
+    {"name": "vision.colour", "value": "red"},
+]
 
 
 def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
@@ -23,7 +26,14 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
             served.runtime.publish(state_block(0))
             await until(served.assembly.watch.state, "the state")
             await served.reached()
-            whole = {"type": "number", "default": 0, "minimum": 0, "maximum": 9, "unit": "", "meaning": ""}
+            whole: dict[str, Any] = {
+                "type": "number",
+                "default": 0,
+                "minimum": 0,
+                "maximum": 9,
+                "unit": "",
+                "meaning": "",
+            }
             whole |= {"choices": [], "where": "runtime", "while_armed": True, "pending": False}
             served.runtime.parameters["parameters"] = [whole | one for one in LISTED]
             await scenario(served)

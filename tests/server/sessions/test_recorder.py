@@ -19,6 +19,7 @@ from server.models import Chunk, Gap
 from server.sessions.catalogue import Catalogue
 from server.sessions.chunks import decode_rows
 from server.sessions.recorder import Recorder, RecordingRefused
+from server.sessions.recording import Recording
 from server.sessions.session import find_row, new_row
 from server.settings import Settings
 from server.store import Store, StoreError
@@ -391,3 +392,25 @@ def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) 
         assert [one.state for one in Catalogue(deck.store).list()] == ["recording", "interrupted"]
 
     play(scenario)
+
+
+def test_a_session_begins_with_the_parameters_in_force(deck: Deck, store: Store) -> None:
+    def told(number: int, kp: float) -> Block:
+        listed = [{"name": "depth.pid.kp", "value": kp}]
+        payload = json.dumps([{"time": 40.0 + number, "parameters": listed}]).encode()
+        return Block.of(BY_NAME["parameters"], 1, number, payload)
+
+    async def scenario() -> None:
+        for number, kp in enumerate((3.0, 4.0)):
+            deck.recorder.add(told(number, kp))
+        await deck.start()
+        deck.recorder.add(told(2, 5.0))
+        await deck.recorder.flush()
+
+    play(scenario)
+    row = find_row(store, 1)
+    assert row is not None
+    documents = list(Recording(store, row).documents("parameters"))
+    assert [(one["time"], one["parameters"][0]["value"]) for one in documents] == [(50.0, 4.0), (42.0, 5.0)]
+    assert deck.numbers("parameters") == [1, 2]
+    assert deck.gaps() == []
