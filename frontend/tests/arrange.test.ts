@@ -75,7 +75,7 @@ describe('Arranger', () => {
     };
     let now: readonly Placed[] = PANELS_THREE;
     let changed = 0;
-    for (let step = 0; step < 4000; step += 1) {
+    for (let step = 0; step < 800; step += 1) {
       const one = now[random(now.length)];
       const by = () => random(9) - 4;
       const kind = one === undefined ? 3 : random(5);
@@ -89,7 +89,7 @@ describe('Arranger', () => {
       now = done.panels;
       expect(readLayout({ format: 'mucat-layout', version: 1, panels: now })).toHaveProperty('panels');
     }
-    expect(changed).toBeGreaterThan(1000);
+    expect(changed).toBeGreaterThan(150);
   });
 });
 
