@@ -81,7 +81,7 @@ def test_in_the_simulated_water_it_rests_where_the_thesiss_controller_swings(cra
     robot = variants()[craft]
     found = perform(BEST, robot, sine=False)
     assert found.steady <= 0.02
-    assert found.overshoot <= 0.10
+    assert found.overshoot <= 0.12
     if craft == "nominal":
         thesis = perform(THESIS, robot, sine=False)
         assert thesis.steady > 0.14
