@@ -25,7 +25,7 @@ class HeadingPid(Pid):
 class PitchPid(Pid):
     """Buoyancy rights the hull, faster than the fins turn round: only the integral is of use."""
 
-    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.6, 0.0)
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)
 
 
 class RollPid(Pid):
