@@ -2,8 +2,7 @@
 import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
 import type { State } from './generated/topics';
-import { command, download, request, send, upload } from './http';
-import { command, request, send, upload, type Answer } from './http';
+import { command, download, request, send, upload, type Answer } from './http';
 
 export type { Answer, Downloaded } from './http';
 
@@ -33,7 +32,7 @@ export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
 export type VisionSettings = Schemas['VisionSettings'];
 export type ColourRange = Schemas['ColourRange'];
-export type Proposal = Schemas['Proposal'];
+export type PickedColour = Schemas['PickedColour'];
 export type View = Schemas['View'];
 export type Course = Schemas['Course']['by'];
 export type KeptLayout = Schemas['KeptLayout'];
@@ -130,7 +129,7 @@ export const api = {
   vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
   visionSettings: () => request<Schemas['VisionInForce']>('GET', '/vision'),
   changeVision: (settings: VisionSettings) => order('PUT', '/vision', settings),
-  pick: (place: Schemas['PickPlace']) => request<Proposal>('POST', '/vision/pick', place),
+  pick: (place: Schemas['PickPlace']) => request<PickedColour>('POST', '/vision/pick', place),
   visionFile: '/api/vision/toml',
   readVision: (text: string) => request<VisionSettings>('POST', '/vision/read', { text }),
   changeParameters: (values: Profile['values']) => order('PATCH', '/parameters', { values }),

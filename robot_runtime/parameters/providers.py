@@ -10,7 +10,6 @@ from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.steering import STEERINGS
 from robot_runtime.parameters.entry import Entry
-from robot_runtime.samples import ParameterValue
 from robot_runtime.vision.node import Vision
 from robot_runtime.vision_settings import VisionSettings
 
@@ -90,13 +89,16 @@ def _tune(controller: Controller, name: str, value: float) -> None:
 
 
 def _vision(vision: Vision, set_vision: Callable[[VisionSettings], None]) -> Iterator[Entry]:
-    def change(name: str, value: ParameterValue) -> None:
-        set_vision(replace(vision.settings, **{name: value}))
+    def look(rate: float) -> None:
+        set_vision(replace(vision.settings, rate=rate))
+
+    def want(colour: str) -> None:
+        set_vision(replace(vision.settings, colour=colour))
 
     yield Entry(
         name="vision.rate",
         get=lambda: vision.settings.rate,
-        set=partial(change, "rate"),
+        set=look,
         minimum=VISION_RATE.minimum,
         maximum=VISION_RATE.maximum,
         unit="Hz",
@@ -106,7 +108,7 @@ def _vision(vision: Vision, set_vision: Callable[[VisionSettings], None]) -> Ite
         name="vision.colour",
         type="choice",
         get=lambda: vision.settings.colour,
-        set=partial(change, "colour"),
+        set=want,
         choices=lambda: list(vision.settings.colours),
         meaning="the colour that changes the set point",
     )

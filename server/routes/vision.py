@@ -10,7 +10,7 @@ from server.assembly import Assembly
 from server.routes.problems import answers
 from server.routes.robot import COMMAND, SILENT
 from server.vision.document import check, read_document, write_document
-from server.vision.shapes import PickPlace, Proposal, VisionInForce, VisionSettings, VisionText, as_model
+from server.vision.shapes import PickedColour, PickPlace, VisionInForce, VisionSettings, VisionText, as_model
 
 router = APIRouter(prefix="/api/vision", tags=["vision"])
 
@@ -45,10 +45,10 @@ async def put_settings(request: Request, settings: VisionSettings) -> None:
     operation_id="pickColour",
     responses={**answers(_409="There is no colour, or no picture"), **SILENT},
 )
-async def pick(request: Request, place: PickPlace) -> Proposal:
+async def pick(request: Request, place: PickPlace) -> PickedColour:
     """A range for what is there in the newest picture. It changes nothing."""
     told = await Assembly.of(request).bridge.query("pick", place.model_dump())
-    return Proposal.model_validate(told, extra="ignore")
+    return PickedColour.model_validate(told, extra="ignore")
 
 
 @router.get(

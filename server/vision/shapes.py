@@ -76,7 +76,7 @@ class PickPlace(BaseModel):
     ] = 0.02
 
 
-class Proposal(BaseModel):
+class PickedColour(BaseModel):
     """The range that was found, and how much of the picture it holds."""
 
     colour: ColourRange

@@ -148,6 +148,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/backup": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download a copy of the database
+         * @description Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile.
+         */
+        get: operations["downloadBackup"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/comm-tests/cancel": {
         parameters: {
             query?: never;
@@ -620,6 +640,54 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/layouts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The layouts that are kept
+         * @description By name.
+         */
+        get: operations["listLayouts"];
+        put?: never;
+        /**
+         * Keep a layout
+         * @description Keep it under its name, over one of that name.
+         */
+        post: operations["saveLayout"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/layouts/{layout}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A layout
+         * @description With its document as it was kept, which the page reads.
+         */
+        get: operations["getLayout"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a layout
+         * @description Delete it for good; pages that show it go on showing it.
+         */
+        delete: operations["deleteLayout"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/link/frames": {
         parameters: {
             query?: never;
@@ -640,6 +708,130 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/panels": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One's own panels
+         * @description Those in the folder `panels` of the data folder, by name.
+         */
+        get: operations["listPanels"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/frame": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Where one's own panels run
+         * @description A page with an origin of its own, which hears samples and can ask nobody for anything.
+         */
+        get: operations["getPanelFrame"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/panels/own/{panel}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A panel's script
+         * @description As text, which the page hands to a frame.
+         */
+        get: operations["getPanel"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/parameters": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Everything that may be tuned
+         * @description Each with its type, its range, its unit, its meaning and its value, as it is now.
+         */
+        get: operations["getParameters"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /**
+         * Change parameters
+         * @description All or none, between two control ticks; what has the value already is not changed.
+         */
+        patch: operations["changeParameters"];
+        trace?: never;
+    };
+    "/api/parameters/changes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Who changed what
+         * @description The newest hundred, the newest first.
+         */
+        get: operations["listParameterChanges"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/parameters/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Undo a change
+         * @description Set back what the newest change has changed; then the one before it is the newest.
+         */
+        post: operations["undoParameters"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/past": {
         parameters: {
             query?: never;
@@ -654,6 +846,110 @@ export interface paths {
         get: operations["getPast"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/profiles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Profiles
+         * @description In alphabetical order, with their values.
+         */
+        get: operations["listProfiles"];
+        put?: never;
+        /**
+         * Keep what is in force
+         * @description Every parameter as it is now, under a name.
+         */
+        post: operations["saveProfile"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/profiles/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take a profile from a file
+         * @description Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told.
+         */
+        post: operations["importProfile"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/profiles/{profile}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Delete a profile
+         * @description For good.
+         */
+        delete: operations["deleteProfile"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/profiles/{profile}/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A profile as a file
+         * @description JSON, which another robot takes too.
+         */
+        get: operations["downloadProfile"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/profiles/{profile}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Bring a profile into force
+         * @description All of its parameters that can be set now; what is unknown or out of range is left out, and said.
+         */
+        post: operations["restoreProfile"];
         delete?: never;
         options?: never;
         head?: never;
@@ -773,6 +1069,26 @@ export interface paths {
          * @description Choose a controller, and set gains of it.
          */
         put: operations["putController"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/loops/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Steer or hold depth or an angle
+         * @description Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing.
+         */
+        put: operations["putLoop"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1304,6 +1620,182 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/tuning/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The runs on a loop
+         * @description Newest first, without their curves; and what the figures of a step response are.
+         */
+        get: operations["listTuningRuns"];
+        put?: never;
+        /**
+         * Begin a run
+         * @description On the armed robot, in automatic. Afterwards the loop goes on as before.
+         */
+        post: operations["startTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/runs/{run}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One run
+         * @description With its curve, and of a relay experiment with the gains that the rules propose.
+         */
+        get: operations["getTuningRun"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete a run
+         * @description For good; refused while it runs.
+         */
+        delete: operations["deleteTuningRun"];
+        options?: never;
+        head?: never;
+        /**
+         * Name a run
+         * @description Call it otherwise.
+         */
+        patch: operations["renameTuningRun"];
+        trace?: never;
+    };
+    "/api/tuning/state": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What runs
+         * @description The run that is on, and the one that ended last, as on the live socket.
+         */
+        get: operations["getTuningState"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tuning/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop the run that is on
+         * @description The robot stays armed, and goes on as before the run. What was measured so far is kept.
+         */
+        post: operations["stopTuningRun"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * How the vision node looks
+         * @description All settings that may change while it looks, and what robot.toml says of them.
+         */
+        get: operations["getVision"];
+        /**
+         * Have the vision node look otherwise
+         * @description All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that.
+         */
+        put: operations["putVisionSettings"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/pick": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * The colour at a place in the picture
+         * @description A range for what is there in the newest picture. It changes nothing.
+         */
+        post: operations["pickColour"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/read": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read the settings in a robot.toml
+         * @description What its table [vision] says. It changes nothing.
+         */
+        post: operations["readVision"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/vision/toml": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The settings as a part of robot.toml
+         * @description The table [vision], to be kept or to be put into robot.toml.
+         */
+        get: operations["downloadVision"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -1343,6 +1835,47 @@ export interface components {
             session: number | null;
             /** Title */
             title: string;
+        };
+        /**
+         * ActiveTuning
+         * @description The run that is on.
+         */
+        ActiveTuning: {
+            /**
+             * Began
+             * @description s, steady clock
+             */
+            began: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Phase
+             * @enum {string}
+             */
+            phase: "settling" | "balancing" | "running" | "complete" | "stopped" | "failed";
+            /** Progress */
+            progress: number;
+            /** Run */
+            run: number;
+            /** Settings */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Since
+             * @description s, steady clock, when its phase began
+             */
+            since: number;
         };
         /**
          * Alarm
@@ -1464,6 +1997,51 @@ export interface components {
             uart_overruns: number;
         };
         /**
+         * Change
+         * @description Parameters that somebody changed together.
+         */
+        Change: {
+            /** Id */
+            id: number;
+            /**
+             * Time
+             * Format: date-time
+             * @description UTC
+             */
+            time: string;
+            /**
+             * Undoable
+             * @description whether it is the next that can be undone
+             */
+            undoable: boolean;
+            /**
+             * Undone
+             * @description by whom; empty where it was not undone
+             */
+            undone: string;
+            /** Values */
+            values: components["schemas"]["ChangedValue"][];
+            /** Who */
+            who: string;
+            /**
+             * Why
+             * @description “Profile NAME” where a profile was restored, else empty
+             */
+            why: string;
+        };
+        /**
+         * ChangedValue
+         * @description One parameter before and after a change.
+         */
+        ChangedValue: {
+            /** After */
+            after: boolean | number | string;
+            /** Before */
+            before: boolean | number | string;
+            /** Name */
+            name: string;
+        };
+        /**
          * Check
          * @description What is wrong with a document, field by field; or its tests.
          */
@@ -1508,6 +2086,27 @@ export interface components {
             pi_delays: number[];
             /** Seconds */
             seconds: number;
+        };
+        /**
+         * ColourRange
+         * @description Lowest and highest hue, saturation and value, as OpenCV counts them; hues may run through 0.
+         */
+        ColourRange: {
+            /** Hue */
+            hue: [
+                number,
+                number
+            ];
+            /** Saturation */
+            saturation: [
+                number,
+                number
+            ];
+            /** Value */
+            value: [
+                number,
+                number
+            ];
         };
         /**
          * Compared
@@ -1609,6 +2208,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * ControlState
@@ -1623,6 +2227,11 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
             refused: components["schemas"]["RefusedSeat"] | null;
             request: components["schemas"]["Asking"] | null;
+            /**
+             * Seats
+             * @description all that there are, the oldest first
+             */
+            seats: components["schemas"]["Seated"][];
         };
         /**
          * Controller
@@ -1709,7 +2318,7 @@ export interface components {
         Difference: {
             /**
              * Group
-             * @description In force, Session, robot.toml or Scenario
+             * @description In force, Parameters, Session, robot.toml or Scenario
              */
             group: string;
             /** Name */
@@ -1894,6 +2503,20 @@ export interface components {
             unit: string;
         };
         /**
+         * Force
+         * @description The controller in force, with its gains.
+         */
+        Force: {
+            /** Controller */
+            controller: string;
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Title */
+            title: string;
+        };
+        /**
          * Gain
          * @description One number of a controller that may be tuned.
          */
@@ -1960,6 +2583,15 @@ export interface components {
             start: number;
         };
         /**
+         * Imported
+         * @description A profile from a file, and those of its parameters that this robot does not know.
+         */
+        Imported: {
+            profile: components["schemas"]["Profile"];
+            /** Unknown */
+            unknown: string[];
+        };
+        /**
          * Job
          * @description One file, made or to be made. It is kept for some days.
          */
@@ -2010,6 +2642,21 @@ export interface components {
             wanted: components["schemas"]["Wanted"];
         };
         /**
+         * KeptLayout
+         * @description A layout by its name.
+         */
+        KeptLayout: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
+        };
+        /**
          * Known
          * @description Somebody who is signed in; device 0 is the shell of the robot's computer.
          */
@@ -2028,6 +2675,74 @@ export interface components {
              * @enum {string}
              */
             role: "viewer" | "operator";
+        };
+        /**
+         * LayoutDocument
+         * @description Where the panels of Operate stand.
+         */
+        LayoutDocument: {
+            /**
+             * Format
+             * @constant
+             */
+            format: "mucat-layout";
+            /** Panels */
+            panels: components["schemas"]["PlacedPanel"][];
+            /** Version */
+            version: number;
+        };
+        /**
+         * LeftOut
+         * @description A parameter that was not taken.
+         */
+        LeftOut: {
+            /** Name */
+            name: string;
+            /** Why */
+            why: string;
+        };
+        /**
+         * LimitCycleFound
+         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
+         */
+        LimitCycleFound: {
+            /**
+             * Amplitude
+             * @description d: of the command, either way from the bias
+             */
+            amplitude: number;
+            /**
+             * Asymmetry
+             * @description share of the cycle by which its halves differ; 0: none
+             */
+            asymmetry: number;
+            /**
+             * Bias
+             * @description mean command, which balances the load
+             */
+            bias: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Period
+             * @description ultimate period, s
+             */
+            period: number;
+            /**
+             * Remarks
+             * @description what makes these figures doubtful
+             */
+            remarks: string[];
+            /**
+             * Swing
+             * @description a: half of the height from peak to peak
+             */
+            swing: number;
+            /**
+             * Ultimate Gain
+             * @description command for each unit of the loop
+             */
+            ultimate_gain: number;
         };
         /**
          * Line
@@ -2134,6 +2849,48 @@ export interface components {
             time: number;
         };
         /**
+         * Loop
+         * @description One thing that the robot steers by: depth (m), heading, pitch or roll (rad).
+         */
+        Loop: {
+            /** Controller */
+            controller: string;
+            /** Controllers */
+            controllers: components["schemas"]["ControllerChoice"][];
+            /** Name */
+            name: string;
+            /** On */
+            on: boolean;
+            /** Set Point */
+            set_point: number;
+        };
+        /**
+         * LoopChange
+         * @description What is to change about a loop; what is left out stays as it is.
+         */
+        LoopChange: {
+            /** Controller */
+            controller?: string | null;
+            /**
+             * Gains
+             * @description of this or the chosen controller
+             * @default {}
+             */
+            gains: {
+                [key: string]: number;
+            };
+            /**
+             * On
+             * @description steer it; in manual: hold it
+             */
+            on?: boolean | null;
+            /**
+             * Set Point
+             * @description m, of the angles rad
+             */
+            set_point?: number | null;
+        };
+        /**
          * MadeCode
          * @description A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
          */
@@ -2198,6 +2955,11 @@ export interface components {
          */
         Me: {
             identity: components["schemas"]["Known"] | null;
+            /**
+             * Operators Only
+             * @description operations that viewers are refused, by their names
+             */
+            operators_only: string[];
             /** Pairing Open */
             pairing_open: boolean;
             /** Robot */
@@ -2277,6 +3039,15 @@ export interface components {
             topics?: string[] | null;
         };
         /**
+         * NewLayout
+         * @description A layout that is to be kept under a name.
+         */
+        NewLayout: {
+            document: components["schemas"]["LayoutDocument"];
+            /** Name */
+            name: string;
+        };
+        /**
          * NewMark
          * @description A moment to be marked: s since the session's start, or null for now.
          */
@@ -2288,6 +3059,19 @@ export interface components {
             text: string;
             /** Time */
             time?: number | null;
+        };
+        /**
+         * NewProfile
+         * @description The parameters in force are to be kept under this name.
+         */
+        NewProfile: {
+            /** Name */
+            name: string;
+            /**
+             * Note
+             * @default
+             */
+            note: string;
         };
         /**
          * NewSession
@@ -2320,6 +3104,16 @@ export interface components {
             role: "viewer" | "operator";
         };
         /**
+         * NewValues
+         * @description Parameters that are to change, by name: all or none.
+         */
+        NewValues: {
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
          * NextEvent
          * @description What happens next.
          */
@@ -2331,6 +3125,29 @@ export interface components {
             at: number;
             /** Words */
             words: string;
+        };
+        /**
+         * OwnPanel
+         * @description A panel by the name of its file; `problem` says why it cannot be shown.
+         */
+        OwnPanel: {
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @default
+             */
+            problem: string;
+        };
+        /**
+         * OwnPanelScript
+         * @description What a panel's file holds: an ES module.
+         */
+        OwnPanelScript: {
+            /** Name */
+            name: string;
+            /** Script */
+            script: string;
         };
         /**
          * Pace
@@ -2351,6 +3168,52 @@ export interface components {
             code: string;
             /** Name */
             name: string;
+        };
+        /**
+         * Parameter
+         * @description Something that may be tuned while the robot runs, and its value.
+         */
+        Parameter: {
+            /** Choices */
+            choices: string[];
+            /** Default */
+            default: number | string | boolean;
+            /** Maximum */
+            maximum: number | null;
+            /** Meaning */
+            meaning: string;
+            /** Minimum */
+            minimum: number | null;
+            /** Name */
+            name: string;
+            /** Pending */
+            pending: boolean;
+            /**
+             * Type
+             * @enum {string}
+             */
+            type: "number" | "whole" | "choice" | "switch";
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number | string | boolean;
+            /**
+             * Where
+             * @enum {string}
+             */
+            where: "runtime" | "firmware";
+            /** While Armed */
+            while_armed: boolean;
+        };
+        /**
+         * Parameters
+         * @description Every parameter; sent at each change and every ten seconds.
+         */
+        Parameters: {
+            /** Parameters */
+            parameters: components["schemas"]["Parameter"][];
+            /** Time */
+            time: number;
         };
         /**
          * PartHealth
@@ -2376,6 +3239,37 @@ export interface components {
             text: string;
         };
         /**
+         * PickPlace
+         * @description Where somebody points in the picture.
+         */
+        PickPlace: {
+            /**
+             * Radius
+             * @description share of its width; what is nearer counts
+             * @default 0.02
+             */
+            radius: number;
+            /**
+             * X
+             * @description share of the picture's width
+             */
+            x: number;
+            /**
+             * Y
+             * @description share of its height
+             */
+            y: number;
+        };
+        /**
+         * PickedColour
+         * @description The range that was found, and how much of the picture it holds.
+         */
+        PickedColour: {
+            colour: components["schemas"]["ColourRange"];
+            /** Share */
+            share: number;
+        };
+        /**
          * Place
          * @description Whether the simulator runs on this computer.
          */
@@ -2384,12 +3278,84 @@ export interface components {
             here: boolean;
         };
         /**
+         * PlacedPanel
+         * @description A panel and where it stands, in columns and rows of the grid from its upper left corner.
+         */
+        PlacedPanel: {
+            chart?: components["schemas"]["ShownChart"] | null;
+            /** Height */
+            height: number;
+            /** Id */
+            id: string;
+            /** Panel */
+            panel: string;
+            /** Width */
+            width: number;
+            /** X */
+            x: number;
+            /** Y */
+            y: number;
+        };
+        /**
          * Problem
          * @description What happened, why, and what to do.
          */
         Problem: {
             /** Detail */
             detail: string;
+        };
+        /**
+         * Profile
+         * @description Parameters that are kept under a name.
+         */
+        Profile: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /** Note */
+            note: string;
+            /**
+             * Saved
+             * Format: date-time
+             * @description UTC
+             */
+            saved: string;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
+         * ProfileText
+         * @description A profile's file, as text.
+         */
+        ProfileText: {
+            /** Text */
+            text: string;
+        };
+        /**
+         * Proposal
+         * @description Gains by a named rule.
+         */
+        Proposal: {
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
+            /** Known For */
+            known_for: string;
+            /**
+             * Problem
+             * @description why these cannot be set; empty where they can
+             */
+            problem: string;
+            /** Rule */
+            rule: string;
+            /** Source */
+            source: string;
+            /** Title */
+            title: string;
         };
         /**
          * QueuedRun
@@ -2450,6 +3416,68 @@ export interface components {
              * @description s, steady clock
              */
             until: number;
+        };
+        /**
+         * RelayStart
+         * @description A relay in the place of a loop's controller.
+         */
+        RelayStart: {
+            /**
+             * Amplitude
+             * @description d, share of the most command
+             */
+            amplitude: number;
+            /**
+             * Cycles
+             * @description that are measured
+             */
+            cycles: number;
+            /**
+             * Duration
+             * @description s after which it gives up
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * Hysteresis
+             * @description ε, in the loop's unit
+             */
+            hysteresis: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "relay";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Set Point
+             * @description m, of an angle rad
+             */
+            set_point: number;
+        };
+        /**
+         * Restored
+         * @description What a profile's restoring did.
+         */
+        Restored: {
+            /** Changed */
+            changed: components["schemas"]["ChangedValue"][];
+            /** Left Out */
+            left_out: components["schemas"]["LeftOut"][];
         };
         /**
          * Run
@@ -2716,6 +3744,26 @@ export interface components {
              * @description s after its last use
              */
             lasts: number;
+            /** Seat */
+            seat: number;
+        };
+        /**
+         * Seated
+         * @description One page or program that is there; those of operators may have control.
+         */
+        Seated: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
             /** Seat */
             seat: number;
         };
@@ -2994,6 +4042,16 @@ export interface components {
             detected?: number | null;
         };
         /**
+         * ShownChart
+         * @description What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds.
+         */
+        ShownChart: {
+            /** Seconds */
+            seconds: number;
+            /** Signals */
+            signals: string[];
+        };
+        /**
          * Signal
          * @description One number that a session holds over time; `name` is topic and column with a dot between them.
          */
@@ -3047,6 +4105,8 @@ export interface components {
             camera: string;
             /** Card */
             card: string | null;
+            /** Cards */
+            cards?: string[];
             /** Colours */
             colours: string[];
             /** Connected */
@@ -3061,6 +4121,8 @@ export interface components {
             controllers: components["schemas"]["ControllerChoice"][];
             /** Epoch */
             epoch: number | null;
+            /** Loops */
+            loops?: components["schemas"]["Loop"][];
             /**
              * Mode
              * @enum {string}
@@ -3097,6 +4159,58 @@ export interface components {
             vision_colour: string;
             /** Vision Rate */
             vision_rate: number;
+        };
+        /**
+         * StepStart
+         * @description A step of a loop's set point.
+         */
+        StepStart: {
+            /**
+             * Duration
+             * @description s from the step on
+             */
+            duration: number;
+            /**
+             * High
+             * @description m, of an angle rad
+             */
+            high: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "step";
+            /**
+             * Loop
+             * @default depth
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /**
+             * Low
+             * @description m, of an angle rad
+             */
+            low: number;
+            /**
+             * Settle
+             * @description s for which the start is held at most
+             */
+            settle: number;
+            /**
+             * Start
+             * @description m, of an angle rad
+             */
+            start: number;
+            /**
+             * Target
+             * @description m, of an angle rad
+             */
+            target: number;
+            /**
+             * Tolerance
+             * @description how near to the start counts as settled
+             */
+            tolerance: number;
         };
         /**
          * Storage
@@ -3270,6 +4384,172 @@ export interface components {
             time: number;
         };
         /**
+         * TuningCurve
+         * @description The loop's ticks, in its unit. Times in s: since the step, or since the relay took over.
+         */
+        TuningCurve: {
+            /** Outputs */
+            outputs: number[];
+            /** Set Points */
+            set_points: number[];
+            /** Times */
+            times: number[];
+            /** Values */
+            values: number[];
+        };
+        /**
+         * TuningName
+         * @description What a run is to be called.
+         */
+        TuningName: {
+            /** Name */
+            name: string;
+        };
+        /**
+         * TuningRun
+         * @description A run, without its curve.
+         */
+        TuningRun: {
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRunDetail
+         * @description A run with everything that is known of it.
+         */
+        TuningRunDetail: {
+            curve: components["schemas"]["TuningCurve"];
+            /** @description of a relay experiment */
+            cycle: components["schemas"]["LimitCycleFound"] | null;
+            /**
+             * Figures
+             * @description of a step response, by name
+             */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            force: components["schemas"]["Force"];
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "step" | "relay";
+            /**
+             * Loop
+             * @enum {string}
+             */
+            loop: "depth" | "heading" | "pitch" | "roll";
+            /** Name */
+            name: string;
+            /**
+             * Problem
+             * @description why it did not complete
+             */
+            problem: string;
+            /**
+             * Proposals
+             * @description of a relay experiment: gains of a PID by several rules
+             */
+            proposals: components["schemas"]["Proposal"][];
+            /**
+             * Settings
+             * @description as it was started
+             */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Started
+             * Format: date-time
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "stopped" | "failed" | "interrupted";
+        };
+        /**
+         * TuningRuns
+         * @description The runs on a loop, newest first, and what their figures are.
+         */
+        TuningRuns: {
+            /** Figures */
+            figures: components["schemas"]["FigureMeaning"][];
+            /** Runs */
+            runs: components["schemas"]["TuningRun"][];
+        };
+        /**
+         * TuningStarted
+         * @description The run that has begun.
+         */
+        TuningStarted: {
+            /** Run */
+            run: number;
+        };
+        /**
+         * TuningState
+         * @description What runs, and what ended last since the server started.
+         */
+        TuningState: {
+            active: components["schemas"]["ActiveTuning"] | null;
+            last: components["schemas"]["TuningRun"] | null;
+        };
+        /**
+         * Undo
+         * @description Which change is to be undone: the newest that is not undone.
+         */
+        Undo: {
+            /** Change */
+            change: number;
+        };
+        /**
          * View
          * @description The bystander's view; all pages share it.
          */
@@ -3308,6 +4588,98 @@ export interface components {
              * @description Hz
              */
             rate?: number | null;
+        };
+        /**
+         * VisionInForce
+         * @description The settings now, and those of robot.toml.
+         */
+        VisionInForce: {
+            configured: components["schemas"]["VisionSettings"];
+            settings: components["schemas"]["VisionSettings"];
+        };
+        /**
+         * VisionSettings
+         * @description How the vision node looks, all of it; docs/vision.md explains each.
+         */
+        VisionSettings: {
+            /**
+             * Actions
+             * @description m, by colour or “marker 7”; the first goes
+             */
+            actions: {
+                [key: string]: number;
+            };
+            /**
+             * Area Max
+             * @description share of the picture
+             */
+            area_max: number;
+            /**
+             * Area Min
+             * @description share of the picture
+             */
+            area_min: number;
+            /**
+             * Aspect
+             * @description width over height
+             */
+            aspect: [
+                number,
+                number
+            ];
+            /**
+             * Circularity Min
+             * @description least 4π area over perimeter²
+             */
+            circularity_min: number;
+            /**
+             * Colour
+             * @description the wanted one, of the colours
+             */
+            colour: string;
+            /** Colours */
+            colours: {
+                [key: string]: components["schemas"]["ColourRange"];
+            };
+            /**
+             * Fill Min
+             * @description least area over that of the upright box
+             */
+            fill_min: number;
+            /**
+             * Marker Numbers
+             * @description those that count; empty: all
+             */
+            marker_numbers: number[];
+            /**
+             * Markers
+             * @description dictionary of ArUco markers
+             * @enum {string}
+             */
+            markers: "none" | "4x4_50" | "5x5_100" | "6x6_250" | "7x7_1000" | "original" | "april_36h11";
+            /**
+             * Opening
+             * @description share of the picture's width
+             */
+            opening: number;
+            /**
+             * Rate
+             * @description Hz
+             */
+            rate: number;
+            /**
+             * White Balance
+             * @enum {string}
+             */
+            white_balance: "none" | "grey_world" | "underwater";
+        };
+        /**
+         * VisionText
+         * @description robot.toml, or a piece of it with the table [vision].
+         */
+        VisionText: {
+            /** Text */
+            text: string;
         };
         /**
          * Wanted
@@ -3401,6 +4773,25 @@ export interface components {
             signals: string[];
             /** @description what is drawn; everything without */
             view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
+         * WholeLayout
+         * @description The same with its document, which may be of another version of the program.
+         */
+        WholeLayout: {
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
         };
     };
     responses: never;
@@ -3767,6 +5158,53 @@ export interface operations {
             };
             /** @description The database does not work */
             503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadBackup: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The database at one moment; `mucat restore` puts it back */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.sqlite3": unknown;
+                };
+            };
+            /** @description Another one is being copied or downloaded */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It cannot be copied */
+            507: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -4891,6 +6329,218 @@ export interface operations {
             };
         };
     };
+    listLayouts: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"][];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    saveLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLayout"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptLayout"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WholeLayout"];
+                };
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteLayout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layout: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such layout */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     getLinkFrames: {
         parameters: {
             query?: never;
@@ -4907,6 +6557,354 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["LinkFrames"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listPanels: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanel"][];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanelFrame: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": string;
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getPanel: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                panel: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OwnPanelScript"];
+                };
+            };
+            /** @description There is no such panel, or it cannot be read */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getParameters: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Parameters"];
+                };
+            };
+            /** @description The robot is lent to a communication test */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    changeParameters: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewValues"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listParameterChanges: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Change"][];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    undoParameters: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Undo"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description The runtime is not running */
@@ -4959,6 +6957,354 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": unknown;
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listProfiles: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Profile"][];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    saveProfile: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewProfile"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Profile"];
+                };
+            };
+            /** @description The name is taken */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    importProfile: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ProfileText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Imported"];
+                };
+            };
+            /** @description The name is taken */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The file is no profile of this version */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteProfile: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                profile: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such profile */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadProfile: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                profile: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
+                };
+            };
+            /** @description There is no such profile */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restoreProfile: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                profile: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
+            };
+            /** @description There is no such profile */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -5316,6 +7662,84 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["Controller"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putLoop: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: "depth" | "heading" | "pitch" | "roll";
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LoopChange"];
             };
         };
         responses: {
@@ -6919,6 +9343,664 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    listTuningRuns: {
+        parameters: {
+            query?: {
+                loop?: "depth" | "heading" | "pitch" | "roll";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRuns"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    startTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StepStart"] | components["schemas"]["RelayStart"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningStarted"];
+                };
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deleteTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    renameTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TuningName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningRunDetail"];
+                };
+            };
+            /** @description There is no such run */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The database does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getTuningState: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TuningState"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stopTuningRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    getVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VisionInForce"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    putVisionSettings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VisionSettings"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pickColour: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PickPlace"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PickedColour"];
+                };
+            };
+            /** @description There is no colour, or no picture */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VisionText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VisionSettings"];
+                };
+            };
+            /** @description There are no settings in it that can be used */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    downloadVision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": string;
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": components["schemas"]["Problem"];
                 };
             };
         };
