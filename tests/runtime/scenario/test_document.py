@@ -66,6 +66,7 @@ ALL_EVENTS = {
     "acknowledge": "",
     "set_points": "detected = 1.5",
     "controller": "name = 'pid'\ngains = { kd = 1 }",
+    "loop": "name = 'heading'\non = true\nset_point = 1.5\ncontroller = 'pid'\ngains = { kd = 1 }",
     "steering": "by = 'beacons'",
     "card": "colour = 'yellow'",
     "vision": "rate = 8",
