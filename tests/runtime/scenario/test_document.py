@@ -66,6 +66,7 @@ ALL_EVENTS = {
     "acknowledge": "",
     "set_points": "detected = 1.5",
     "controller": "name = 'pid'\ngains = { kd = 1 }",
+    "loop": "name = 'heading'\non = true\nset_point = 1.5\ncontroller = 'pid'\ngains = { kd = 1 }",
     "steering": "by = 'beacons'",
     "card": "colour = 'yellow'",
     "vision": "rate = 8",
@@ -245,6 +246,15 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
         (BARE + event("set_points"), "event 1: set_points needs default, detected or both"),
         (BARE + event("vision"), "event 1: vision needs rate, colour or both"),
         (BARE + event("card", "colour = 'pink'"), "event 1: colour is 'pink'; it must be one of 'red', "),
+        (
+            BARE + event("loop", "name = 'pitch'\nset_point = 0.6"),
+            "event 1: set_point must lie between -0.5 and 0.5",
+        ),
+        (BARE + event("loop", "name = 'roll'"), "event 1: loop needs on, set_point or controller"),
+        (
+            BARE + event("loop", "name = 'roll'\non = true\ngains = { ki = 1 }"),
+            "event 1: gains need the controller whose they are",
+        ),
         (
             BARE + event("controller", "name = 'x'"),
             "event 1: there is no controller 'x'; there are bang_bang, ",
