@@ -20,7 +20,7 @@ export class Access {
   reason = $state('');
   /** the server has not answered so far */
   silent = $state(false);
-  #operatorsOnly: ReadonlySet<string> = new Set();
+  #operatorsOnly: readonly string[] = [];
 
   constructor() {
     onSignedOut((why) => this.leave(why));
@@ -84,12 +84,12 @@ export class Access {
 
   /** Why this is not for who uses this page, in words; null where it is. What needs control says so by itself. */
   refusal(operation: Operation): string | null {
-    if (this.identity?.role !== 'viewer' || !this.#operatorsOnly.has(operation)) return null;
+    if (this.identity?.role !== 'viewer' || !this.#operatorsOnly.includes(operation)) return null;
     return 'Viewers may watch and STOP. This needs an operator.';
   }
 
   #take(me: Me): void {
-    this.#operatorsOnly = new Set(me.operators_only);
+    this.#operatorsOnly = me.operators_only;
     this.robot = me.robot;
     this.identity = me.identity;
     this.state = me.signed_in ? 'in' : 'out';

@@ -18,13 +18,15 @@ export interface Loop {
 const DEGREES = 180 / Math.PI;
 const angle = { unit: '°', factor: DEGREES, decimals: 1, downwards: false } as const;
 
+const DEPTH: Loop = { name: 'depth', title: 'Depth', unit: 'm', factor: 1, least: 0, most: 10, decimals: 2, downwards: true };
+
 export const LOOPS: readonly Loop[] = [
-  { name: 'depth', title: 'Depth', unit: 'm', factor: 1, least: 0, most: 10, decimals: 2, downwards: true },
+  DEPTH,
   { name: 'heading', title: 'Heading', least: -180, most: 180, ...angle },
   { name: 'pitch', title: 'Pitch', least: -28, most: 28, ...angle },
   { name: 'roll', title: 'Roll', least: -28, most: 28, ...angle },
 ];
 
 export function loopOf(name: LoopName): Loop {
-  return LOOPS.find((one) => one.name === name) ?? (LOOPS[0] as Loop);
+  return LOOPS.find((one) => one.name === name) ?? DEPTH;
 }
