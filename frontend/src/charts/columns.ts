@@ -61,9 +61,7 @@ export class Columns {
   ) {}
 
   /** Where the column of this number stands in the arrays. */
-  place(number: number): number {
-    return number % this.#room;
-  }
+  readonly place = (number: number): number => number % this.#room;
 
   /** Look at what is new in `span`. The line breaks where samples lie more than `gap` s apart. */
   update(span: Span, gap: number): void {
