@@ -54,15 +54,6 @@ export const PANELS: readonly PanelKind[] = [
     tab: 'motion',
   },
   {
-    name: 'robot',
-    title: 'Robot',
-    about: 'The robot in space, its fins as their encoders say',
-    load: () => import('./robot3d/Robot3d.svelte'),
-    size: { width: 7, height: 9 },
-    least: { width: 5, height: 6 },
-    tab: 'motion',
-  },
-  {
     name: 'fins',
     title: 'Fins',
     about: 'Angles, commanded and measured, and the drive of the motors',
