@@ -12,6 +12,6 @@ export default defineConfig({
     outDir: here('../../build/bench_page'),
     emptyOutDir: true,
     target: 'es2022',
-    rollupOptions: { input: [here('index.html'), here('bare.html')] },
+    rolldownOptions: { input: [here('index.html'), here('bare.html')] },
   },
 });
