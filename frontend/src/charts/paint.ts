@@ -14,14 +14,15 @@ export interface Scale {
 /** A sample, in pixels. */
 export type Spot = readonly [x: number, y: number];
 
-/** px that the columns of a trace are high on average, from which on it is painted as bars */
+/** px that the columns of a trace are high on average, from which on its line is thin */
 const DENSE = 4;
+const THIN = 1;
 
 /**
  * Draw a trace: in each column its least and its greatest value in the order in which they came, joined by lines.
  *
  * `before` and `after` are the samples next to the span, to which the line goes on where it does. Where the columns are
- * high, as with noise, they are filled as bars instead: a browser takes ten times as long for lines that lie so close.
+ * high, as with noise, the line is thin: wide ones that lie so close take a browser eight times as long.
  */
 export function paintTrace(
   context: CanvasRenderingContext2D,
@@ -31,53 +32,14 @@ export function paintTrace(
   before: Spot | null,
   after: Spot | null,
 ): void {
-  if (height(columns, span, scale) > DENSE) paintBars(context, columns, span, scale);
-  else paintLine(context, columns, span, scale, before, after);
-}
-
-function height({ low, high, order, place }: Columns, { first, columns: many }: Span, { unit }: Scale): number {
-  let sum = 0;
-  for (let number = first; number < first + many; number += 1) {
-    const at = place(number);
-    if (order[at] !== Order.NONE) sum += (high[at] ?? 0) - (low[at] ?? 0);
-  }
-  return (sum / many) * Math.abs(unit);
-}
-
-/** Each bar reaches to where the column before it ends, so that nothing is torn apart. */
-function paintBars(context: CanvasRenderingContext2D, columns: Columns, { first, columns: many }: Span, scale: Scale): void {
+  if (height(columns, span, scale) > DENSE) context.lineWidth = THIN;
   const { low, high, order, broken } = columns;
   const { left, column, zero, unit } = scale;
-  const wide = context.lineWidth;
-  context.fillStyle = context.strokeStyle;
-  let end = NaN;
-  for (let index = 0; index < many; index += 1) {
-    const at = columns.place(first + index);
-    const kind = order[at];
-    if (kind === Order.NONE) continue;
-    const least = zero + unit * (low[at] ?? NaN);
-    const most = zero + unit * (high[at] ?? NaN);
-    if (broken[at] === 1 || Number.isNaN(end)) end = least;
-    const top = Math.min(least, most, end);
-    context.fillRect(left + index * column, top, wide, Math.max(Math.max(least, most, end) - top, wide));
-    end = kind === Order.RISING ? most : least;
-  }
-}
-
-function paintLine(
-  context: CanvasRenderingContext2D,
-  columns: Columns,
-  { first, columns: many }: Span,
-  { left, column, zero, unit }: Scale,
-  before: Spot | null,
-  after: Spot | null,
-): void {
-  const { low, high, order, broken } = columns;
   let open = before !== null;
   context.beginPath();
   if (before !== null) context.moveTo(...before);
-  for (let index = 0; index < many; index += 1) {
-    const place = columns.place(first + index);
+  for (let index = 0; index < span.columns; index += 1) {
+    const place = columns.place(span.first + index);
     const kind = order[place];
     if (kind === Order.NONE) continue;
     const least = zero + unit * (low[place] ?? NaN);
@@ -97,6 +59,15 @@ function paintLine(
   }
   if (after !== null && open) context.lineTo(...after);
   context.stroke();
+}
+
+function height({ low, high, order, place }: Columns, { first, columns: many }: Span, { unit }: Scale): number {
+  let sum = 0;
+  for (let number = first; number < first + many; number += 1) {
+    const at = place(number);
+    if (order[at] !== Order.NONE) sum += (high[at] ?? 0) - (low[at] ?? 0);
+  }
+  return (sum / many) * Math.abs(unit);
 }
 
 /** Fill what lies between two traces. Each holds its last value where it has none of its own. */
