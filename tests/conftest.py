@@ -14,6 +14,7 @@ settings.register_profile("mucat", deadline=None, suppress_health_check=[HealthC
 settings.load_profile("mucat")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Where several processes test: what shares something goes to the same one."""
     for item in items:
