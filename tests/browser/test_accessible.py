@@ -22,13 +22,13 @@ Colours are all that differs in that theme.
 """
 WIDTHS = (390, 768, 1024, 1280, 1440, 1920)
 CROWDED = """() => {
-    const all = document.querySelectorAll('[aria-label=Pages] a, .top .name, .states > *, .row > *, .stop');
+    const all = document.querySelectorAll('[aria-label=Pages] a, .top .name, .top .states > *, .top .row > *, .stop');
     const seen = [...all].filter((one) => one.checkVisibility() && !one.matches('.visually-hidden'));
     const boxes = seen.map((one) => [one.textContent.trim(), one.getBoundingClientRect()]);
+    const stop = document.querySelector('.stop').getBoundingClientRect();
     const out = ({ left, right }) => left < -0.5 || right > innerWidth + 0.5;
     const beside = (one, other) => one.right <= other.left + 1 || one.bottom <= other.top + 1;
     const covers = ([, one], [, other]) => !beside(one, other) && !beside(other, one);
-    const [, stop] = boxes.find(([text]) => /STOP|Stop/.test(text));
     return [
         ...boxes.filter(([, box]) => out(box)).map(([text]) => `${text} is outside`),
         ...boxes.flatMap((box, at) => boxes.slice(at + 1).filter((other) => covers(box, other))
