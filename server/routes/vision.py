@@ -64,7 +64,6 @@ async def download(request: Request) -> PlainTextResponse:
     return PlainTextResponse(
         write_document(told["settings"]),
         headers={"Content-Disposition": 'attachment; filename="vision.toml"'},
-        media_type="application/toml",
     )
 
 
