@@ -9,6 +9,8 @@ CUTS ?= 10000
 QUESTIONS ?= 300
 WORDS ?= 500
 PYTHON := .venv/bin/python
+# Their time is mostly emulated, so that two of them do not disturb each other.
+OWN_TIME := tests/board tests/firmware tests/runtime
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
@@ -23,7 +25,8 @@ run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 
 	@exec .venv/bin/mucat run --port $(PORT)
 
 test: setup-test check host-firmware ## every test, after every check
-	$(PYTHON) -m pytest --numprocesses 2 --dist loadgroup
+	$(PYTHON) -m pytest --numprocesses 2 --dist loadfile $(OWN_TIME)
+	$(PYTHON) -m pytest $(addprefix --ignore=,$(OWN_TIME))
 	cd frontend && npm test --silent
 
 check: setup-test ## style, types, imports, and whether generated files are current

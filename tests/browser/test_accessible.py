@@ -22,7 +22,8 @@ Colours are all that differs in that theme.
 """
 WIDTHS = (390, 768, 1024, 1280, 1440, 1920)
 CROWDED = """() => {
-    const all = document.querySelectorAll('[aria-label=Pages] a, .top .name, .top .states > *, .top .row > *, .stop');
+    const said = '[aria-label=Pages] a, .top .name, .top .states > *, .top .row > *, .stop';
+    const all = document.querySelectorAll(said);
     const seen = [...all].filter((one) => one.checkVisibility() && !one.matches('.visually-hidden'));
     const boxes = seen.map((one) => [one.textContent.trim(), one.getBoundingClientRect()]);
     const stop = document.querySelector('.stop').getBoundingClientRect();
