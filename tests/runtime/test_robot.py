@@ -202,6 +202,9 @@ class Rig:
         told = [document for name, document in self.listener.documents if name == "parameters"]
         return {one["name"]: one for one in told[-1]["parameters"]} if told else {}
 
+    def newest_parameter(self, name: str) -> dict[str, Any]:
+        return self.newest_parameters().get(name, {})
+
     def ready(self) -> None:
         self.listener.wait(lambda: self.listener.newest_state().get("refusals") == [])
 
@@ -442,8 +445,8 @@ def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) 
     )
     assert answer["changed"] == {"depth.pid.kp": [7.0, 4.0], "fins.amplitude": [1.6, 0.8]}
     rig.board.wait(lambda: rig.board.told("fins.amplitude")[-1] == pytest.approx(0.8))
-    rig.listener.wait(lambda: rig.newest_parameters()["fins.amplitude"]["value"] == 0.8)
-    rig.listener.wait(lambda: not rig.newest_parameters()["fins.amplitude"]["pending"])
+    rig.listener.wait(lambda: rig.newest_parameter("fins.amplitude").get("value") == 0.8)
+    rig.listener.wait(lambda: rig.newest_parameter("fins.amplitude").get("pending") is False)
     listed = rig.newest_parameters()
     assert (listed["depth.pid.kp"]["value"], listed["depth.pid.kp"]["default"]) == (4.0, 3.0)
     assert listed["depth.controller"]["value"] == "pid"
