@@ -69,6 +69,7 @@ def state_block(first: int, **changes: Any) -> Block:
         "vision_colour": "yellow",
         "colours": ["yellow"],
         "card": None,
+        "cards": [],
         "camera": "card",
     }
     return Block.of(BY_NAME["state"], 1, first, json.dumps([document | changes]).encode())

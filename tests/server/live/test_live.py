@@ -2,6 +2,7 @@ import asyncio
 import json
 import socket as sockets
 from collections.abc import Callable
+from itertools import chain
 from typing import Any
 
 import pytest
@@ -45,9 +46,14 @@ def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_dou
 ) -> None:
     async def scenario(served: Served) -> None:
         await served.heard("stream")
-        served.runtime.publish(*(depth_block(5 * place, 5) for place in range(10)))
+        start = served.assembly.clock.now()
+        served.runtime.publish(*(depth_block(5 * place, 5, start) for place in range(10)))
         seen = served.assembly.hub.history
-        await until(lambda: sum(map(len, seen.since(-1, 1))) == 10, "the past")
+
+        def kept() -> list[int]:
+            return numbers(read_blocks(b"".join(chain.from_iterable(seen.since(-1, 1)))), "depth")
+
+        await until(lambda: len(kept()) == 50, "the past")
         async with served.connect() as page:
             hello = json.loads(await page.recv())
             assert hello["op"] == "hello"
@@ -55,7 +61,7 @@ def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_dou
             assert hello["steady"] <= served.assembly.clock.now()
             assert hello["utc"] > 1.7e9
             assert hello["page_version"] == ""
-            served.runtime.publish(*(depth_block(50 + 5 * place, 5) for place in range(10)))
+            served.runtime.publish(*(depth_block(50 + 5 * place, 5, start) for place in range(10)))
             served.runtime.publish(debug_block(0, "é"))
             blocks = await read_until(
                 page, lambda blocks: len(numbers(blocks, "depth")) >= 100 and numbers(blocks, "debug")
@@ -217,7 +223,8 @@ def test_pictures_are_asked_for_only_while_a_page_is_open(settings: Settings) ->
         async with served.connect() as page:
             await served.heard("picture")
             served.runtime.publish(picture_block(3, size=5000))
-            (picture,) = await read_until(page, lambda blocks: blocks)
+            blocks = await read_until(page, lambda blocks: numbers(blocks, "picture"))
+            (picture,) = (block for block in blocks if block.topic.name == "picture")
             assert picture == picture_block(3, size=5000)
         await until(lambda: not served.runtime.is_heard("picture"), "the end of the pictures")
 

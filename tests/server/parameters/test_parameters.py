@@ -55,7 +55,7 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
         served.runtime.answer = {"changed": {"control.set_point": [0.5, 1.0]}}
         (await served.api.put("/robot/set-points", json={"default": 1.0})).raise_for_status()
         newest, first = (await served.api.get("/parameters/changes")).json()
-        assert [one["who"] for one in (newest, first)] == ["shell", "shell"]
+        assert [one["who"] for one in (newest, first)] == ["the shell of this computer"] * 2
         assert (newest["undoable"], first["undoable"]) == (True, False)
 
         # Only the newest, which the page has seen.
