@@ -66,7 +66,11 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
             {"values": {"control.set_point": 0.5}, "expected": {"control.set_point": 1.0}},
         )
         newest, first = (await served.api.get("/parameters/changes")).json()
-        assert (newest["undone"], newest["undoable"], first["undoable"]) == ("shell", False, True)
+        assert (newest["undone"], newest["undoable"], first["undoable"]) == (
+            "the shell of this computer",
+            False,
+            True,
+        )
 
         served.runtime.refusal = "depth.pid.kp is 7.0 now, and not 4.0 any more"
         refused = await served.api.post("/parameters/undo", json={"change": first["id"]})

@@ -45,7 +45,7 @@ class Family:
     def find(self, name: str) -> list[psutil.Process]:
         found = []
         for process in psutil.process_iter():
-            with suppress(psutil.Error):
+            with suppress(psutil.Error, ProcessLookupError):
                 if process.name() == name and os.getpgid(process.pid) == self.started.pid:
                     found.append(process)
         return [process for process in found if alive(process.pid)]
