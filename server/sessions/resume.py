@@ -16,6 +16,8 @@ from server.store import Store
 _STATE = BY_NAME["state"]
 RESUMED_ORIGINS = ("operator", "arming", "scenario")
 """Not one in simulated time, which was computed by the server itself."""
+RESTATED = {"parameters"}
+"""A session begins with what is in force, as of then: not at the time at which it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +94,8 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
         first[topic.id] = last.following
         ahead = (following - last.following) % NUMBERS
         sent[topic.name] = ahead
-        proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
+        if topic.name not in RESTATED:
+            proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
         whole = whole and (ahead == 0 or _holds(there, last.following))
     # Where the last stored sample is not kept any more, its name shows that it is the same.
     known = proofs == {True} or (not proofs and _began(left, topics, kept))

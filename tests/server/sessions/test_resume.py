@@ -31,6 +31,11 @@ def truth_block(first: int, count: int, start: float = 100.0) -> Block:
     return Block.of(topic, count, first, b"".join(rows))
 
 
+def parameters_block(number: int, time: float = 90.0) -> Block:
+    payload = json.dumps([{"time": time, "parameters": []}]).encode()
+    return Block.of(BY_NAME["parameters"], 1, number, payload)
+
+
 class Wreck:
     """A recorder that was forgotten in the middle, and senders that go on."""
 
@@ -119,6 +124,19 @@ def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wrec
         assert wreck.after.gaps() == []
         assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
         assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” goes on")
+
+    play(scenario)
+
+
+def test_parameters_that_were_told_before_it_began_do_not_end_it(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.send(parameters_block(7))
+        wreck.before.clock.forward(3)
+        wreck.after.clock.forward(3)
+        await wreck.start()
+        missing = await wreck.resume()
+        assert all(one.same_run and one.whole for one in missing.values())
+        assert wreck.state == "recording"
 
     play(scenario)
 
