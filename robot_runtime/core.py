@@ -47,6 +47,7 @@ from robot_runtime.samples import (
     DebugLine,
     Detection,
     Event,
+    Experiment,
     Gain,
     Loop,
     Pace,
@@ -125,7 +126,7 @@ class Core:
             unsettled=self.board_parameters.refusals,
         )
         self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
-        self.experiments = Experiments(clock, lambda told: self.bus.publish_document("experiment", told))
+        self.experiments = Experiments(clock, self._tell_experiment)
         self.vision = Vision(
             config.vision,
             clock,
@@ -155,6 +156,11 @@ class Core:
         """Publish an event, and the state that it changed."""
         self.bus.publish_document("event", event)
         self._state_wanted.set()
+
+    def _tell_experiment(self, told: Experiment) -> None:
+        # First, so that who hears of its end knows already that the loop is as it was.
+        self.bus.publish_document("state", self.state())
+        self.bus.publish_document("experiment", told)
 
     def announce(self) -> None:
         """Publish the state soon, since something of it changed."""

@@ -55,6 +55,12 @@ def expect_surge(page: Page, words: str) -> None:
     expect(command.locator(".word").first).to_have_text(words)
 
 
+def expect_full_speed(page: Page) -> None:
+    """The navigation command has grown ahead to its end."""
+    command = page.get_by_role("region", name="Navigation command")
+    expect(command.locator(".value").first).to_have_text(re.compile(r"^\s*1\.00$"))
+
+
 def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> None:
     session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
     arm_by_hand(page)
@@ -64,7 +70,7 @@ def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> Non
     page.keyboard.up("w")
     expect_surge(page, "")
     page.keyboard.down("w")
-    expect_surge(page, "forwards")
+    expect_full_speed(page)
     left = look_away(page)
     expect_surge(page, "")
     # The page says nothing more; the robot rests, and at last stops by itself.

@@ -7,7 +7,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
 from robot_runtime.errors import Refused
-from robot_runtime.samples import Experiment
+from robot_runtime.samples import Experiment, State
 from tests.runtime.control.flight import Flight
 
 STEP: dict[str, Any] = {
@@ -42,7 +42,11 @@ class Lab:
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
         self.told: list[Experiment] = []
+        self.set_points: list[float] = []
+        """The depth's, as the newest state has it at each word of the experiment."""
+        self._state: State | None = None
         flight.robot.bus.on_document("experiment", self._hear)
+        flight.robot.bus.on_document("state", self._hear_state)
 
     def begin(self, wanted: dict[str, Any]) -> None:
         self.flight.command("experiment", **wanted)
@@ -57,6 +61,12 @@ class Lab:
     def _hear(self, _: str, document: object) -> None:
         assert isinstance(document, Experiment)
         self.told.append(document)
+        assert self._state is not None
+        self.set_points.append(self._state.loops[0].set_point)
+
+    def _hear_state(self, _: str, document: object) -> None:
+        assert isinstance(document, State)
+        self._state = document
 
 
 OVER = ("complete", "stopped", "failed")
@@ -74,6 +84,7 @@ def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
         assert end.since - began == pytest.approx(6.0, abs=0.11)
         progress = [one.progress for one in lab.told]
         assert progress == sorted(progress)
+        assert lab.set_points[-2:] == [STEP["target"], 0.6]
         flight.run(0.2)
         assert flight.robot.control.depth.wanted == 0.6
         assert flight.robot.control.depth.lent is None
