@@ -85,7 +85,7 @@ class Assembly:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
-        self.tidying = Tidying(self.store, settings, self.notices)
+        self.tidying = Tidying(self.store, settings, self.notices, self.clock)
         self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
         self.alarms = Alarms(self.clock, self.notices.tell, self._tell_alarms)
         self.parts = Parts(commands, settings.data, self.clock, self._see_down)

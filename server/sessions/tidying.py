@@ -8,12 +8,14 @@ become free are given back to the disk, a few at a time as well (the database's 
 import asyncio
 import logging
 from collections.abc import Iterable, Sequence
+from math import inf
 from time import time
 from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, delete, update
 from sqlmodel import col, select
 
+from robot_runtime.clock import Clock
 from server.live.notices import Notices
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.schema import INCREMENTAL
@@ -33,6 +35,9 @@ PAUSE = 0.02
 BIN_SECONDS = 3600.0
 """What the retention rule takes stays in the bin for at least so long, even while room is short."""
 DAY = 86_400.0
+JUMP_SECONDS = 60.0
+"""By which the wall clock may move on beside the steady clock; a robot without a battery for its clock knows
+the time only once somebody has told it."""
 NAMES_TOLD = 3
 
 
@@ -47,12 +52,19 @@ class _Candidate(NamedTuple):
 
 
 class Tidying:
-    """The only one that removes sessions. `wake` makes it look at once."""
+    """The only one that removes sessions. `wake` makes it look at once.
 
-    def __init__(self, store: Store, settings: Settings, notices: Notices) -> None:
+    For a day after the wall clock has jumped nothing goes by its age, which nobody knows.
+    """
+
+    def __init__(self, store: Store, settings: Settings, notices: Notices, clock: Clock) -> None:
         self._store = store
         self._settings = settings
         self._notices = notices
+        self._clock = clock
+        self._ahead: float | None = None
+        """By how much the wall clock is ahead of the steady clock."""
+        self._ages_known_from = 0.0
         self._wanted = asyncio.Event()
         self._hopeless = False
 
@@ -76,14 +88,23 @@ class Tidying:
     async def tidy(self, now: float) -> None:
         """Once, at this time (UTC, s since 1970). Raises StoreError."""
         rules = self._settings.sessions
-        await self._empty_bin(now - rules.undo_days * DAY)
-        if rules.keep_days > 0:
+        ages_known = self._ages_known(now)
+        if ages_known:
+            await self._empty_bin(now - rules.undo_days * DAY)
+        if ages_known and rules.keep_days > 0:
             await self._let_go_old(now, now - rules.keep_days * DAY)
         if rules.keep_free > 0:
-            await self._make_room(now)
+            await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
         for session in await self._doomed():
             await self._remove(session)
         await self._give_back()
+
+    def _ages_known(self, now: float) -> bool:
+        steady = self._clock.now()
+        if self._ahead is not None and abs(now - steady - self._ahead) > JUMP_SECONDS:
+            self._ages_known_from = steady + DAY
+        self._ahead = now - steady
+        return steady >= self._ages_known_from
 
     async def _empty_bin(self, before: float) -> None:
         deleted = col(SessionRow.deleted)
@@ -100,14 +121,14 @@ class Tidying:
             await self._change(rows, deleted=now)
             self._tell(rows, f"Older than {days:g} days")
 
-    async def _make_room(self, now: float) -> None:
+    async def _make_room(self, now: float, settled_before: float) -> None:
         storage = await asyncio.to_thread(measure, self._store, self._settings)
         needed = int(self._settings.sessions.keep_free * GIGABYTE) - storage.free - storage.reusable
         if needed <= 0:
             self._hopeless = False
             return
         binned = await self._find(col(SessionRow.deleted).is_not(None))
-        settled = [one for one in binned if one.deleted is not None and one.deleted <= now - BIN_SECONDS]
+        settled = [one for one in binned if one.deleted is not None and one.deleted <= settled_before]
         going = _first(sorted(settled, key=lambda one: one.deleted or now), needed)
         await self._change(going, state=REMOVING)
         # What is not in the bin for long will go by the same rule, and then there is room.

@@ -181,7 +181,7 @@ class Work:
             self.doubtful(f"{kind}/{session}")
         await catalogue.delete(session)
         await catalogue.purge(session)
-        tidying = Tidying(store, self.settings, Notices(SimulatedClock(), lambda _: None))
+        tidying = Tidying(store, self.settings, Notices(clock := SimulatedClock(), lambda _: None), clock)
         await tidying.tidy(1e9)
         self.acknowledged()
 

@@ -45,7 +45,7 @@ class Keeper:
         notices = Notices(self.clock, self._hear)
         self.recorder = Recorder(store, self.clock, notices, lambda: None)
         self.catalogue = Catalogue(store, self.recorder)
-        self.tidying = Tidying(store, self.settings, notices)
+        self.tidying = Tidying(store, self.settings, notices, self.clock)
 
     def _hear(self, block: Block) -> None:
         self.told += [document["text"] for document in json.loads(block.payload)]
@@ -99,6 +99,25 @@ def test_what_has_been_in_the_bin_for_long_is_removed(keep: Keep) -> None:
         await keeper.tidying.tidy(NOW)
         assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
         assert (keeper.count(SessionRow), keeper.count(Chunk)) == (1, 3)
+
+    keep(NO_RULES, scenario)
+
+
+def test_nothing_goes_by_its_age_for_a_day_after_the_clock_has_jumped(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        for name in ("stays", "goes"):
+            await keeper.record(name, DAY)
+        await keeper.catalogue.delete(2)
+        await keeper.age_bin(60.0)
+        years = 10 * 365 * DAY
+        # As the steady clock goes on, so does the wall clock, but for the one jump.
+        for passed, jumped in ((0.0, 0.0), (60.0, years), (DAY - 60.0, years)):
+            keeper.clock.forward(passed)
+            await keeper.tidying.tidy(NOW + keeper.clock.now() + jumped)
+            assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], ["goes"])
+        keeper.clock.forward(60.0)
+        await keeper.tidying.tidy(NOW + keeper.clock.now() + years)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
 
     keep(NO_RULES, scenario)
 
@@ -203,6 +222,7 @@ def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_go
         await keeper.tidying.tidy(NOW)
         assert (keeper.names(), keeper.names(deleted=True)) == (["newest"], ["older", "oldest"])
         # Nothing more goes while these wait.
+        keeper.clock.forward(BIN_SECONDS)
         await keeper.tidying.tidy(NOW + BIN_SECONDS - 1)
         assert len(keeper.names(deleted=True)) == 2
         await keeper.catalogue.restore(2)
@@ -212,6 +232,7 @@ def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_go
         assert (keeper.names(), keeper.names(deleted=True)) == (["newest", "older"], [])
         free = 0
         await keeper.catalogue.change(3, tags=["mine"])
+        keeper.clock.forward(BIN_SECONDS)
         for _ in range(2):
             await keeper.tidying.tidy(NOW + 2 * BIN_SECONDS)
         assert len(keeper.names()) == 2
