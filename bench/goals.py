@@ -82,6 +82,7 @@ GOALS = {
     "firmware.missed_ticks": _most(0),
     "firmware.missed_ticks.500000": _most(0),
     "latency.key_to_fin_ms_p95": _most(150),
+    "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15),
     "hub.ratio_to_foxglove": _most(0.5),
     "link.table6_min_success": _least(1.0),

@@ -90,8 +90,8 @@ def measure() -> dict[str, float]:
     started = (before + after) / 2
     ages = [(drawn - started - stamp) * 1000 for stamp, drawn in seen]
     return {
-        "latency.uart_to_page_ms_p50": median(ages),
-        "latency.uart_to_page_ms_p95": quantiles(ages, n=20)[-1],
+        "latency.sample_to_page_ms_p50": median(ages),
+        "latency.sample_to_page_ms_p95": quantiles(ages, n=20)[-1],
         "latency.board_fell_back_ms": (after - before) * 1000,
         "latency.key_to_fin_ms_p50": median(keys),
         "latency.key_to_fin_ms_p95": quantiles(keys, n=20)[-1],

@@ -148,6 +148,7 @@ class Core:
         self.parameters = Registry(
             [*runtime_entries(self.control, self.vision, self.set_vision), *self.board_parameters.entries()],
             armed=lambda: self.supervisor.armed,
+            between_ticks=self.control.between_ticks,
         )
         self._parameters_told: Parameters | None = None
         self._join()
@@ -168,7 +169,7 @@ class Core:
 
     def control_tick(self) -> None:
         """Decide and command once; to be called at the control rate."""
-        with self.parameters.between_ticks:
+        with self.control.between_ticks:
             self._control_tick()
 
     def _control_tick(self) -> None:

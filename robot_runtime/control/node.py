@@ -36,14 +36,14 @@ class ControlNode:
     there is one for. Meanwhile it may swim towards a light beacon.
 
     `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread. Whatever is changed under `changing` is changed between two ticks.
+    thread. Whatever is changed under `between_ticks` is changed between two ticks.
     """
 
     def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None], pilot: Pilot) -> None:
         self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
         self.turning = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
         self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.turning)}
-        self.changing = threading.RLock()
+        self.between_ticks = threading.RLock()
         self.mode: Mode = "disarmed"
         self.set_point_default = 0.5
         self.set_point_detected = 1.0
@@ -98,7 +98,7 @@ class ControlNode:
         A hold that is switched on in manual holds what is measured. The depth's set point is its hold's
         where it is held in manual, the default one otherwise.
         """
-        with self.changing:
+        with self.between_ticks:
             loop = self._find(name)
             chosen = loop.controller if controller is None else loop.find(controller)
             try:
@@ -153,21 +153,20 @@ class ControlNode:
         raise Refused(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self) -> None:
-        """Decide, and send the command where the robot is steered."""
-        with self.changing:
-            now, mode = self._clock.now(), self.mode
-            taken = self._measure()
-            self._choose_set_point(now, mode)
-            steered = mode == "manual" or (mode == "automatic" and taken is not None)
-            if steered and self._ticked is None:
-                self._towards_light.start()
-            seconds = now - (self._ticked or now)
-            self._ticked = now if steered else None
-            self._step_loops(mode if steered else "disarmed", seconds)
-            if steered:
-                self._course = self._find_course(now, seconds)
-                self._send_newest(mode)
-            self._publish(now, taken)
+        """Decide, and send the command where the robot is steered. The caller holds `between_ticks`."""
+        now, mode = self._clock.now(), self.mode
+        taken = self._measure()
+        self._choose_set_point(now, mode)
+        steered = mode == "manual" or (mode == "automatic" and taken is not None)
+        if steered and self._ticked is None:
+            self._towards_light.start()
+        seconds = now - (self._ticked or now)
+        self._ticked = now if steered else None
+        self._step_loops(mode if steered else "disarmed", seconds)
+        if steered:
+            self._course = self._find_course(now, seconds)
+            self._send_newest(mode)
+        self._publish(now, taken)
 
     def drive(self) -> None:
         """Send what the pilot wants now, with what is held meanwhile; the loops do not step."""

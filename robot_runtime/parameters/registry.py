@@ -1,8 +1,7 @@
 """All parameters of one robot: listed, and changed all or none between two control ticks."""
 
-import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 from robot_runtime.errors import Refused
@@ -16,15 +15,20 @@ Changed = dict[str, tuple[ParameterValue, ParameterValue]]
 class Registry:
     """The parameters of these entries. A default is what a parameter is when this is made.
 
-    A control tick holds `between_ticks`, and whoever changes parameters does: so a tick sees all of a change
+    A control tick holds `between_ticks`, and so does whoever changes parameters: a tick sees all of a change
     or none. Every method may be called from any thread.
     """
 
-    def __init__(self, entries: Iterable[Entry], armed: Callable[[], bool]) -> None:
+    def __init__(
+        self,
+        entries: Iterable[Entry],
+        armed: Callable[[], bool],
+        between_ticks: AbstractContextManager[object],
+    ) -> None:
         self._entries = {entry.name: entry for entry in entries}
         self._defaults = self.values()
         self._armed = armed
-        self.between_ticks = threading.RLock()
+        self._between_ticks = between_ticks
 
     def values(self) -> dict[str, ParameterValue]:
         """What is in force, by name."""
@@ -54,7 +58,7 @@ class Registry:
     def changing(self) -> Iterator[Changed]:
         """Wait for the tick that runs, and keep the next one waiting; filled at the end with what changed."""
         changed: Changed = {}
-        with self.between_ticks:
+        with self._between_ticks:
             before = self.values()
             yield changed
             after = self.values()
@@ -70,7 +74,7 @@ class Registry:
         """
         problems: dict[str, str] = {}
         checked: dict[str, ParameterValue] = {}
-        with self.between_ticks:
+        with self._between_ticks:
             for name, value in (expected or {}).items():
                 if name in self._entries and (now := self._entries[name].get()) != value:
                     problems[name] = f"{name} is {now} now, and not {value} any more"
