@@ -7,6 +7,7 @@ from fastapi import FastAPI
 
 from server.access.certificate import Certificate
 from server.settings import SetupError
+from server.sockets import Sockets
 
 SEND_BUFFER_BYTES = 65_536
 """With the kernel's own megabytes a client that has stopped reading would go unnoticed for minutes."""
@@ -52,7 +53,7 @@ def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn
         ssl_certfile=None if certificate is None else certificate.file,
         ssl_keyfile=None if certificate is None else certificate.key,
         http="h11",
-        ws="websockets-sansio",
+        ws=Sockets,
         loop="asyncio",
         lifespan="on",
         log_level="warning",

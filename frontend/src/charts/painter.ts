@@ -40,7 +40,7 @@ interface Line {
 
 const SEVERITIES = { info: 'accent', caution: 'caution', alarm: 'alarm' } as const;
 /** Redraws per pixel that passes by, so that the line moves rather than steps, and their limits per second. */
-const PER_PIXEL = 3;
+const PER_PIXEL = 2;
 const RATE_LEAST = 8;
 const RATE_MOST = 60;
 const RATE_STILL = 1;
