@@ -60,10 +60,8 @@ def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page
 
 
 def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
-    context = browser.new_context(
-        viewport=size,
-        storage_state=cookies,
-    )
+    # Charts then move once a second, which leaves the computer to what is tested.
+    context = browser.new_context(viewport=size, storage_state=cookies, reduced_motion="reduce")
     page = context.new_page()
     complaints: list[str] = []
     # Every test finds the robot at the surface, wherever the one before has left it.
