@@ -9,13 +9,11 @@ CUTS ?= 10000
 QUESTIONS ?= 300
 WORDS ?= 500
 PYTHON := .venv/bin/python
-# Their time is mostly emulated, so that two of them do not disturb each other.
-OWN_TIME := tests/board tests/firmware tests/runtime
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test long check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -25,9 +23,12 @@ run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 
 	@exec .venv/bin/mucat run --port $(PORT)
 
 test: setup-test check host-firmware ## every test, after every check
-	$(PYTHON) -m pytest --numprocesses 2 --dist loadfile $(OWN_TIME)
-	$(PYTHON) -m pytest $(addprefix --ignore=,$(OWN_TIME))
+	$(PYTHON) -m pytest -m "not stack and not long" --numprocesses 2 --dist loadfile
+	$(PYTHON) -m pytest -m "stack and not long"
 	cd frontend && npm test --silent
+
+long: setup-test ## the tests that take minutes: the thesis's whole example in the browser
+	$(PYTHON) -m pytest -m long
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.test_swim import hold_to_arm
 from tests.stack import Stack
 
 STEP_MS = 20_000
@@ -16,9 +17,7 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
     session = stack.api.post("/sessions", json={"name": name}).raise_for_status().json()
     page.goto(f"{stack.url}/#/operate")
     if armed:
-        button = page.get_by_role("button", name="Hold to arm")
-        expect(button).to_be_enabled(timeout=STEP_MS)
-        stack.api.post("/robot/arm").raise_for_status()
+        hold_to_arm(page)
     page.wait_for_timeout(2500)  # so that there is something to be drawn
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()

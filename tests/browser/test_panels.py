@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.test_swim import hold_to_arm
 from tests.stack import ROOT, Stack
 
 NOSY = """
@@ -189,8 +190,7 @@ def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stac
     assert {one for one in answered if not one.startswith("blob:")} == {f"{stack.url}/api/panels/frame"}
 
     # Keys stay with the page, wherever somebody has clicked.
-    stack.api.post("/robot/arm").raise_for_status()
-    expect(page.get_by_text(re.compile("^ARMED"))).to_be_visible()
+    hold_to_arm(page)
     nosy.get_by_role("button").click()
     expect(nosy.get_by_role("button")).to_have_text("pressed")
     page.wait_for_function("document.activeElement?.tagName !== 'IFRAME'")

@@ -1,5 +1,8 @@
 """Parameters on the page: a gain changed while the robot swims, undone, kept in a profile and restored."""
 
+from collections.abc import Iterator
+
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.people import somebody
@@ -14,6 +17,14 @@ def value(stack: Stack, name: str) -> object:
     return next(one["value"] for one in listed if one["name"] == name)
 
 
+@pytest.fixture
+def amplitude(stack: Stack) -> Iterator[None]:
+    """Afterwards, and once the page has left, as it was."""
+    yield
+    stack.api.patch("/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
+
+
+@pytest.mark.usefixtures("amplitude")
 def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: Stack) -> None:
     page = any_page
     page.goto(f"{stack.url}/#/tune/parameters")
@@ -58,7 +69,6 @@ def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: 
     expect(page.get_by_text("1 parameter was changed")).to_be_visible()
     expect(page.get_by_label(AMPLITUDE, exact=True)).to_have_value("0.9")
     assert value(stack, AMPLITUDE) == 0.9
-    stack.api.patch("/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
 
 
 def test_a_viewer_sees_them_and_is_told_why_they_are_fixed(browser: Browser, stack: Stack) -> None:

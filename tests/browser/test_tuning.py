@@ -1,6 +1,8 @@
 """Tuning from the page: a step response that is kept and laid over others, and gains from a relay."""
 
 import re
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -59,17 +61,27 @@ def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
     expect(page.get_by_text("No step response yet")).to_be_visible()
 
 
+@pytest.fixture
+def depth(stack: Stack) -> Iterator[dict[str, Any]]:
+    """The loop of the depth; afterwards, and once the page has left, as it was."""
+    loop: dict[str, Any] = stack.api.get("/robot").json()["loops"][0]
+    yield loop
+    pid = next(one for one in loop["controllers"] if one["name"] == "pid")
+    gains = {one["name"]: one["value"] for one in pid["gains"]}
+    for change in ({"controller": "pid", "gains": gains}, {"controller": loop["controller"]}):
+        stack.api.put("/robot/loops/depth", json=change).raise_for_status()
+
+
 def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
-    empty: Stack, page: Page, browser: Browser
+    depth: dict[str, Any], empty: Stack, page: Page, browser: Browser
 ) -> None:
-    before = empty.api.get("/robot").json()["loops"][0]
     page.goto(f"{empty.url}/#/tune/relay")
     fill(page, **{"about": "0.3", "command_±": "100", "cycles": "3"})
     hold_to_arm(page)
     page.get_by_role("button", name="Run the relay").click()
     table = page.get_by_role("region", name="Gains by rule, beside the present ones")
     expect(table).to_be_visible(timeout=RUN_MS)
-    assert empty.api.get("/robot").json()["loops"][0] == before
+    assert empty.api.get("/robot").json()["loops"][0] == depth
 
     with somebody(browser, empty, "viewer") as other:
         other.goto(f"{empty.url}/#/tune/relay")
@@ -89,8 +101,3 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
     expect(page.get_by_text("Step response on the depth")).to_be_visible()
     page.get_by_role("button", name="STOP").click()
     expect(page.get_by_role("region", name="Runs", exact=True)).to_contain_text("The robot was disarmed.")
-    pid = next(one for one in before["controllers"] if one["name"] == "pid")
-    gains = {one["name"]: one["value"] for one in pid["gains"]}
-    put = {"controller": before["controller"]}
-    empty.api.put("/robot/loops/depth", json={"controller": "pid", "gains": gains}).raise_for_status()
-    empty.api.put("/robot/loops/depth", json=put).raise_for_status()

@@ -24,6 +24,12 @@ CARD_SHARE = 0.26 * 0.36 * 3 / 4
 
 
 @pytest.fixture
+def card(stack: Stack, request: pytest.FixtureRequest) -> None:
+    """Before the page opens, which then has the control that this takes."""
+    stack.api.put("/robot/card", json={"colour": request.param}).raise_for_status()
+
+
+@pytest.fixture
 def settings(stack: Stack) -> Iterator[dict[str, Any]]:
     """As they are before, and again afterwards; and the set points."""
     before: dict[str, Any] = stack.api.get("/vision").raise_for_status().json()["settings"]
@@ -44,13 +50,11 @@ def seen(page: Page) -> Locator:
     return page.locator("dd.word")
 
 
-def test_a_colour_is_picked_and_acted_on(any_page: Page, stack: Stack, settings: dict[str, Any]) -> None:
+@pytest.mark.parametrize("card", ["blue"], indirect=True)
+@pytest.mark.usefixtures("card")
+def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Page, stack: Stack) -> None:
     page = any_page
     page.goto(f"{stack.url}/#/tune/vision")
-    stack.api.put("/robot/card", json={"colour": "blue"}).raise_for_status()
-    # The shell had the control for that; a page that opens takes it.
-    page.reload()
-    expect(page.get_by_role("button", name="Control: this page")).to_be_visible()
     expect(seen(page)).to_have_text("blue")
     expect(page.get_by_text("nothing is done about it")).to_be_visible()
 
@@ -82,12 +86,13 @@ def test_a_colour_is_picked_and_acted_on(any_page: Page, stack: Stack, settings:
     expect(page.get_by_role("radio", name="Look for buoy")).to_be_checked()
 
 
+@pytest.mark.parametrize("card", ["marker 7"], indirect=True)
+@pytest.mark.usefixtures("card")
 def test_where_there_is_no_colour_nothing_is_picked(
-    page: Page, stack: Stack, settings: dict[str, Any]
+    settings: dict[str, Any], page: Page, stack: Stack
 ) -> None:
     page.goto(f"{stack.url}/#/tune/vision")
     page.get_by_label("ArUco markers").select_option("4x4_50")
-    stack.api.put("/robot/card", json={"colour": "marker 7"}).raise_for_status()
     # Once the marker is drawn over the picture, its black and white are in the middle of it.
     expect(page.locator("svg text", has_text="marker 7")).to_be_attached()
     pick_the_middle(page)

@@ -7,6 +7,8 @@ import pytest
 
 from tests.proofs.chaos import run
 
+pytestmark = pytest.mark.stack
+
 
 @pytest.mark.timeout(400)
 def test_what_is_lost_in_a_minute_of_chaos_is_counted(tmp_path: Path) -> None:

@@ -6,6 +6,8 @@ from tests.board.rig import ROOT, build
 from tests.proofs import faults, outages
 from tests.proofs.faults import ROWS, Row
 
+pytestmark = pytest.mark.stack
+
 SLOW = {"capsized", "not_rising", "battery_low"}
 """Half a minute each; `tests/runtime/control/test_faults_in_water.py` has them, too."""
 

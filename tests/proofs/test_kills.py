@@ -13,6 +13,8 @@ import pytest
 from tests.proofs.kills import measure
 from tests.stack import READY_SECONDS, Stack
 
+pytestmark = pytest.mark.stack
+
 
 @pytest.mark.timeout(300)
 def test_a_server_that_is_killed_leaves_no_hole() -> None:

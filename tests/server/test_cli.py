@@ -19,6 +19,8 @@ from server.processes.pidfile import pid_file, running_parts
 from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from tests.server.waiting import alive
 
+pytestmark = pytest.mark.stack
+
 ROOT = Path(__file__).resolve().parents[2]
 
 

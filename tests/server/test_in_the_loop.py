@@ -15,6 +15,8 @@ from robot_runtime.simulation.scene.availability import missing
 from tests.stack import ROOT
 from tests.two_hosts import available
 
+pytestmark = pytest.mark.stack
+
 DISARM_SECONDS = 1.0
 """After 0.5 s the simulator counts as lost and the depth as too old; then STOP goes out."""
 

@@ -4,7 +4,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.stack import ROOT, Stack
+
+pytestmark = pytest.mark.stack
 
 BAUD = 9600
 PATIENCE = 20.0

@@ -12,6 +12,8 @@ import pytest
 from tests.server.waiting import alive
 from tests.stack import Stack
 
+pytestmark = pytest.mark.stack
+
 TEST: dict[str, Any] = {
     "id": 1,
     "name": "on the robot",

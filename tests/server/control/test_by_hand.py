@@ -19,6 +19,8 @@ from tests.proofs.watching import Fins, wait
 from tests.shell import shell_headers
 from tests.stack import Stack
 
+pytestmark = pytest.mark.stack
+
 TICK = 0.05
 REST_SECONDS, STOP_SECONDS = 0.5, 3.0
 NEUTRALS = 10

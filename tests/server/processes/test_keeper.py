@@ -15,6 +15,8 @@ from server.processes.keeper import keeper_of, relieve
 from server.settings import DataFolder
 from tests.server.waiting import SECONDS, alive
 
+pytestmark = pytest.mark.stack
+
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("mucat-keeper", "mucat-second", "mucat-server")
 

@@ -11,6 +11,8 @@ import pytest
 
 from tests.stack import Stack
 
+pytestmark = pytest.mark.stack
+
 SECONDS = 30.0
 SHORT = """
 name = "short"

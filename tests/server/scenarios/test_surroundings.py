@@ -21,6 +21,8 @@ from server.live.bridge import Bridge
 from server.scenarios.surroundings import Surroundings
 from tests.stack import ROOT
 
+pytestmark = pytest.mark.stack
+
 STATE = {
     "controller": "bang_bang",
     "controllers": [{"name": "pid", "gains": [{"name": "kp", "value": 7.0}]}],
