@@ -52,7 +52,9 @@ class Guard:
             told = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
             await refuse(scope, receive, _with_headers(send, scope), 413, told)
         elif reason is None:
-            await self._app(scope, receive, _with_headers(send, scope))
+            # What passes an open socket has no headers, and is too much for a detour.
+            opened = scope["type"] == "websocket"
+            await self._app(scope, receive, send if opened else _with_headers(send, scope))
         else:
             await refuse(scope, receive, _with_headers(send, scope), 403, reason)
 

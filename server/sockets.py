@@ -29,7 +29,8 @@ class Sockets(WebSocketsSansIOProtocol):
         if data is None:
             await super().send(message)
             return
-        await self.writable.wait()
+        if not self.writable.is_set():
+            await self.writable.wait()
         if self.disconnected or self.conn.state is not State.OPEN:
             raise ClientDisconnected
         self.transport.write(_head(len(data)) + data)

@@ -36,6 +36,7 @@ POLICY_VIOLATION = 1008
 """WebSocket close code for a client that may not go on."""
 
 Send = Callable[[bytes | str], Awaitable[None]]
+_NO_PICTURE = (0, b"")
 
 
 class Evicted(Exception):  # noqa: N818 - it says what happened
@@ -86,8 +87,8 @@ class Client:
         """Send the past, then the present, for ever. Raises Evicted where the client is too slow."""
         await self._send_history()
         while True:
-            while await self._send_one():
-                pass
+            while self._behind:
+                await self._send_one()
             self._wake.clear()
             await self._wake.wait()
 
@@ -105,8 +106,24 @@ class Client:
                 return
         raise Evicted("The connection is slower than what the robot sends.")
 
-    async def _send_one(self) -> bool:
-        """Send what is most urgent. Returns whether there was anything."""
+    @property
+    def _behind(self) -> bool:
+        """Whether there is anything to be sent."""
+        hub = self._hub
+        if self._rows < hub.rows.end or self._documents < hub.documents.end:
+            return True
+        return bool(self._answers or self._newest or self._picture)
+
+    @property
+    def _picture(self) -> str | None:
+        """The topic of a picture that it wants and has not got."""
+        for topic in self.watching:
+            if self._pictures.get(topic, 0) < self._hub.pictures.get(topic, _NO_PICTURE)[0]:
+                return topic
+        return None
+
+    async def _send_one(self) -> None:
+        """Send what is most urgent, if there is anything."""
         hub = self._hub
         if self._answers:
             await self._send(self._answers.popleft())
@@ -121,18 +138,9 @@ class Client:
             await self._send(hub.documents.get(self._documents - 1).data)
         elif self._rows < hub.rows.end:
             await self._send_rows()
-        else:
-            return await self._send_picture()
-        return True
-
-    async def _send_picture(self) -> bool:
-        for topic in self.watching:
-            number, picture = self._hub.pictures.get(topic, (0, b""))
-            if self._pictures.get(topic, 0) < number:
-                self._pictures[topic] = number
-                await self._send(picture)
-                return True
-        return False
+        elif (topic := self._picture) is not None:
+            self._pictures[topic], picture = hub.pictures[topic]
+            await self._send(picture)
 
     async def _send_rows(self) -> None:
         lane = self._hub.rows
