@@ -11,7 +11,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import pytest
@@ -237,7 +239,8 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     rig.arm()
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
     times = [at for at, type_, _ in rig.board.heard if type_ == Navigation.type]
-    assert (times[20] - times[0]) / 20 == pytest.approx(0.1, rel=0.1)
+    # A busy computer loses a tick now and then.
+    assert median(after - before for before, after in pairwise(times)) == pytest.approx(0.1, rel=0.1)
     assert Navigation.from_bytes(rig.board.heard[-1][2]).z == pytest.approx(1.0)
     rig.ask("stop")
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
