@@ -30,7 +30,7 @@ const RING_RADIUS = 0.18;
 /** m below the robot */
 const RING_BELOW = 0.08;
 /** m that the picture's width and height show at least */
-const SHOWN = [0.46, 0.4] as const;
+const SHOWN = [0.48, 0.44] as const;
 const LIGHT = unitOf([0.35, 0.5, -1]);
 const LETTERS = ['N', 'E', 'S', 'W'] as const;
 
