@@ -28,7 +28,11 @@ SHOWN = """() => [...document.images].every((one) => {
 })"""
 """Whether all pictures in the window are there; others are fetched when they come into it."""
 CONTROLLERS = ("bang_bang", "pid")
+TUNED = ("pid", "predictive")
 DEPTH = 0.5
+LIMITS = {"low": 0.0, "high": 1.2}
+STEP = {"kind": "step", "start": 0.4, "target": 0.7, "tolerance": 0.05, "settle": 10, "duration": 10} | LIMITS
+RELAY = {"kind": "relay", "set_point": 0.6, "amplitude": 1.0, "hysteresis": 0.01, "cycles": 3, "duration": 60}
 
 
 def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
@@ -47,8 +51,25 @@ def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
     wait_for_depth(watcher, -0.1, 0.05)
 
 
+def tune(stack: Stack) -> None:
+    """A step response of two controllers, and a relay experiment."""
+    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    for controller in TUNED:
+        stack.api.put("/robot/controller", json={"name": controller}).raise_for_status()
+        experiment(stack, STEP)
+    experiment(stack, RELAY | LIMITS)
+    stack.api.post("/robot/stop").raise_for_status()
+
+
+def experiment(stack: Stack, wanted: dict[str, object]) -> None:
+    stack.api.post("/tuning/runs", json=wanted).raise_for_status()
+    wait(lambda: stack.api.get("/tuning/state").json()["active"] is None, "the experiment to end", 90.0)
+
+
 def prepare(stack: Stack, watcher: Page) -> None:
-    """Two sessions that can be compared, and a robot that swims and records."""
+    """Experiments, two sessions that can be compared, and a robot that swims and records."""
+    tune(stack)
+    wait_for_depth(watcher, -0.1, 0.05)
     stack.api.put("/robot/set-points", json={"default": DEPTH}).raise_for_status()
     for name, controller in zip(SESSIONS, CONTROLLERS, strict=True):
         dive(stack, watcher, name, controller)
