@@ -75,6 +75,7 @@ class Robot(Core):
         self._messages.answer("query/frames", lambda _: self.frames())
         self._messages.answer("query/vision", lambda _: self.vision_settings())
         self._messages.answer("query/pick", lambda question: asdict(self.vision.pick(question)))
+        self._messages.answer("query/state", lambda _: asdict(self.state()))
         self._messages.answer("query/parameters", lambda _: asdict(self.list_parameters()))
         self._messages.answer_bytes("query/blocks", self.cache.answer)
 

@@ -116,7 +116,6 @@ class Assembly:
         self.tuning = TuningLab(
             TuningRuns(self.store),
             self.bridge,
-            self.watch,
             self.clock,
             self.hub.tell,
             self.notices.tell,

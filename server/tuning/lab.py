@@ -3,7 +3,7 @@
 import asyncio
 import json
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import degrees
@@ -14,7 +14,6 @@ from robot_runtime.errors import Refused
 from robot_runtime.samples import ExperimentPhase
 from robot_runtime.topics import Block
 from server.live.bridge import Bridge, RuntimeSilent
-from server.live.health import Watch
 from server.processes.parts import Tell
 from server.store import StoreError
 from server.tuning.curve import Gathering
@@ -72,7 +71,6 @@ class TuningLab:
         self,
         runs: Runs,
         bridge: Bridge,
-        watch: Watch,
         clock: Clock,
         tell: Callable[[dict[str, Any]], None],
         notice: Tell,
@@ -80,7 +78,6 @@ class TuningLab:
     ) -> None:
         self.runs = runs
         self._bridge = bridge
-        self._watch = watch
         self._clock = clock
         self._tell = tell
         self._notice = notice
@@ -101,7 +98,8 @@ class TuningLab:
         self._check()
         self._starting = True
         try:
-            force, limits = _in_force(self._state(), wanted.loop)
+            # What the server was told last may be older than the controller that was just chosen.
+            force, limits = _in_force(await self._bridge.query("state"), wanted.loop)
             run = await self.runs.begin(wanted, _name(wanted, force), force, limits)
             now = self._clock.now()
             self._active = _Active(run, wanted, Gathering(wanted.loop), began=now, since=now, heard=now)
@@ -172,15 +170,6 @@ class TuningLab:
             raise Refused("An experiment runs already. Wait for its end, or stop it first.")
         if (why := self._occupied()) is not None:
             raise Refused(why)
-        state = self._state()
-        if state["mode"] != "automatic":
-            raise Refused(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
-
-    def _state(self) -> dict[str, Any]:
-        state = self._watch.state()
-        if state is None:
-            raise Refused("The robot's runtime has said nothing yet. Wait a moment.")
-        return state
 
     def _hear(self, told: dict[str, Any]) -> None:
         active = self._active
@@ -237,8 +226,10 @@ def _place(value: float, loop: str) -> str:
     return f"{degrees(value):.0f}°" if is_angle(loop) else f"{value:g} m"
 
 
-def _in_force(state: dict[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
-    """The loop's controller, and what its PID's gains may be. Raises Refused where there is no such loop."""
+def _in_force(state: Mapping[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
+    """The loop's controller, and what its PID's gains may be. Raises Refused where no run may begin on it."""
+    if state["mode"] != "automatic":
+        raise Refused(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
     one = next((one for one in state["loops"] if one["name"] == loop), None)
     if one is None:
         raise Refused(f"This robot's runtime steers no loop {loop!r}.")

@@ -44,6 +44,8 @@ class RuntimeEnd:
         self._messages.answer("query/vision", lambda _: {"settings": settings, "configured": settings})
         self.picked: list[dict[str, Any]] = []
         self._messages.answer("query/pick", self._pick)
+        self.state: dict[str, Any] = {"mode": "disarmed", "loops": []}
+        self._messages.answer("query/state", lambda _: self.state)
         self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
         self._messages.answer("query/parameters", lambda _: self.parameters)
         self.answer: dict[str, Any] = {}

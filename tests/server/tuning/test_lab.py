@@ -15,7 +15,6 @@ from server.settings import Settings
 from server.store import Store
 from server.tuning.runs import Runs
 from server.tuning.shapes import Force, StepStart
-from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
 
@@ -57,15 +56,10 @@ class Robot:
     def __init__(self, served: Served) -> None:
         self._served = served
         self._numbers: dict[str, int] = {}
-        self._state = 0
 
-    async def arm(self, mode: str = "automatic") -> None:
+    def arm(self, mode: str = "automatic") -> None:
         loop = {"name": "depth", "on": False, "set_point": 0.5, "controller": "pid", "controllers": [PID]}
-        self._state += 1
-        self._served.runtime.publish(
-            state_block(self._state, mode=mode, armed=mode == "automatic", controllers=[PID], loops=[loop])
-        )
-        await until(lambda: (self._served.assembly.watch.state() or {}).get("mode") == mode, "the state")
+        self._served.runtime.state = {"mode": mode, "loops": [loop]}
 
     def tell(self, run: int, phase: Any, since: float, **more: Any) -> None:
         words: dict[str, Any] = {"progress": 0.5, "cycles": 0, "bias": 0.0, "text": "", "kind": "step"} | more
@@ -118,7 +112,7 @@ async def over(served: Served) -> dict[str, Any]:
 
 def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        await robot.arm()
+        robot.arm()
         async with served.connect() as socket:
             run = await begin(served, STEP)
             while (told := await next_text(socket, "tuning"))["active"] is None:
@@ -153,7 +147,7 @@ def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
 
 def test_a_relay_proposes_gains(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        await robot.arm()
+        robot.arm()
         run = await begin(served, RELAY)
         robot.tell(run, "settling", 100.0, kind="relay")
         robot.tell(run, "running", 104.0, kind="relay")
@@ -187,7 +181,7 @@ def test_a_relay_proposes_gains(settings: Settings) -> None:
 
 def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        await robot.arm()
+        robot.arm()
         run = await begin(served, STEP)
         robot.tell(run, "settling", 100.0)
         robot.tick([(100.0 + 0.1 * one, 0.4, 0.3, 0.1) for one in range(20)])
@@ -205,7 +199,7 @@ def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settin
 
 def test_runs_are_named_and_deleted(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        await robot.arm()
+        robot.arm()
         run = await begin(served, STEP)
         robot.tell(run, "failed", 102.0, text="It ended at 1.60, which is beyond the limits (0 to 1.5).")
         await over(served)
@@ -234,12 +228,11 @@ async def refused(served: Served, wanted: Any, status: int) -> str:
 
 def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        assert "said nothing yet" in await refused(served, STEP, 409)
-        await robot.arm("disarmed")
+        robot.arm("disarmed")
         assert "The robot is disarmed. Arm it" in await refused(served, STEP, 409)
-        await robot.arm("manual")
+        robot.arm("manual")
         assert "The robot is manual" in await refused(served, STEP, 409)
-        await robot.arm()
+        robot.arm()
         assert "no loop 'roll'" in await refused(served, STEP | {"loop": "roll"}, 409)
         for wrong in (
             STEP | {"target": 21},
@@ -268,7 +261,7 @@ def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> 
 
 def test_an_experiment_of_another_server_is_ended(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
-        await robot.arm()
+        robot.arm()
         robot.tell(7, "running", 100.0)
         await until(lambda: ("end_experiment", {}) in served.runtime.asked, "it to be ended")
 
