@@ -119,6 +119,7 @@ class Storm:
                 self._rest(0.0)
                 told = f"{time.monotonic() - began:7.1f} s {what.__name__[1:]}"
                 print(told, file=sys.stderr, flush=True)
+                self._require_recording(session)
         self._world.calm()
         for page in self._pages:
             page.close()
@@ -126,6 +127,13 @@ class Storm:
         answer.raise_for_status()
         self.report.seconds = time.monotonic() - began
         self._count(session)
+
+    def _require_recording(self, session: int) -> None:
+        """Nothing here may end a session: neither a hole that is not filled, nor the disk."""
+        found = self._ask(lambda: self._stack.api.get(f"/sessions/{session}"))
+        if found.is_error or found.json()["state"] != "recording":
+            said = self._stack.log.read_text()[-2000:]
+            raise AssertionError(f"the session does not record any more: {found.text}\n{said}")
 
     # Misfortunes
 
