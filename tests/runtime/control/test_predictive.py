@@ -106,4 +106,4 @@ def test_in_the_simulated_water_it_rests_where_the_thesiss_controller_swings(cra
     if craft == "nominal":
         thesis = perform(THESIS, robot, sine=False)
         assert thesis.steady > 0.14
-        assert crossing_ratio(found, thesis) <= 1.2
+        assert crossing_ratio([found], [thesis]) <= 1.2
