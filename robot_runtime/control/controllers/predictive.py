@@ -36,6 +36,9 @@ _SPEED_MAX = 0.4
 """m/s."""
 _DRIFT_LEAST, _DRIFT_USED = 0.004, 0.7
 """m/s² of braking by the drift, and the share of the drift, on which the way home counts."""
+_LONGER = 1.08
+"""Share by which the way of braking is taken to be longer, as in which part of their stroke the fins stop is
+not known, and past the set point is worse."""
 _BRAKING = 0.3
 """Share of the fins' thrust on which the way against home counts."""
 
@@ -162,7 +165,7 @@ class Predictive(Controller):
                 break
             command = side if motion.pointing(side) else side * TINY
             motion = self._heave.advance(motion, command, _TICK, _FINE)
-        return abs(motion.depth - start)
+        return _LONGER * abs(motion.depth - start)
 
     def _pays_away(self, goal: float, motion: Motion, at_home: bool) -> bool:
         """Whether the best plan keeps the fins away from home now."""
