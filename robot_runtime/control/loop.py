@@ -62,8 +62,11 @@ class ControlLoop:
         lent = self.lent
         return self.set_point if lent is None or lent.set_point is None else lent.set_point
 
-    def step(self, seconds: float) -> None:
-        """Decide; `seconds` since the last step. There must be a measured value."""
+    def step(self, seconds: float, down: float = 0.0) -> None:
+        """Decide; `seconds` since the last step, `down` the command downwards beside this one's.
+
+        There must be a measured value.
+        """
         assert self.measured is not None
         lent = self.lent
         controller = self.controller if lent is None or lent.controller is None else lent.controller
@@ -77,6 +80,7 @@ class ControlLoop:
             self._counted_on += wrapped(measured - self._counted_on)
             set_point = self._counted_on + wrapped(set_point - measured)
             measured = self._counted_on
+        controller.down = down
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)
 
     def rest(self) -> None:

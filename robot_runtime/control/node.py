@@ -204,7 +204,8 @@ class ControlNode:
             if pushed:
                 loop.follow()
             if loop.measured is not None and not pushed and self._steers(loop, mode):
-                loop.step(seconds)
+                depth = self.depth.output
+                loop.step(seconds, pilot.z if depth is None else depth)
             else:
                 loop.rest()
 

@@ -4,13 +4,23 @@ from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZo
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.control.controllers.predictive import Predictive
+from robot_runtime.control.controllers.tilt import Tilt
 from robot_runtime.control.controllers.turning import HeadingPid, PitchPid, RollPid, TurnDeadZone
 
-__all__ = ["CONTROLLERS", "BangBang", "BangBangDeadZone", "Controller", "GainLimits", "Pid", "Predictive"]
+__all__ = [
+    "CONTROLLERS",
+    "BangBang",
+    "BangBangDeadZone",
+    "Controller",
+    "GainLimits",
+    "Pid",
+    "Predictive",
+    "Tilt",
+]
 
 CONTROLLERS: dict[str, tuple[type[Controller], ...]] = {
     "depth": (BangBang, BangBangDeadZone, Pid, Predictive),
-    "heading": (HeadingPid, TurnDeadZone),
+    "heading": (HeadingPid, TurnDeadZone, Tilt),
     "pitch": (PitchPid,),
     "roll": (RollPid,),
 }

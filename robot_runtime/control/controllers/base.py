@@ -33,6 +33,8 @@ class Controller(ABC):
     """Whether it sees the mean of what was measured since the last step, instead of the newest."""
 
     def __init__(self) -> None:
+        self.down = 0.0
+        """The command downwards that goes out with this one's, where that is for another axis."""
         self.gains = {name: limits.default for name, limits in self.limits.items()}
 
     @classmethod

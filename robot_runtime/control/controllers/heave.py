@@ -6,12 +6,12 @@ published: thrust of a flapping fin ∝ 1 - cos A, where A is its amplitude from
 round pushes like a paddle, and the water along its blade, as in `simulation/fins.py`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import acos, copysign, cos, pi, sin
 from typing import NamedTuple
 
 TINY = 1 / 127
-"""The least command: it turns the fins round, and hardly flaps them."""
+"""The least command: it turns the fins round, and hardly flaps them. None at all stops their turning."""
 DOWN = pi / 2
 """rad: where the fins point when they push the hull down; -DOWN when up."""
 _AMPLITUDE = 1.6
@@ -21,21 +21,19 @@ _TURN_RATE = 80 / 1024 * 2 * pi / 0.1
 TURNING_ROUND = 2 * DOWN / _TURN_RATE
 """s."""
 _FULL = 1 - cos(_AMPLITUDE)
-_BLADE = 2.94
+_BLADE = 2.9
 """1/m: 4 · ½ρ·C_N·S over the mass, of the blades across their motion."""
-_SWEEP = 0.045 * _TURN_RATE
-"""m/s of the blades' centres while the fins turn round."""
+_CENTRE = 0.045
+"""m from the shaft to the middle of a blade."""
+_SWEEP = _CENTRE * _TURN_RATE
+"""m/s of the blades' middles while the fins turn round."""
 _SWEEP_THRUST = 0.306
 """m/s²: 4 · ½ρ·C_T·S·(r_c·θ̇)² over the mass, of fins that turn round."""
+_FLAPPING = 2 * _BLADE * _CENTRE * 1.3
+"""1/s: blades that flap by A from peak to peak, f times a second, resist the hull by this times A - sin A, as
+the mean of 2 · _BLADE · |r_c·θ̇| · cos²θ over a stroke about ±DOWN is 2 · _BLADE · r_c · f · (A - sin A)."""
 _LINEAR = 0.25
 """1/s: linear damping over the mass."""
-_STILL = 0.02
-"""m/s² below which a push says nothing of its own strength."""
-
-_DRIFT_MAX = 0.012
-"""m/s²; in water that is still."""
-_DOUBT = 0.4
-"""Share by which the fins may be stronger or weaker than the model's."""
 
 
 class Motion(NamedTuple):
@@ -45,6 +43,10 @@ class Motion(NamedTuple):
     speed: float
     direction: float = 0.0
     amplitude: float = 0.0
+
+    def pointing(self, side: float) -> bool:
+        """Whether the fins have turned to this side, 1 down and -1 up."""
+        return self.direction * side > DOWN - 1e-6
 
 
 @dataclass(slots=True)
@@ -56,65 +58,66 @@ class Heave:
     drag: float
     """1/m: quadratic drag over the mass."""
     strength: float = 1.0
-    """Of the fins' thrust, as a share of the model's."""
+    """Of the fins' thrust, as a share of the model's; so are the next two."""
+    blades: float = 1.0
+    """Of the water's force across the blades."""
+    hull: float = 1.0
+    """Of the water's resistance to the hull."""
     drift: float = 0.0
     """What else pushes the hull down: buoyancy, below 0 where it floats."""
-    pushed: float = 0.0
-    """The fins' mean thrust over the last `advance`, by the model."""
+    slopes: tuple[float, float, float, float] = field(default=(0.0, 0.0, 0.0, 0.0), init=False)
+    """By how much the last `advance` changes the speed with strength, blades, hull, and the speed before."""
 
     def advance(self, motion: Motion, command: float, seconds: float, step: float) -> Motion:
-        """The motion after `seconds` under this command, in steps of about `step` s (explicit Euler)."""
+        """The motion after `seconds` under this command, in steps of about `step` s."""
         depth, speed, direction, amplitude = motion
         count = max(round(seconds / step), 1)
         step = seconds / count
         goal, wanted = copysign(DOWN, command) if command else direction, _AMPLITUDE * abs(command)
-        total = 0.0
+        pushed = across_blades = resisted = steepness = 0.0
         for _ in range(count):
-            push, paddle = self.thrust * (1 - cos(amplitude)) / _FULL * sin(direction), 0.0
-            if direction != goal:
-                across, side = cos(direction), copysign(1.0, goal - direction)
-                flow = _SWEEP - side * speed * across
-                paddle = side * _BLADE * across * flow * abs(flow)
-                push += _SWEEP_THRUST * sin(direction)
-                direction += _limit(goal - direction, _TURN_RATE * step)
+            push = self.thrust * (1 - cos(amplitude)) / _FULL
+            blades = -_FLAPPING * (amplitude - sin(amplitude)) * speed
+            if direction != goal or abs(direction) < DOWN:
+                turn = _limit(goal - direction, _TURN_RATE * step)
+                middle, share = direction + turn / 2, turn / (_TURN_RATE * step)
+                across = cos(middle)
+                flow = share * _SWEEP - speed * across
+                blades += _BLADE * across * flow * abs(flow)
+                push = (push + _SWEEP_THRUST * abs(share)) * sin(middle)
+                direction += turn
+            elif direction < 0:
+                push = -push
+            resistance = (_LINEAR + self.drag * abs(speed)) * speed
+            pushed, across_blades, resisted = pushed + push, across_blades + blades, resisted + resistance
+            steepness += _LINEAR + 2 * self.drag * abs(speed)
             amplitude += _limit(wanted - amplitude, _AMPLITUDE_RATE * step)
-            total += push
-            speed += (self.strength * push + paddle - self.resistance(speed) + self.drift) * step
-            depth += speed * step
-        self.pushed = total / count
+            before = speed
+            speed += (
+                self.strength * push + self.blades * blades - self.hull * resistance + self.drift
+            ) * step
+            depth += (before + speed) / 2 * step
+        self.slopes = pushed * step, across_blades * step, -resisted * step, 1 - self.hull * steepness * step
         return Motion(depth, speed, direction, amplitude)
 
     def resistance(self, speed: float) -> float:
-        """Drag against this speed."""
-        return (_LINEAR + self.drag * abs(speed)) * speed
+        """Drag against this speed, of resting fins."""
+        return self.hull * (_LINEAR + self.drag * abs(speed)) * speed
 
-    def coast(self, speed: float) -> float:
-        """How far a hull of this speed (m/s, above 0) goes on with resting fins, downwards, m."""
+    def coast(self, speed: float, drift: float) -> float:
+        """How far a hull of this speed (m/s, above 0) goes on with resting fins in 3 s, m."""
         way = 0.0
         for _ in range(30):
-            speed += (self.drift - self.resistance(speed)) * 0.1
+            speed += (drift - self.resistance(speed)) * 0.1
             if speed <= 0:
                 break
             way += speed * 0.1
         return way
 
     def command(self, push: float) -> float:
-        """The command, -1 to 1, with which the fins push so (m/s²), once they point there."""
-        share = min(abs(push) / (self.thrust * self.strength), 1.0)
-        return copysign(acos(1 - share * _FULL) / _AMPLITUDE, push)
-
-    def learn(self, unexplained: float, weight: float) -> None:
-        """Take an acceleration that was not expected for drift, or for fins of another strength.
-
-        The harder the fins push, the more of it is theirs: least squares with the doubts of both, `weight`
-        being the ratio of the fins' doubt (as a share) to the drift's (m/s²).
-        """
-        theirs = (self.pushed * weight) ** 2
-        theirs /= theirs + 1
-        self.drift = _limit(self.drift + (1 - theirs) * unexplained, _DRIFT_MAX)
-        if abs(self.pushed) > _STILL:
-            strength = self.strength + theirs * unexplained / self.pushed
-            self.strength = min(max(strength, 1 - _DOUBT), 1 + _DOUBT)
+        """The command, 0 to 1, with which the fins push so (m/s²), 0 where that is below 0."""
+        share = min(max(push, 0.0) / (self.thrust * self.strength), 1.0)
+        return acos(1 - share * _FULL) / _AMPLITUDE
 
 
 def _limit(value: float, most: float) -> float:

@@ -1,158 +1,216 @@
 """The model-based controller of the depth."""
 
 from collections.abc import Mapping
-from math import copysign, exp, sqrt
+from math import copysign, exp, inf, sqrt
 from typing import ClassVar
 
 from robot_runtime.control.controllers.base import Controller, GainLimits
-from robot_runtime.control.controllers.heave import DOWN, TINY, TURNING_ROUND, Heave, Motion
+from robot_runtime.control.controllers.heave import TINY, Heave, Motion
+from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver
 
 _LOST = 1.0
 """s without a step after which what was known of the motion is worth nothing."""
-_FINE, _COARSE = 0.02, 0.04
-"""s: steps in which the model is carried on to now, and ahead."""
-_ARRIVED = 1e-6
-_SPEED_MAX = 0.3
-"""m/s."""
+_DRIFT = -0.01
+"""m/s²; a hull of which nothing is known floats up by so much."""
 _DRIFT_SURE = 0.006
 """m/s²; a drift the other way must be stronger before it counts."""
-_QUIET = 0.02
-"""m/s²; while the fins push harder, what is unexplained may be theirs."""
-_FINISH = 0.006
-"""m/s²: with this braking, less than the drift's, the last centimetre towards home is swum."""
-_WEIGHT = 70.0
-_AHEAD = 0.036
-"""s from the step to when the fins have followed."""
+_TICK = 0.1
+"""s between two steps of a plan."""
+_HORIZON = 30
+"""Ticks of a plan."""
+_AWAY_MORE = (1, 2, 3, 5, 8, 12)
+_AWAY_FROM_HOME = (7, 8, 9, 10, 12, 14, 17)
+"""Ticks that a plan may keep the fins away from home; to turn there takes seven."""
+_FINE, _COARSE = 0.05, 0.1
+"""s: steps of the model while the fins turn, and else."""
+_PAST = 0.002
+"""m past the set point to which it goes at first, so as to reach it."""
+_FAST = 0.06
+"""m/s that turning the fins round gives a hull at rest; one that is slower is not braked by that."""
+_FAR, _NEAR, _BESIDE = 0.08, 0.05, 0.04
+"""m: farther, it swims as fast as it can; nearer, it only drifts to the point; less than that, it does not
+leave home for."""
+_OVER = 0.01
+"""m past the set point up to which coasting there is good enough."""
+_SPEED_MAX = 0.4
+"""m/s."""
+_DRIFT_LEAST, _DRIFT_USED = 0.004, 0.7
+"""m/s² of braking by the drift, and the share of the drift, on which the way home counts."""
+_LONGER = 1.08
+"""Share by which the way of braking is taken to be longer, as in which part of their stroke the fins stop is
+not known, and past the set point is worse."""
+_BRAKING = 0.3
+"""Share of the fins' thrust on which the way against home counts."""
 
 
 class Predictive(Controller):
     """Thinks ahead with a model of hull and fins, and so turns the fins round only where that pays.
 
-    Three parts. An *observer* carries the model on and corrects depth, speed and what is unexplained by the
-    readings (fading memory, P. Zarchan and H. Musoff, Fundamentals of Kalman Filtering, 2009, 7; as an
-    extended state observer, J. Han, From PID to Active Disturbance Rejection Control, 2009); the unexplained
-    is drift, or fins of another strength. A *speed* is wanted for each distance from the set point, as
-    braking allows it (√(2·a·distance), time-optimal; linear where that would be too steep: a boundary layer,
-    J.-J. Slotine and W. Li, Applied Nonlinear Control, 1991, 7.2), and the push that brings it follows from
-    the model. The *direction* of the fins: turning them round takes 0.64 s and is itself a blow, so that at
-    rest they stay on the side that holds against the drift (home), and the push is modulated there. They
-    leave home to swim the other way, or to brake what coasting would not stop in time, at the last moment at
-    which turning there and back is enough; they turn home once the motion after that is the wanted one.
+    `HeaveObserver` tells the motion, and learns the craft. Turning the fins round takes 0.64 s and is itself
+    a blow, so that at rest they stay on the side that holds against the drift (*home*), and their push is
+    modulated there. On the way to the set point they are turned for two things.
+
+    To *brake* a fast hull, as late as it can be: one step before turning would bring it to rest behind the
+    set point. They stop flapping first, and pause in their turn where that brings the hull nearer.
+
+    To *swim* away from home. When to go and when to come back is found by trying some plans on the model: so
+    long away, then home, and the least sum of distances over the next 3 s, those past the set point counted
+    several times (receding horizon, J. M. Maciejowski, Predictive Control with Constraints, 2002, 1.3).
+
+    At home a speed is wanted for each distance: towards it the one that drift and drag stop there,
+    √(a/q·(e^(2·q·distance) - 1)); against it √(2·a·distance), linear where that would be too steep (a
+    boundary layer, J.-J. Slotine and W. Li, Applied Nonlinear Control, 1991, 7.2).
     """
 
     name = "predictive"
     title = "Model-based"
     averages = True
     limits: ClassVar[Mapping[str, GainLimits]] = {
-        "observer": GainLimits(0.8, 0.2, 10.0, "1/s", "how fast the estimate follows what is measured"),
+        "noise": GainLimits(0.0022, 0.0005, 0.05, "m", "standard deviation of the depth that a step is told"),
         "response": GainLimits(2.4, 0.5, 10.0, "1/s", "how fast the wanted speed is taken up"),
-        "approach": GainLimits(0.88, 0.2, 10.0, "1/s", "wanted speed for each metre from the set point"),
-        "braking": GainLimits(0.28, 0.01, 1.0, "m/s²", "deceleration that is counted on while approaching"),
-        "thrust": GainLimits(0.25, 0.05, 2.0, "m/s²", "acceleration by all fins at full command"),
-        "drag": GainLimits(6.0, 0.5, 50.0, "1/m", "deceleration by drag for each (m/s)²"),
+        "approach": GainLimits(2.3, 0.2, 10.0, "1/s", "wanted speed for each metre against the drift"),
+        "overshoot": GainLimits(4.0, 1.0, 20.0, "", "how many times a metre past the set point counts"),
+        "thrust": GainLimits(0.268, 0.05, 2.0, "m/s²", "acceleration by all fins at full command"),
+        "drag": GainLimits(5.65, 0.5, 50.0, "1/m", "deceleration by drag for each (m/s)²"),
     }
-    _observer_pushed = 6.8  # 1/s for each m/s² of push: faster while much happens
-    _return, _return_braking = 2.3, 0.54  # 1/s and m/s², against the drift, where fins at home brake
-    _leave_speed, _leave_way = 0.067, 0.08  # m/s, m: below, the fins stay at home
-    _leave_over, _turn_over, _return_over = 0.01, 0.016, 0.005  # m past the set point
 
     def __init__(self) -> None:
         super().__init__()
         self.start()
 
     def start(self) -> None:
-        """Forget motion and drift."""
-        self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=-0.01)
+        """Forget motion and craft."""
+        self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=_DRIFT)
+        self._observer = HeaveObserver(self._heave)
         self._motion: Motion | None = None
         self._command = 0.0
         self._home = 1.0
+        self._side = 0.0
+        """Where the fins point, or turn to; 0 before they have been turned."""
+        self._braking = False
+        self._set_point: float | None = None
+        self._came = 1.0
+        self._past = 0.0
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """Estimate, decide; `measured` is the mean of the time since the last step."""
         self._heave.thrust, self._heave.drag = self.gains["thrust"], self.gains["drag"]
         if self._motion is None or seconds > _LOST:
-            self._motion = Motion(measured, 0.0)
+            self._motion, self._side = Motion(measured, 0.0), 0.0
         elif seconds > 0:
-            self._motion = self._observe(self._motion, measured, seconds)
-        self._command = self._decide(set_point, self._motion)
+            noise = self.gains["noise"]
+            self._motion = self._observer.observe(self._motion, self._command, measured, noise, seconds)
+        # What is decided now will act only then.
+        motion = self._heave.advance(self._motion, self._command, LAG, _FINE)
+        self._command = self._decide(self._find_goal(set_point, motion), motion)
         return self._command
 
-    def _observe(self, motion: Motion, measured: float, seconds: float) -> Motion:
-        heave = self._heave
-        motion = heave.advance(motion, self._command, seconds, _FINE)
-        memory = exp(-(self.gains["observer"] + self._observer_pushed * abs(heave.pushed)) * seconds)
-        new = 1 - memory
-        wrong = measured - (motion.depth - motion.speed * seconds / 2)
-        heave.learn(new**3 / seconds**2 * wrong, _WEIGHT)
-        return motion._replace(
-            depth=motion.depth + (1 - memory**3) * wrong,
-            speed=motion.speed + 1.5 * new**2 * (1 + memory) / seconds * wrong,
-        )
+    def _find_goal(self, set_point: float, motion: Motion) -> float:
+        if set_point != self._set_point:
+            self._set_point, self._came = set_point, copysign(1.0, set_point - motion.depth)
+            self._past = self._came * _PAST
+        if (motion.depth - set_point) * self._past > 0:
+            self._past = 0.0
+        return set_point + self._past
 
-    def _decide(self, set_point: float, motion: Motion) -> float:
-        heave = self._heave
-        if heave.drift * self._home > _DRIFT_SURE and abs(heave.pushed) < _QUIET:
+    def _decide(self, goal: float, motion: Motion) -> float:
+        if self._heave.drift * self._home > _DRIFT_SURE:
             self._home = -self._home
-        motion = motion._replace(depth=motion.depth + motion.speed * _AHEAD)
-        turning = self._command != 0 and abs(motion.direction) < DOWN - _ARRIVED
-        side = copysign(1.0, (self._command if turning else motion.direction) or set_point - motion.depth)
-        then = motion
-        if turning or motion.direction == 0:
-            left = abs(side * DOWN - motion.direction) / (2 * DOWN) * TURNING_ROUND
-            then = heave.advance(motion._replace(amplitude=0.0), side * TINY, left, _COARSE)
-        if side == self._home:
-            leave = not turning and self._must_leave(set_point, then)
-            push = 0.0 if leave else max(self._wanted(set_point, then) * side, 0.0)
-        else:
-            back = self._turn(then)
-            push = max(self._wanted(set_point, back) * side, 0.0)
-            leave = not turning and self._may_return(set_point, back)
-        if leave:
-            return -side * TINY
-        if turning and motion.direction * side < 0:
+        home, left = self._home, goal - motion.depth
+        if not self._side:
+            self._side = home if left * home > -_BESIDE else -home
+        if not motion.pointing(self._side):
+            self._braking = self._braking and motion.speed * self._side < 0
+            return self._brake(left, motion) if self._braking else self._side * TINY
+        self._braking = False
+        at_home = self._side == home
+        fast = motion.speed * left > 0 and abs(motion.speed) > _FAST
+        if fast and motion.speed * self._side > 0 and self._overshoots(left * home, motion, at_home):
+            rest = self._heave.advance(motion, 0.0, _TICK, _FINE)
+            way = abs(rest.depth - motion.depth) + self._way(rest, -self._side)
+            if way + abs(motion.speed) * _TICK <= abs(left):
+                return self._side
+            self._side, self._braking = -self._side, True
+            return 0.0
+        beside = left * home > -_BESIDE and motion.speed * home < _FAST
+        if not (at_home and (left * home > 0 or beside)):
+            self._side = -home if self._pays_away(goal, motion, at_home) else home
+        if self._side == home and left * home > _FAR:
+            return home * (1.0 if motion.pointing(home) else TINY)
+        return self._swim(goal, motion, self._side)
+
+    def _overshoots(self, left: float, motion: Motion, at_home: bool) -> bool:
+        """Whether a fast hull would go past unless the fins turn; `left` is seen towards home, m."""
+        if not at_home:
+            return -left > _NEAR
+        return self._heave.coast(motion.speed * self._home, self._heave.drift * self._home) > left + _OVER
+
+    def _brake(self, left: float, motion: Motion) -> float:
+        """Turn on, or pause for a step, whichever lets the hull stop nearer."""
+        left *= -self._side
+        paused = self._heave.advance(motion, 0.0, _TICK, _FINE)
+        later = abs(paused.depth - motion.depth) + self._way(paused, self._side)
+        pause = self._badness(left - later) < self._badness(left - self._way(motion, self._side))
+        return 0.0 if pause else self._side * TINY
+
+    def _badness(self, left: float) -> float:
+        """Of being so far from the set point, m; below 0 past it."""
+        return left if left >= 0 else -left * self.gains["overshoot"]
+
+    def _way(self, motion: Motion, side: float) -> float:
+        """m that it goes on until fins that turn to this side, and then push fully, have stopped it."""
+        start = motion.depth
+        for _ in range(_HORIZON):
+            if motion.speed * side >= 0:
+                break
+            command = side if motion.pointing(side) else side * TINY
+            motion = self._heave.advance(motion, command, _TICK, _FINE)
+        return _LONGER * abs(motion.depth - start)
+
+    def _pays_away(self, goal: float, motion: Motion, at_home: bool) -> bool:
+        """Whether the best plan keeps the fins away from home now."""
+        stay, before = self._cost(goal, motion, 0), inf
+        for ticks in _AWAY_FROM_HOME if at_home else _AWAY_MORE:
+            cost = self._cost(goal, motion, ticks)
+            if cost < stay:
+                return True
+            if cost > before:
+                break
+            before = cost
+        return False
+
+    def _cost(self, goal: float, motion: Motion, away: int) -> float:
+        """Of a plan: so many ticks away from home, then at home; the sum of its distances."""
+        total = 0.0
+        for tick in range(_HORIZON):
+            side = -self._home if tick < away else self._home
+            turning = not motion.pointing(side)
+            command = self._swim(goal, motion, side)
+            motion = self._heave.advance(motion, command, _TICK, _FINE if turning else _COARSE)
+            left = goal - motion.depth
+            total += self._badness(left * self._came)
+        return total
+
+    def _swim(self, goal: float, motion: Motion, side: float) -> float:
+        """The command on this side: to turn there, full away from home, the wanted push at home."""
+        if not motion.pointing(side):
             return side * TINY
-        command = abs(heave.command(push))
-        return side * max(command, TINY) if turning or command else 0.0
+        if side != self._home:
+            return side
+        command = self._heave.command(self._push(goal, motion))
+        return side * max(command, TINY) if command else 0.0
 
-    def _must_leave(self, set_point: float, motion: Motion) -> bool:
-        """Whether fins at home must turn round now: to swim far against it, or to brake."""
-        if (motion.depth - set_point) * self._home > self._leave_way:
-            return True
-        if motion.speed * self._home <= self._leave_speed:
-            return False
-        if self._stops_past(set_point, motion) <= self._leave_over:
-            return False
-        return self._stops_past(set_point, self._turn(self._turn(motion))) > self._turn_over
-
-    def _may_return(self, set_point: float, back: Motion) -> bool:
-        """Whether fins may turn home now, after which the motion is `back`."""
-        if back.speed * self._home <= 0:
-            return self._wanted(set_point, back) * self._home > 0
-        return self._stops_past(set_point, back) < self._return_over
-
-    def _turn(self, motion: Motion) -> Motion:
-        """The motion once the fins have turned round from where they are."""
-        return self._heave.advance(motion, -copysign(TINY, motion.direction), TURNING_ROUND, _COARSE)
-
-    def _stops_past(self, set_point: float, motion: Motion) -> float:
-        """m past the set point, seen towards home, where it stops with its fins at rest."""
+    def _push(self, goal: float, motion: Motion) -> float:
+        """The push towards home (m/s²) that brings the wanted speed."""
         heave, home = self._heave, self._home
-        seen = Heave(heave.thrust, heave.drag, heave.strength, heave.drift * home)
-        return (motion.depth - set_point) * home + seen.coast(motion.speed * home)
-
-    def _wanted(self, set_point: float, motion: Motion) -> float:
-        """The push (m/s²) that gives the hull the speed that it should have there."""
-        error = set_point - motion.depth
-        if error * self._home < 0:
-            braking, slope = self._return_braking, self._return
-        else:
-            braking, slope = self.gains["braking"], self.gains["approach"]
-        if abs(error) < braking / slope**2:
-            speed = slope * error
-        else:
-            speed = min(sqrt(2 * braking * (abs(error) - braking / (2 * slope**2))), _SPEED_MAX)
-            speed = copysign(speed, error)
-        if error * self._home > 0:
-            speed = copysign(max(abs(speed), sqrt(2 * _FINISH * abs(error))), error)
-        gain = self.gains["response"]
-        return gain * (speed - motion.speed) + self._heave.resistance(motion.speed) - self._heave.drift
+        left, speed, drift = (goal - motion.depth) * home, motion.speed * home, heave.drift * home
+        if left >= 0:
+            braking, drag = max(-drift, _DRIFT_LEAST) * _DRIFT_USED, heave.hull * heave.drag
+            wanted = min(sqrt(braking / drag * (exp(min(2 * drag * left, 6.0)) - 1)), _SPEED_MAX)
+            # Along that curve drag brakes by itself.
+            return self.gains["response"] * (wanted - speed) - drift - braking
+        braking, slope = _BRAKING * heave.thrust * heave.strength, self.gains["approach"]
+        linear = braking / slope**2
+        wanted = slope * left if -left < linear else -sqrt(2 * braking * (-left - linear / 2))
+        wanted = max(wanted, -_SPEED_MAX)
+        return self.gains["response"] * (wanted - speed) + heave.resistance(wanted) - drift

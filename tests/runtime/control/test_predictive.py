@@ -1,12 +1,13 @@
 """The model-based depth controller: its model, its parts, and what it reaches in the simulated water."""
 
-from math import pi
+from math import pi, sin
 
 import pytest
 
 from bench.control import BEST, THESIS, crossing_ratio, perform, variants
 from robot_runtime.control.controllers import Predictive
 from robot_runtime.control.controllers.heave import DOWN, TURNING_ROUND, Heave, Motion
+from robot_runtime.control.controllers.heave_observer import AGE, LAG, HeaveObserver
 
 SECONDS = 0.1
 
@@ -17,7 +18,9 @@ def heave(**more: float) -> Heave:
 
 def test_full_command_brings_the_terminal_speed_of_the_models_quadratic() -> None:
     there = heave().advance(Motion(0.0, 0.0, DOWN, 1.6), 1.0, 20.0, 0.02)
-    assert there.speed == pytest.approx((-0.25 + (0.25**2 + 4 * 6.0 * 0.25) ** 0.5) / (2 * 6.0), rel=1e-3)
+    linear = 0.25 + 2 * 2.9 * 0.045 * 1.3 * (1.6 - sin(1.6))
+    wanted = (-linear + (linear**2 + 4 * 6.0 * 0.25) ** 0.5) / (2 * 6.0)
+    assert there.speed == pytest.approx(wanted, rel=1e-3)
 
 
 def test_turning_the_fins_round_pushes_to_the_new_side_and_takes_its_time() -> None:
@@ -27,32 +30,50 @@ def test_turning_the_fins_round_pushes_to_the_new_side_and_takes_its_time() -> N
     assert pi / TURNING_ROUND == pytest.approx(80 / 1024 * 2 * pi / 0.1)
 
 
-@pytest.mark.parametrize("push", [-0.25, -0.1, -0.01, 0.01, 0.1, 0.25])
-def test_the_command_for_a_push_brings_it(push: float) -> None:
+def test_fins_that_are_told_nothing_stop_in_their_turn_and_resist_the_hull() -> None:
     model = heave()
+    turning = model.advance(Motion(0.0, 0.1, DOWN), -0.01, TURNING_ROUND / 2, 0.01)
+    assert abs(turning.direction) < DOWN / 2
+    assert model.advance(turning, 0.0, 0.1, 0.01).direction == turning.direction
+    across = model.advance(Motion(0.0, 0.1, 0.0), 0.0, 0.1, 0.01)
+    along = model.advance(Motion(0.0, 0.1, DOWN), 0.0, 0.1, 0.01)
+    assert across.speed < along.speed < 0.1
+
+
+@pytest.mark.parametrize("push", [0.01, 0.1, 0.25])
+def test_the_command_for_a_push_brings_it(push: float) -> None:
+    model = heave(strength=1.2)
     command = model.command(push)
-    motion = Motion(0.0, 0.0, DOWN if push > 0 else -DOWN, 1.6 * abs(command))
-    model.advance(motion, command, 0.01, 0.01)
-    assert model.pushed == pytest.approx(push, rel=1e-6)
+    model.advance(Motion(0.0, 0.0, DOWN, 1.6 * command), command, 0.01, 0.01)
+    assert model.strength * model.slopes[0] / 0.01 == pytest.approx(push, rel=1e-6)
 
 
 def test_a_coasting_hull_goes_less_far_against_its_drift() -> None:
-    ways = [heave(drift=drift).coast(0.15) for drift in (-0.02, -0.01, 0.0)]
+    ways = [heave().coast(0.15, drift) for drift in (-0.02, -0.01, 0.0)]
     assert 0.1 < ways[0] < ways[1] < ways[2]
-    assert heave().coast(-0.1) == 0.0
+    assert heave().coast(-0.1, -0.01) == 0.0
 
 
-def test_what_is_unexplained_is_drift_while_the_fins_rest_and_strength_while_they_push() -> None:
-    resting, pushing = heave(), heave()
-    resting.learn(-0.005, 70.0)
-    pushing.pushed = 0.25
-    pushing.learn(-0.05, 70.0)
-    assert (resting.drift, resting.strength) == (-0.005, 1.0)
-    assert pushing.strength == pytest.approx(0.8, abs=0.01)
-    assert abs(pushing.drift) < 0.001
+@pytest.mark.parametrize("part", ["strength", "hull", "drift"])
+@pytest.mark.parametrize("factor", [0.75, 1.25])
+def test_what_craft_it_is_shows_in_its_motion(part: str, factor: float) -> None:
+    """It dives, coasts and swims back up without noise; the model's other numbers are right."""
+    usual = {"strength": 1.0, "hull": 1.0, "drift": -0.01}
+    water = heave(**usual | {part: usual[part] * factor})
+    observer = HeaveObserver(heave(drift=-0.01))
+    really = seen = Motion(0.1, 0.0, DOWN)
+    before = 0.0
+    for command in [1.0] * 40 + [0.0] * 40 + [-0.01] * 7 + [-1.0] * 30 + [0.01] * 7 + [0.2] * 100:
+        middle = water.advance(really, before, LAG, 0.01)
+        after = water.advance(middle, command, SECONDS - LAG, 0.01)
+        measured = after.depth - after.speed * (SECONDS / 2 + AGE)
+        seen = observer.observe(seen, command, measured, 0.0005, SECONDS)
+        really, before = after, command
+    assert seen.depth == pytest.approx(really.depth, abs=0.003)
+    assert getattr(observer.heave, part) / usual[part] == pytest.approx(factor, abs=0.12)
 
 
-@pytest.mark.parametrize(("drift", "within"), [(-0.012, 0.01), (0.0, 0.08), (0.012, 0.01)])
+@pytest.mark.parametrize(("drift", "within"), [(-0.012, 0.01), (0.0, 0.04), (0.012, 0.01)])
 def test_it_rests_at_the_set_point_in_the_water_of_its_model(drift: float, within: float) -> None:
     """Also a hull that sinks by itself, whose home is the other side; neutral it rests less near."""
     water, controller = heave(drift=drift), Predictive()
@@ -75,14 +96,14 @@ def test_after_a_pause_it_begins_anew() -> None:
     assert used.step(1.0, 0.4, SECONDS) == fresh.step(1.0, 0.4, SECONDS)
 
 
-@pytest.mark.parametrize("craft", ["nominal", "thrust -30 %", "mass -30 %"])
+@pytest.mark.parametrize("craft", ["nominal", "drag -30 %", "mass -30 %"])
 def test_in_the_simulated_water_it_rests_where_the_thesiss_controller_swings(craft: str) -> None:
-    """The worst two of docs/control.md's table, and the nominal one."""
+    """The nominal craft, and two of the worst of docs/control.md's table."""
     robot = variants()[craft]
     found = perform(BEST, robot, sine=False)
     assert found.steady <= 0.02
-    assert found.overshoot <= 0.12
+    assert found.overshoot <= 0.065
     if craft == "nominal":
         thesis = perform(THESIS, robot, sine=False)
         assert thesis.steady > 0.14
-        assert crossing_ratio(found, thesis) <= 1.2
+        assert crossing_ratio([found], [thesis]) <= 1.2
