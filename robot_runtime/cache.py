@@ -3,14 +3,14 @@
 import json
 import threading
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from struct import Struct, error
 from typing import Self
 
 from robot_runtime.clock import Clock
 from robot_runtime.packets.layout import LayoutError
-from robot_runtime.topics import BY_NAME, NUMBERS, Block, read_blocks
+from robot_runtime.topics import BY_NAME, HEADER, NUMBERS, Block, is_after, read_blocks
 
 SECONDS = 300.0
 """As much as the page's charts show."""
@@ -80,14 +80,24 @@ class Cache:
             messages = list(self._messages)
             following = {name: number % NUMBERS for name, number in self._next.items()}
         head = json.dumps({"run": self._run, "next": following}).encode()
-        parts = [_SIZE.pack(len(head)), head]
-        for _, message in messages:
-            parts += [
-                block.data
-                for block in read_blocks(message)
-                if block.topic.name in wanted and block.after(wanted[block.topic.name])
-            ]
-        return b"".join(parts)
+        numbers = {BY_NAME[name].id: number for name, number in wanted.items()}
+        return b"".join([_SIZE.pack(len(head)), head, *_cut(messages, numbers)])
+
+
+def _cut(messages: Iterable[tuple[float, bytes]], numbers: Mapping[int, int]) -> Iterator[bytes]:
+    """Their blocks from these numbers on, by the topics' numbers.
+
+    There are some ten thousand blocks, and a server that comes back waits for them: only heads are read.
+    """
+    for _, message in messages:
+        at = 0
+        while at < len(message):
+            topic, _, count, first, size = HEADER.unpack_from(message, at)
+            end = at + HEADER.size + size
+            number = numbers.get(topic)
+            if number is not None and is_after(first, count, number):
+                yield message[at:end]
+            at = end
 
 
 def write_question(wanted: Mapping[str, int]) -> bytes:

@@ -110,7 +110,7 @@ class Block:
 
     def after(self, number: int) -> bool:
         """Whether it holds the sample of this number or later ones, as numbers go round."""
-        return 0 < (self.following - number) % NUMBERS <= NUMBERS // 2
+        return is_after(self.first, self.count, number)
 
     def time_of(self, number: int) -> float:
         """When the sample of this number was taken (s, steady clock).
@@ -128,6 +128,11 @@ class Block:
             return float(json.loads(self.payload)[place]["time"])
         except (ValueError, LookupError, TypeError, RecursionError) as problem:
             raise LayoutError(f"a block of {self.topic.name} is damaged: {problem!r}") from problem
+
+
+def is_after(first: int, count: int, number: int) -> bool:
+    """Whether so many samples from `first` on hold that of this number or later ones, as numbers go round."""
+    return 0 < (first + count - number) % NUMBERS <= NUMBERS // 2
 
 
 def row(time: float, record: bytes) -> bytes:

@@ -215,14 +215,16 @@ class Bridge:
         with suppress(TimeoutError):
             async with asyncio.timeout(CONTACT_SECONDS):
                 while kept is None:
-                    kept = await self._ask_kept(name, wanted)
+                    kept = await self._ask_kept(name, wanted, CONTACT_SECONDS)
         return kept
 
-    async def _ask_kept(self, name: str, wanted: Mapping[str, int]) -> Kept | None:
-        end = self._loop.time() + KEPT_SECONDS
+    async def _ask_kept(
+        self, name: str, wanted: Mapping[str, int], seconds: float = KEPT_SECONDS
+    ) -> Kept | None:
+        end = self._loop.time() + seconds
         while self._loop.time() < end:
             try:
-                return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted)
+                return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted, seconds)
             except NoAnswer:
                 await asyncio.sleep(KEPT_PAUSE)
             except (Refused, LayoutError) as problem:
@@ -230,8 +232,8 @@ class Bridge:
                 break
         return None
 
-    def _fetch(self, question: str, wanted: Mapping[str, int]) -> Kept:
-        return Kept.from_bytes(self._messages.ask_bytes(question, write_question(wanted), KEPT_SECONDS))
+    def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> Kept:
+        return Kept.from_bytes(self._messages.ask_bytes(question, write_question(wanted), seconds))
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""
