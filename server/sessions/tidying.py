@@ -15,7 +15,7 @@ from typing import NamedTuple
 from sqlalchemy import ColumnElement, Connection, delete, update
 from sqlmodel import col, select
 
-from robot_runtime.clock import Clock
+from robot_runtime.clock import Clock, boot
 from server.live.notices import Notices
 from server.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.schema import INCREMENTAL
@@ -88,7 +88,7 @@ class Tidying:
     async def tidy(self, now: float) -> None:
         """Once, at this time (UTC, s since 1970). Raises StoreError."""
         rules = self._settings.sessions
-        ages_known = self._ages_known(now)
+        ages_known = await self._ages_known(now)
         if ages_known:
             await self._empty_bin(now - rules.undo_days * DAY)
         if ages_known and rules.keep_days > 0:
@@ -99,12 +99,23 @@ class Tidying:
             await self._remove(session)
         await self._give_back()
 
-    def _ages_known(self, now: float) -> bool:
+    async def _ages_known(self, now: float) -> bool:
         steady = self._clock.now()
+        if self._ahead is None:
+            # It may have jumped before this server was started.
+            self._ahead = await asyncio.to_thread(self._find_ahead)
         if self._ahead is not None and abs(now - steady - self._ahead) > JUMP_SECONDS:
             self._ages_known_from = steady + DAY
         self._ahead = now - steady
         return steady >= self._ages_known_from
+
+    def _find_ahead(self) -> float | None:
+        """As it was at the newest session of this start of the computer; None where there is none."""
+        row = SessionRow
+        query = select(row.started, row.started_steady).where(row.boot == boot())
+        with self._store.read() as database:
+            found = database.exec(query.order_by(col(row.id).desc()).limit(1)).first()
+        return None if found is None else found[0] - found[1]
 
     async def _empty_bin(self, before: float) -> None:
         deleted = col(SessionRow.deleted)

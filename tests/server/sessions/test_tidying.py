@@ -42,10 +42,10 @@ class Keeper:
         self.settings = replace(settings, sessions=rules)
         self.clock = SimulatedClock(50.0)
         self.told: list[str] = []
-        notices = Notices(self.clock, self._hear)
-        self.recorder = Recorder(store, self.clock, notices, lambda: None)
+        self.notices = Notices(self.clock, self._hear)
+        self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
         self.catalogue = Catalogue(store, self.recorder)
-        self.tidying = Tidying(store, self.settings, notices, self.clock)
+        self.tidying = Tidying(store, self.settings, self.notices, self.clock)
 
     def _hear(self, block: Block) -> None:
         self.told += [document["text"] for document in json.loads(block.payload)]
@@ -53,6 +53,7 @@ class Keeper:
     async def record(self, name: str, age: float, chunks: int = 3, *, stop: bool = True) -> int:
         row = new_row(self.settings, self.clock, name, "", "null")
         row.started = NOW - age
+        row.started_steady = self.clock.now() - age
         session = (await self.recorder.start(row)).id
         for number in range(chunks):
             self.recorder.add(depth_block(100 * number, 100))
@@ -110,13 +111,18 @@ def test_nothing_goes_by_its_age_for_a_day_after_the_clock_has_jumped(keep: Keep
         await keeper.catalogue.delete(2)
         await keeper.age_bin(60.0)
         years = 10 * 365 * DAY
+        begun = NOW - keeper.clock.now()
         # As the steady clock goes on, so does the wall clock, but for the one jump.
         for passed, jumped in ((0.0, 0.0), (60.0, years), (DAY - 60.0, years)):
             keeper.clock.forward(passed)
-            await keeper.tidying.tidy(NOW + keeper.clock.now() + jumped)
+            await keeper.tidying.tidy(begun + keeper.clock.now() + jumped)
             assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], ["goes"])
+        # A server that is started after the jump sees it by the newest session.
+        another = Tidying(keeper.store, keeper.settings, keeper.notices, keeper.clock)
+        await another.tidy(begun + keeper.clock.now() + years)
+        assert keeper.names(deleted=True) == ["goes"]
         keeper.clock.forward(60.0)
-        await keeper.tidying.tidy(NOW + keeper.clock.now() + years)
+        await keeper.tidying.tidy(begun + keeper.clock.now() + years)
         assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
 
     keep(NO_RULES, scenario)
