@@ -44,7 +44,7 @@ export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], 
         y: { dir: values && loop.downwards ? -1 : 1, range: (_plot, low, high) => (values ? padded(low, high) : [-1.08, 1.08]) },
       },
       axes: [
-        { ...axis, size: 28, gap: 8, values: (_plot, splits) => splits.map((at) => `${Number(at.toFixed(2))} s`.replace('-', '\u2212')) },
+        { ...axis, size: 28, gap: 8, values: (_plot, splits) => splits.map((at) => `${Number(at.toFixed(4))} s`.replace('-', '\u2212')) },
         {
           ...axis,
           size: AXIS,
@@ -52,7 +52,7 @@ export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], 
           space: 28,
           ...(values ? {} : { splits: () => [-1, 0, 1] }),
           values: (_plot, splits) =>
-            splits.map((at) => (values ? `${Number(at.toFixed(2))} ${loop.unit}` : `${100 * at} %`).replace('-', '\u2212')),
+            splits.map((at) => (values ? `${Number(at.toFixed(4))} ${loop.unit}` : `${100 * at} %`).replace('-', '\u2212')),
         },
       ],
       series: [
