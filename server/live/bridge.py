@@ -28,7 +28,7 @@ from server.settings import Settings, SetupError
 
 log = logging.getLogger(__name__)
 
-ROUND_SECONDS = 0.022
+ROUND_SECONDS = 0.024
 """The lever between latency and cost: waking the event loop costs more than what there is to do in it."""
 QUEUE_MAX = 20_000
 """Blocks that wait while the event loop is held up; far more than can be normal."""

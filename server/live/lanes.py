@@ -35,17 +35,13 @@ class Lane:
     """The newest messages; the oldest leave when they are too many or together too large."""
 
     def __init__(self, messages_max: int, bytes_max: int) -> None:
-        self.first = 0
+        self.first = self.end = 0
+        """The number of the oldest message, and that which the next one will have."""
         self.totals: Totals = {}
         self._messages: deque[Message] = deque()
         self._messages_max = messages_max
         self._bytes_max = bytes_max
         self._bytes = 0
-
-    @property
-    def end(self) -> int:
-        """The number that the next message will have."""
-        return self.first + len(self._messages)
 
     def append(self, blocks: list[Block]) -> None:
         """Make one message of these blocks."""
@@ -54,6 +50,7 @@ class Lane:
             totals[block.topic.id] = totals.get(block.topic.id, 0) + block.count
         data = blocks[0].data if len(blocks) == 1 else b"".join(block.data for block in blocks)
         self._messages.append(Message(data, self.totals, totals))
+        self.end += 1
         self.totals = totals
         self._bytes += len(data)
         while len(self._messages) > self._messages_max or (
