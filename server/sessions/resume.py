@@ -91,15 +91,21 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
         if last is None:
             first[topic.id] = _first_since(left.row.started_steady, there, following)
             continue
-        first[topic.id] = last.following
         ahead = (following - last.following) % NUMBERS
-        sent[topic.name] = ahead
+        proof = _prove(last, there) if ahead < NUMBERS // 2 else {False}
+        wanted = last.following
         if topic.name not in RESTATED:
-            proofs |= _prove(last, there) if ahead < NUMBERS // 2 else {False}
-        whole = whole and (ahead == 0 or _holds(there, last.following))
-    # Where the last stored sample is not kept any more, its name shows that it is the same.
-    known = proofs == {True} or (not proofs and _began(left, topics, kept))
-    same_run = proofs == {True} or _new(left, topics, kept)
+            proofs |= proof
+            if proof == {False}:
+                # Stored of an earlier run; of this one, if it is this one, nothing yet.
+                wanted, ahead = 0, following
+        first[topic.id] = wanted
+        sent[topic.name] = ahead
+        whole = whole and (ahead == 0 or _holds(there, wanted))
+    # One sample that both have is enough: runs follow each other. Where the last stored one is not kept any
+    # more, its name shows that it is the same.
+    known = True in proofs or (not proofs and _began(left, topics, kept))
+    same_run = True in proofs or _new(left, topics, kept)
     return Missing(first, same_run, whole, sent if known else {})
 
 

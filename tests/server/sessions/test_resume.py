@@ -189,6 +189,29 @@ def test_what_is_older_than_the_session_is_not_taken_into_it(wreck: Wreck) -> No
     play(scenario)
 
 
+def test_a_runtime_that_was_restarted_before_goes_on_though_not_all_its_topics_were_heard_since(
+    wreck: Wreck,
+) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        wreck.send(debug_block(2, "d"))
+        # The killed server has recorded the new runtime, but nothing yet of its debug lines.
+        wreck.restart("runtime")
+        wreck.send(depth_block(0, 5))
+        await wreck.before.recorder.flush()
+        wreck.send(depth_block(5, 5), debug_block(0, "c"), heard=False)
+        missing = await wreck.resume()
+        assert missing["runtime"].same_run
+        assert missing["runtime"].whole
+        done = await wreck.after.recorder.stop(wreck.session)
+        assert done.state == "complete"
+        # Of the old runtime as much as was heard, and of the new one everything.
+        assert wreck.after.numbers() == [*range(15), *range(10)]
+        assert wreck.after.numbers("debug") == [0, 2, 0]
+
+    play(scenario)
+
+
 def test_another_run_of_the_runtime_is_another_recording(wreck: Wreck) -> None:
     async def scenario() -> None:
         await wreck.start()
