@@ -31,6 +31,8 @@ from tests.board.rig import ROOT, build
 from tests.runtime.comm_test.conftest import make_test
 from tests.server.older import upgrade_to
 
+pytestmark = pytest.mark.stack
+
 ENTRY: dict[str, Any] = {
     "id": 1,
     "name": "two delays",

@@ -20,6 +20,8 @@ from tests.board.rig import ROOT, build
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
 
+pytestmark = pytest.mark.stack
+
 QUICK: dict[str, Any] = {
     "id": 1,
     "name": "two delays",
