@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from robot_runtime.control.controllers.base import Controller, GainLimits
+from robot_runtime.control.controllers.shaping import Rate
 
 
 class Pid(Controller):
@@ -24,24 +25,18 @@ class Pid(Controller):
 
     def __init__(self) -> None:
         super().__init__()
-        self._integral = 0.0
-        self._speed = 0.0
-        self._last: float | None = None
+        self.start()
 
     def start(self) -> None:
         """Forget integral and speed."""
         self._integral = 0.0
-        self._speed = 0.0
-        self._last = None
+        self._speed = Rate(self._filter)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
         error = set_point - measured
-        if self._last is not None and seconds > 0:
-            speed = (measured - self._last) / seconds
-            self._speed += (speed - self._speed) * seconds / (self._filter + seconds)
-        self._last = measured
-        wanted = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed
+        self._speed.see(measured, seconds)
+        wanted = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed.value
         limited = min(max(wanted, -1.0), 1.0)
         if wanted == limited or (wanted > 0) != (error > 0):
             self._integral = min(max(self._integral + self.gains["ki"] * error * seconds, -1.0), 1.0)

@@ -7,6 +7,7 @@ from typing import ClassVar
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.controllers.heave import TINY, Heave, Motion
 from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver
+from robot_runtime.control.controllers.shaping import braked
 
 _LOST = 1.0
 """s without a step after which what was known of the motion is worth nothing."""
@@ -209,8 +210,6 @@ class Predictive(Controller):
             wanted = min(sqrt(braking / drag * (exp(min(2 * drag * left, 6.0)) - 1)), _SPEED_MAX)
             # Along that curve drag brakes by itself.
             return self.gains["response"] * (wanted - speed) - drift - braking
-        braking, slope = _BRAKING * heave.thrust * heave.strength, self.gains["approach"]
-        linear = braking / slope**2
-        wanted = slope * left if -left < linear else -sqrt(2 * braking * (-left - linear / 2))
-        wanted = max(wanted, -_SPEED_MAX)
+        braking = _BRAKING * heave.thrust * heave.strength
+        wanted = max(braked(left, braking, self.gains["approach"]), -_SPEED_MAX)
         return self.gains["response"] * (wanted - speed) + heave.resistance(wanted) - drift

@@ -1,10 +1,11 @@
 """Heading by fins that are tilted a little while they hold the depth."""
 
 from collections.abc import Mapping
-from math import asin, copysign, cos, sqrt, tan
+from math import asin, cos, tan
 from typing import ClassVar
 
 from robot_runtime.control.controllers.base import Controller, GainLimits
+from robot_runtime.control.controllers.shaping import Rate, braked
 
 _AMPLITUDE = 1.6
 """rad; of fins at full command. Their thrust is ∝ 1 - cos of it."""
@@ -45,15 +46,12 @@ class Tilt(Controller):
 
     def start(self) -> None:
         """Forget tilt and turn rate."""
-        self._tilt = self._rate = 0.0
-        self._last: float | None = None
+        self._tilt = 0.0
+        self._rate = Rate(_FILTER)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """The yaw that tilts the fins as they should be."""
-        if self._last is not None and seconds > 0:
-            rate = (measured - self._last) / seconds
-            self._rate += (rate - self._rate) * seconds / (_FILTER + seconds)
-        self._last = measured
+        self._rate.see(measured, seconds)
         if abs(self.down) < _POINTING:
             if self.down:
                 self._tilt = 0.0
@@ -63,12 +61,8 @@ class Tilt(Controller):
         return abs(self.down) * tan(self._tilt)
 
     def _wanted(self, left: float) -> float:
-        braking, slope = self.gains["braking"], self.gains["approach"]
-        linear = braking / slope**2
-        rate = slope * left
-        if abs(left) > linear:
-            rate = copysign(sqrt(2 * braking * (abs(left) - linear / 2)), left)
+        rate = braked(left, self.gains["braking"], self.gains["approach"])
         share = max((1 - cos(_AMPLITUDE * abs(self.down))) / (1 - cos(_AMPLITUDE)), _SHARE_LEAST)
-        part = self.gains["response"] * (rate - self._rate) / (self.gains["torque"] * share)
+        part = self.gains["response"] * (rate - self._rate.value) / (self.gains["torque"] * share)
         most = self.gains["tilt"]
         return min(max(asin(min(max(part, -1.0), 1.0)), -most), most)
