@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.scenario.document import TEXT_BYTES_MAX, Scenario
 
 Place = Literal["live", "simulated"]
@@ -47,7 +48,7 @@ class ScenarioSummary(BaseModel):
     duration: float = Field(description="s")
     seed: int
     scene: Literal["pool", "natural"]
-    controller: str
+    controller: str = Field(description="the title of what steers the depth")
     events: list[ScenarioEvent]
 
 
@@ -130,6 +131,7 @@ class ScenarioState(BaseModel):
 
 def summarize(scenario: Scenario) -> ScenarioSummary:
     """The scenario in short."""
+    steering = scenario.control.controller
     return ScenarioSummary(
         name=scenario.name,
         title=scenario.title,
@@ -137,7 +139,7 @@ def summarize(scenario: Scenario) -> ScenarioSummary:
         duration=scenario.duration,
         seed=scenario.seed,
         scene=scenario.scene.kind,
-        controller=scenario.control.controller,
+        controller=next(one.title for one in CONTROLLERS["depth"] if one.name == steering),
         events=describe_events(scenario),
     )
 

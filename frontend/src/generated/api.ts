@@ -3690,7 +3690,10 @@ export interface components {
          * @description What a scenario says, in short.
          */
         ScenarioSummary: {
-            /** Controller */
+            /**
+             * Controller
+             * @description the title of what steers the depth
+             */
             controller: string;
             /** Description */
             description: string;
