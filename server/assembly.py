@@ -209,6 +209,7 @@ class Assembly:
             found = {name: find_missing(left, SENT_BY[name], one) for name, one in kept.items()}
             await self.recorder.resume(left, found)
         self.bridge.go_on(kept)
+        self.recorder.caught_up()
 
     def _deliver(self, blocks: list[Block]) -> None:
         self.hub.add(blocks)

@@ -119,7 +119,7 @@ class Recorder:
         """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
 
         `missing` is what each sender has that is not stored, by its name. To be called before any of that is
-        added. Raises StoreError.
+        added, and `caught_up` afterwards. Raises StoreError.
         """
         runtime = missing.get("runtime")
         row = left.row
@@ -158,6 +158,10 @@ class Recorder:
             f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
         )
         self._changed()
+
+    def caught_up(self) -> None:
+        """What was missing has been added: all that comes now is new, also low numbers of a new sender."""
+        self._skip.clear()
 
     async def start(self, row: SessionRow) -> Session:
         """Store a new session and record into it from now on. Raises RecordingRefused, StoreError."""
@@ -234,12 +238,7 @@ class Recorder:
     def _is_stored(self, block: Block) -> bool:
         """Whether an earlier server has stored it, or it is older than the session."""
         first = self._skip.get(block.topic.id)
-        if first is None:
-            return False
-        if not block.after(first):
-            return True
-        del self._skip[block.topic.id]
-        return False
+        return first is not None and not block.after(first)
 
     async def run(self) -> None:
         """Commit every period, for ever; tell when it fails, and when it works again."""

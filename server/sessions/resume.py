@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from sqlmodel import col, func, select
 
@@ -91,14 +92,12 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
         if last is None:
             first[topic.id] = _first_since(left.row.started_steady, there, following)
             continue
-        ahead = (following - last.following) % NUMBERS
-        proof = _prove(last, there) if ahead < NUMBERS // 2 else {False}
-        wanted = last.following
-        if topic.name not in RESTATED:
-            proofs |= proof
-            if proof == {False}:
-                # Stored of an earlier run; of this one, if it is this one, nothing yet.
-                wanted, ahead = 0, following
+        wanted, ahead = last.following, (following - last.following) % NUMBERS
+        proof = {False} if ahead >= NUMBERS // 2 else _prove(last, there, _restated(topic, left.row))
+        proofs |= proof
+        if proof == {False}:
+            # Stored of an earlier run; of this one, if it is this one, nothing yet.
+            wanted, ahead = 0, following
         first[topic.id] = wanted
         sent[topic.name] = ahead
         whole = whole and (ahead == 0 or _holds(there, wanted))
@@ -126,13 +125,22 @@ def _began(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
     return _STATE in topics and isinstance(state, dict) and state.get("run") == kept.run
 
 
-def _prove(last: Last, blocks: Sequence[Block]) -> set[bool]:
-    """Whether the last stored sample is the one that was kept under its number; empty where none was."""
+def _restated(topic: Topic, row: SessionRow) -> float:
+    """Until when, s, what this topic told was stored as of a later time."""
+    return row.started_steady if topic.name in RESTATED else -inf
+
+
+def _prove(last: Last, blocks: Sequence[Block], restated: float) -> set[bool]:
+    """Whether the last stored sample is the one that was kept under its number.
+
+    Empty where none was, or it is no later than `restated`, so that its stored time says nothing.
+    """
     number = (last.following - 1) % NUMBERS
     for block in blocks:
         if _holds([block], number):
             try:
-                return {block.time_of(number) == last.time}
+                time = block.time_of(number)
+                return set() if time <= restated else {time == last.time}
             except LayoutError:
                 return {False}
     return set()

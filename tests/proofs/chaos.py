@@ -93,7 +93,7 @@ class Storm:
         self._pages = [SlowPage(self._stack, stalled=stalled) for stalled in (False, False, True, True)]
         self._memory: dict[int, tuple[str, list[tuple[float, float]]]] = {}
         self._sampled = 0.0
-        self._gentle: list[Callable[[], None]] = [self._noise, self._cut, self._stop, self._jump]
+        self._gentle: list[Callable[[], str]] = [self._noise, self._cut, self._stop, self._jump]
         if small_disk:
             self._gentle.append(self._fill_disk)
 
@@ -113,13 +113,14 @@ class Storm:
                 self._swim()
                 self._rest(self._chance.uniform(*PAUSE))
                 kinds = self._gentle if gentle else [*self._gentle, *[self._kill] * len(self._gentle)]
-                what = self._chance.choice(kinds)
-                what()
+                what = self._chance.choice(kinds)()
                 self._world.wait_well()
                 self._rest(0.0)
-                told = f"{time.monotonic() - began:7.1f} s {what.__name__[1:]}"
-                print(told, file=sys.stderr, flush=True)
+                print(f"{time.monotonic() - began:7.1f} s {what}", file=sys.stderr, flush=True)
                 self._require_recording(session)
+                if what == "runtime killed":
+                    # A server killed before it has stored anything of the new one ends the session rightly.
+                    self._wait_stored(session)
         self._world.calm()
         for page in self._pages:
             page.close()
@@ -135,33 +136,45 @@ class Storm:
             said = self._stack.log.read_text()[-2000:]
             raise AssertionError(f"the session does not record any more: {found.text}\n{said}")
 
-    # Misfortunes
+    def _wait_stored(self, session: int) -> None:
+        def stored() -> int:
+            samples: int = self._ask(lambda: self._stack.api.get(f"/sessions/{session}")).json()["samples"]
+            return samples
 
-    def _kill(self) -> None:
+        before = stored()
+        wait(lambda: stored() > before, "what the new runtime sends to be stored")
+
+    # Misfortunes; each says what it was
+
+    def _kill(self) -> str:
         name = self._chance.choice(VICTIMS)
         self.report.done[f"{name} killed"] += 1
         victim = self._world.find(name)
         victim.kill()
         wait(lambda: self._world.is_replaced(name, victim.pid), f"a new {name}")
+        return f"{name} killed"
 
-    def _stop(self) -> None:
+    def _stop(self) -> str:
         name = self._chance.choice(("server", "runtime", "simulator"))
         self.report.done["stopped"] += 1
         victim = self._world.find(name)
         victim.suspend()
         time.sleep(self._chance.uniform(0.2, 1.2))
         victim.resume()
+        return f"{name} stopped"
 
-    def _noise(self) -> None:
+    def _noise(self) -> str:
         self.report.done["noise"] += 1
         kind, rate = self._chance.choice((("bit_errors", 1e-4), ("drop", 1e-3), ("insert", 1e-3)))
         way = self._chance.choice(("to_board", "from_board"))
         self._line(f"line {way} {kind} {rate}", self._chance.uniform(0.5, 3.0), f"line {way} clean")
+        return f"{kind} {way}"
 
-    def _cut(self) -> None:
+    def _cut(self) -> str:
         self.report.done["cut"] += 1
         way = self._chance.choice(("to_board", "from_board"))
         self._line(f"line {way} cut on", self._chance.uniform(0.1, 1.5), f"line {way} cut off")
+        return f"cut {way}"
 
     def _line(self, wrong: str, seconds: float, right: str) -> None:
         with suppress(BoardError), Board(self._world.folder.board_socket) as board:
@@ -169,11 +182,13 @@ class Storm:
             time.sleep(seconds)
             board.order(right)
 
-    def _jump(self) -> None:
+    def _jump(self) -> str:
         self.report.done["clock jumped"] += 1
-        self._clock.write_bytes(struct.pack("<q", self._chance.choice(JUMPS)))
+        jump = self._chance.choice(JUMPS)
+        self._clock.write_bytes(struct.pack("<q", jump))
+        return f"clock wrong by {jump} s"
 
-    def _fill_disk(self) -> None:
+    def _fill_disk(self) -> str:
         self.report.done["disk full"] += 1
         ballast = self._world.folder.path / "ballast"
         with ballast.open("wb", buffering=0) as file:
@@ -190,6 +205,7 @@ class Storm:
         ballast.unlink()
         wait(lambda: not self._is_told("disk_low"), "room on the disk")
         wait(lambda: not self._is_told("store_failing"), "the database to store again")
+        return "disk full"
 
     def _is_told(self, fault: str) -> bool:
         return any(one["fault"] == fault and one["active"] for one in self._world.viewer.alarms)

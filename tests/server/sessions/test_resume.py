@@ -31,7 +31,7 @@ def truth_block(first: int, count: int, start: float = 100.0) -> Block:
     return Block.of(topic, count, first, b"".join(rows))
 
 
-def parameters_block(number: int, time: float = 90.0) -> Block:
+def parameters_block(number: int, time: float = 40.0) -> Block:
     payload = json.dumps([{"time": time, "parameters": []}]).encode()
     return Block.of(BY_NAME["parameters"], 1, number, payload)
 
@@ -85,6 +85,7 @@ class Wreck:
         for kept in answers.values():
             for block in kept.blocks:
                 self.after.recorder.add(block)
+        self.after.recorder.caught_up()
         return missing
 
     @property
@@ -208,6 +209,41 @@ def test_a_runtime_that_was_restarted_before_goes_on_though_not_all_its_topics_w
         # Of the old runtime as much as was heard, and of the new one everything.
         assert wreck.after.numbers() == [*range(15), *range(10)]
         assert wreck.after.numbers("debug") == [0, 2, 0]
+
+    play(scenario)
+
+
+def test_its_parameters_need_not_have_been_heard_either(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.send(parameters_block(7))
+        await wreck.start()
+        wreck.restart("runtime")
+        wreck.send(depth_block(0, 5))
+        await wreck.before.recorder.flush()
+        wreck.send(parameters_block(0, time=200.0), heard=False)
+        missing = await wreck.resume()
+        assert missing["runtime"].same_run
+        assert missing["runtime"].whole
+        assert missing["runtime"].sent["parameters"] == 1
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("parameters") == [7, 0]
+
+    play(scenario)
+
+
+def test_a_runtime_that_is_restarted_later_is_recorded_from_its_first_number_on(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.session = await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5), debug_block(0, "a"), debug_block(1, "b"))
+        await wreck.before.recorder.flush()
+        await wreck.resume()
+        # Of neither topic anything has come since the server was killed.
+        wreck.after.recorder.add(debug_block(0, "anew"))
+        wreck.after.recorder.add(depth_block(0, 3))
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("debug") == [0, 1, 0]
+        assert wreck.after.numbers() == [*range(5), *range(3)]
+        assert sorted(wreck.after.gaps()) == [("debug", "restarted", 0), ("depth", "restarted", 0)]
 
     play(scenario)
 
