@@ -13,6 +13,11 @@ export class KeptRuns {
 
   constructor(private readonly kind: 'step' | 'relay') {}
 
+  /** The run where it is one of these, else null. */
+  own<Run extends { readonly kind: string; readonly loop: string }>(run: Run | null | undefined): Run | null {
+    return run?.kind === this.kind && run.loop === this.loop ? run : null;
+  }
+
   get runs() {
     return (this.list?.runs ?? []).filter((run) => run.kind === this.kind && run.state !== 'running');
   }

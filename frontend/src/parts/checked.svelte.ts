@@ -1,0 +1,63 @@
+import type { Answer } from '../http';
+import { useLive } from '../live/live.svelte';
+import type { Draft } from './draft';
+
+/** ms without a change after which the server is asked */
+const PAUSE = 250;
+
+/** A document that somebody writes, and what the server says to it. To be made while a component begins. */
+export class CheckedText<Check extends { readonly problems: readonly string[] }> {
+  /** the last answer; null before the first */
+  check = $state.raw<Check | null>(null);
+  /** the text that `check` is about */
+  checked = $state('');
+  /** why it could not be checked */
+  problem = $state('');
+  readonly #draft: Draft;
+  #text = $state('');
+
+  constructor(draft: Draft, ask: (text: string) => Promise<Answer<Check>>) {
+    this.#draft = draft;
+    this.#text = draft.read();
+    const live = useLive();
+    $effect(() => {
+      // What could not be checked while the server was away is checked when it is back.
+      if (this.#text === '' || live.connection !== 'open') return;
+      const asked = this.#text;
+      let outdated = false;
+      const timer = setTimeout(
+        () =>
+          void ask(asked).then((answer) => {
+            if (outdated) return;
+            this.problem = 'problem' in answer ? answer.problem : '';
+            if ('problem' in answer) return;
+            this.check = answer.value;
+            this.checked = asked;
+          }),
+        PAUSE,
+      );
+      return () => {
+        outdated = true;
+        clearTimeout(timer);
+      };
+    });
+  }
+
+  get text(): string {
+    return this.#text;
+  }
+
+  set text(next: string) {
+    this.#text = next;
+    this.#draft.write(next);
+  }
+
+  /** whether `check` is about the text as it stands */
+  get current(): boolean {
+    return this.check !== null && this.checked === this.#text;
+  }
+
+  get sound(): boolean {
+    return this.current && this.check?.problems.length === 0;
+  }
+}
