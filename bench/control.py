@@ -252,6 +252,7 @@ def main() -> None:
     head, rest = text.split(_BEGIN, 1)
     tail = rest.split(_END, 1)[1]
     path.write_text(f"{head}{_BEGIN}\n\n{table(perform_all())}\n\n{_END}{tail}", encoding="utf-8")
+    print(f"The table is in {path}.")
 
 
 def _scaled(six: Six, factor: float) -> Six:

@@ -2,6 +2,9 @@
 
 from math import asin, atan2, pi, remainder
 
+GRAVITY = 9.80665
+"""m/s²: the standard acceleration of free fall."""
+
 
 def turned(attitude: tuple[float, float, float, float]) -> tuple[float, float, float]:
     """Heading, pitch and roll, rad, of a unit quaternion w, x, y, z from body to world.
@@ -15,6 +18,19 @@ def turned(attitude: tuple[float, float, float, float]) -> tuple[float, float, f
         asin(min(max(2 * (w * y - z * x), -1.0), 1.0)),
         atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
     )
+
+
+def sinking(attitude: tuple[float, float, float, float], force: tuple[float, float, float]) -> float:
+    """How a hull gathers speed downwards, m/s², that feels this specific force (m/s², body axes).
+
+    Attitude as in `turned`. Near the poles 0.026 m/s² too little, at the equator as much too much.
+    """
+    w, x, y, z = attitude
+    forward, right, down = force
+    turned_down = (
+        2 * (x * z - w * y) * forward + 2 * (y * z + w * x) * right + (1 - 2 * (x * x + y * y)) * down
+    )
+    return turned_down + GRAVITY
 
 
 def wrapped(angle: float) -> float:

@@ -50,6 +50,8 @@ class ControlLoop:
         self.measured: float | None = None
         self.mean: float | None = None
         """Of what was measured since the last tick, where that was more than one value."""
+        self.felt: float | None = None
+        """Of the depth: the mean acceleration downwards since the last tick, m/s², where any was measured."""
         self.output: float | None = None
         """The newest command; None where this loop does not steer."""
         self._is_angle = name != "depth"
@@ -80,7 +82,7 @@ class ControlLoop:
             self._counted_on += wrapped(measured - self._counted_on)
             set_point = self._counted_on + wrapped(set_point - measured)
             measured = self._counted_on
-        controller.down = down
+        controller.down, controller.felt = down, self.felt
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)
 
     def rest(self) -> None:

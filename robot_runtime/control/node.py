@@ -8,7 +8,7 @@ from typing import Any
 
 from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
-from robot_runtime.control.attitude import turned
+from robot_runtime.control.attitude import sinking, turned
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
@@ -25,8 +25,8 @@ STICK_MIDDLE = 0.05
 """Share of its way up to which a stick is in the middle."""
 
 
-_DEPTHS_MAX = 50
-"""Of them come in a second, which is the longest between two ticks."""
+_DEPTHS_MAX, _IMUS_MAX = 50, 100
+"""So many come in a second, which is the longest between two ticks."""
 
 
 class ControlNode:
@@ -59,6 +59,7 @@ class ControlNode:
         self._depths: deque[tuple[float, bytes]] = deque(maxlen=_DEPTHS_MAX)
         self._depth_taken: float | None = None
         self._imu: bytes | None = None
+        self._imus: deque[bytes] = deque(maxlen=_IMUS_MAX)
         self._sight: Detection | None = None
         self._used: Detection | None = None
         self.picture_age: float | None = None
@@ -236,6 +237,11 @@ class ControlNode:
             angles = turned(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.turning, angles, strict=True):
                 loop.measured = angle
+        felt = []
+        while self._imus:
+            imu = Imu.from_bytes(self._imus.popleft())
+            felt.append(sinking(imu.attitude, imu.force))
+        self.depth.felt = sum(felt) / len(felt) if felt else None
         depths = []
         while self._depths:
             self._depth_taken, record = self._depths.popleft()
@@ -302,6 +308,7 @@ class ControlNode:
 
     def _take_imu(self, _topic: str, _time: float, record: bytes) -> None:
         self._imu = record
+        self._imus.append(record)
 
     def _take_beacon(self, _: str, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)

@@ -35,6 +35,8 @@ class Controller(ABC):
     def __init__(self) -> None:
         self.down = 0.0
         """The command downwards that goes out with this one's, where that is for another axis."""
+        self.felt: float | None = None
+        """m/s²: the mean acceleration downwards since the last step, for the depth; None where none came."""
         self.gains = {name: limits.default for name, limits in self.limits.items()}
 
     @classmethod

@@ -6,9 +6,8 @@ Estimation, 1974, 9.4). What they may be at first is told by their covariance: a
 three together.
 """
 
-from collections.abc import Sequence
-
 from robot_runtime.control.controllers.heave import Heave, Motion
+from robot_runtime.control.controllers.kalman import Matrix, dot, take_in
 
 LAG = 0.05
 """s from a command to when the fins have followed it."""
@@ -39,7 +38,7 @@ class HeaveObserver:
         self.heave = heave
         self._earlier = 0.0
         common = _MASS**2
-        self._covariance = [
+        self._covariance: Matrix = [
             [_DEPTH**2, 0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, _SPEED**2, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, common + _STRENGTH**2, common, common, 0.0],
@@ -59,7 +58,8 @@ class HeaveObserver:
         # The mean is that of the middle of the time, and heard of late.
         age = seconds / 2 + AGE
         wrong = measured - (motion.depth - motion.speed * age)
-        depth, speed, strength, blades, hull, drift = self._correct(age, noise**2)
+        gains, self._covariance = take_in(self._covariance, [1.0, -age, 0.0, 0.0, 0.0, 0.0], noise**2)
+        depth, speed, strength, blades, hull, drift = gains
         if measured > _AWASH:
             heave = self.heave
             heave.strength = _within(heave.strength + strength * wrong, *_RANGE)
@@ -81,28 +81,13 @@ class HeaveObserver:
         to_depth = [1.0, seconds * (1 + kept) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
         speed_noise = _CALM + _PUSHED * abs(pushed) / seconds + _PADDLED * abs(paddled)
         rows = [self._mixed(to_depth), self._mixed(to_speed), *self._covariance[2:]]
-        self._covariance = [[_dot(to_depth, row), _dot(to_speed, row), *row[2:]] for row in rows]
+        self._covariance = [[dot(to_depth, row), dot(to_speed, row), *row[2:]] for row in rows]
         for place, deviation in enumerate((0.0, speed_noise, *_CHANGE)):
             self._covariance[place][place] += deviation**2
         return motion
 
     def _mixed(self, shares: list[float]) -> list[float]:
-        return [_dot(shares, column) for column in zip(*self._covariance, strict=True)]
-
-    def _correct(self, age: float, variance: float) -> list[float]:
-        """What each part of the state changes for a metre that was measured more than expected."""
-        towards = [row[0] - age * row[1] for row in self._covariance]
-        total = towards[0] - age * towards[1] + variance
-        gains = [one / total for one in towards]
-        self._covariance = [
-            [old - gain * one for old, one in zip(row, towards, strict=True)]
-            for row, gain in zip(self._covariance, gains, strict=True)
-        ]
-        return gains
-
-
-def _dot(one: Sequence[float], other: Sequence[float]) -> float:
-    return sum(a * b for a, b in zip(one, other, strict=True))
+        return [dot(shares, column) for column in zip(*self._covariance, strict=True)]
 
 
 def _within(value: float, low: float, high: float) -> float:

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.controllers.heave import TINY, Heave, Motion
+from robot_runtime.control.controllers.heave_inertial import InertialHeave
 from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver
 from robot_runtime.control.controllers.shaping import braked
 
@@ -24,8 +25,9 @@ _AWAY_FROM_HOME = (7, 8, 9, 10, 12, 14, 17)
 """Ticks that a plan may keep the fins away from home; to turn there takes seven."""
 _FINE, _COARSE = 0.05, 0.1
 """s: steps of the model while the fins turn, and else."""
-_PAST = 0.002
-"""m past the set point to which it goes at first, so as to reach it."""
+_PAST, _REACHED = 0.007, 0.003
+"""m past the set point to which it goes at first, so as to reach it, and that are taken for having done so:
+more than it may be wrong about its depth."""
 _FAST = 0.06
 """m/s that turning the fins round gives a hull at rest; one that is slower is not braked by that."""
 _FAR, _NEAR, _BESIDE = 0.08, 0.05, 0.04
@@ -37,7 +39,7 @@ _SPEED_MAX = 0.4
 """m/s."""
 _DRIFT_LEAST, _DRIFT_USED = 0.004, 0.7
 """m/s² of braking by the drift, and the share of the drift, on which the way home counts."""
-_LONGER = 1.08
+_LONGER = 1.16
 """Share by which the way of braking is taken to be longer, as in which part of their stroke the fins stop is
 not known, and past the set point is worse."""
 _BRAKING = 0.3
@@ -84,6 +86,7 @@ class Predictive(Controller):
         self._heave = Heave(self.gains["thrust"], self.gains["drag"], drift=_DRIFT)
         self._observer = HeaveObserver(self._heave)
         self._motion: Motion | None = None
+        self._inertial: InertialHeave | None = None
         self._command = 0.0
         self._home = 1.0
         self._side = 0.0
@@ -97,20 +100,32 @@ class Predictive(Controller):
         """Estimate, decide; `measured` is the mean of the time since the last step."""
         self._heave.thrust, self._heave.drag = self.gains["thrust"], self.gains["drag"]
         if self._motion is None or seconds > _LOST:
-            self._motion, self._side = Motion(measured, 0.0), 0.0
+            self._motion, self._side, self._inertial = Motion(measured, 0.0), 0.0, None
         elif seconds > 0:
             noise = self.gains["noise"]
             self._motion = self._observer.observe(self._motion, self._command, measured, noise, seconds)
         # What is decided now will act only then.
-        motion = self._heave.advance(self._motion, self._command, LAG, _FINE)
+        motion = self._heave.advance(self._refine(measured, seconds), self._command, LAG, _FINE)
         self._command = self._decide(self._find_goal(set_point, motion), motion)
         return self._command
+
+    def _refine(self, measured: float, seconds: float) -> Motion:
+        """The motion as it was felt, where it was."""
+        assert self._motion is not None
+        if self.felt is None or seconds <= 0:
+            self._inertial = None
+            return self._motion
+        if self._inertial is None:
+            self._inertial = InertialHeave(self._motion.depth, self._motion.speed)
+            return self._motion
+        depth, speed = self._inertial.observe(self.felt, measured, self.gains["noise"], seconds)
+        return self._motion._replace(depth=depth, speed=speed)
 
     def _find_goal(self, set_point: float, motion: Motion) -> float:
         if set_point != self._set_point:
             self._set_point, self._came = set_point, copysign(1.0, set_point - motion.depth)
             self._past = self._came * _PAST
-        if (motion.depth - set_point) * self._past > 0:
+        if (motion.depth - set_point) * self._came > _REACHED:
             self._past = 0.0
         return set_point + self._past
 

@@ -7,6 +7,7 @@ import pytest
 
 from robot_runtime.bus import Bus
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers import BangBang
 from robot_runtime.control.loop import Loan
 from robot_runtime.control.node import ControlNode
@@ -40,6 +41,12 @@ class Rig:
     def attitude(self, heading: float = 0.0, pitch: float = 0.0, roll: float = 0.0) -> None:
         rest = (0.0, 0.0, 0.0)
         record = Imu(time=0, attitude=quaternion(heading, pitch, roll), rate=rest, force=rest)
+        self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
+
+    def feel(self, *force: float) -> None:
+        """A specific force, m/s², in body axes, of a hull that lies on its right side."""
+        x, y, z = force
+        record = Imu(time=0, attitude=quaternion(2.0, 0.0, pi / 2), rate=(0.0, 0.0, 0.0), force=(x, y, z))
         self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
 
     def push(self, **axes: float) -> None:
@@ -111,6 +118,18 @@ def test_pitch_and_roll_push_against_their_error() -> None:
         command = rig.tick()
     assert command is not None
     assert command.pitch < 0 < command.roll
+
+
+def test_the_depths_loop_is_told_the_mean_acceleration_downwards() -> None:
+    rig = Rig("automatic")
+    rig.tick()
+    # The right of the hull is down.
+    rig.feel(1.0, 0.3 - GRAVITY, 2.0)
+    rig.feel(3.0, 0.1 - GRAVITY, -1.0)
+    rig.tick()
+    assert rig.node.depth.felt == pytest.approx(0.2, abs=0.002)
+    rig.tick()
+    assert rig.node.depth.felt is None
 
 
 def test_the_way_to_a_light_has_the_yaw_to_itself() -> None:

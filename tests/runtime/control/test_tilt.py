@@ -22,7 +22,7 @@ SWIM = f"""
 name = "tilt"
 title = "Tilt"
 duration = {END}
-seed = 3
+seed = 4
 [scene]
 kind = "natural"
 depth = 5
