@@ -248,10 +248,11 @@ def table(found: dict[tuple[str, str], list[Figures]]) -> str:
 def main() -> None:
     """Write the table into the document."""
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/control.md")
+    made = table(perform_all())
     text = path.read_text(encoding="utf-8")
     head, rest = text.split(_BEGIN, 1)
     tail = rest.split(_END, 1)[1]
-    path.write_text(f"{head}{_BEGIN}\n\n{table(perform_all())}\n\n{_END}{tail}", encoding="utf-8")
+    path.write_text(f"{head}{_BEGIN}\n\n{made}\n\n{_END}{tail}", encoding="utf-8")
     print(f"The table is in {path}.")
 
 

@@ -49,9 +49,9 @@ _BRAKING = 0.3
 class Predictive(Controller):
     """Thinks ahead with a model of hull and fins, and so turns the fins round only where that pays.
 
-    `HeaveObserver` tells the motion, and learns the craft. Turning the fins round takes 0.64 s and is itself
-    a blow, so that at rest they stay on the side that holds against the drift (*home*), and their push is
-    modulated there. On the way to the set point they are turned for two things.
+    `HeaveObserver` learns the craft, and `InertialHeave` tells the motion. Turning the fins round takes
+    0.64 s and is itself a blow, so that at rest they stay on the side that holds against the drift (*home*),
+    and their push is modulated there. On the way to the set point they are turned for two things.
 
     To *brake* a fast hull, as late as it can be: one step before turning would bring it to rest behind the
     set point. They stop flapping first, and pause in their turn where that brings the hull nearer.
