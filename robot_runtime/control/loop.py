@@ -51,7 +51,8 @@ class ControlLoop:
         self.mean: float | None = None
         """Of what was measured since the last tick, where that was more than one value."""
         self.felt: float | None = None
-        """Of the depth: the mean acceleration downwards since the last tick, m/s², where any was measured."""
+        """Of the depth: the mean acceleration downwards since the last tick, m/s², where its controller
+        `feels` and any was measured."""
         self.output: float | None = None
         """The newest command; None where this loop does not steer."""
         self._is_angle = name != "depth"
@@ -64,14 +65,19 @@ class ControlLoop:
         lent = self.lent
         return self.set_point if lent is None or lent.set_point is None else lent.set_point
 
+    @property
+    def in_force(self) -> Controller:
+        """The controller that decides."""
+        lent = self.lent
+        return self.controller if lent is None or lent.controller is None else lent.controller
+
     def step(self, seconds: float, down: float = 0.0) -> None:
         """Decide; `seconds` since the last step, `down` the command downwards beside this one's.
 
         There must be a measured value.
         """
         assert self.measured is not None
-        lent = self.lent
-        controller = self.controller if lent is None or lent.controller is None else lent.controller
+        controller = self.in_force
         if controller is not self._running:
             controller.start()
             self._running, self._counted_on = controller, self.measured

@@ -237,11 +237,11 @@ class ControlNode:
             angles = turned(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.turning, angles, strict=True):
                 loop.measured = angle
-        felt = []
-        while self._imus:
-            imu = Imu.from_bytes(self._imus.popleft())
-            felt.append(sinking(imu.attitude, imu.force))
-        self.depth.felt = sum(felt) / len(felt) if felt else None
+        self.depth.felt = None
+        if self.depth.in_force.feels:
+            self.depth.felt = self._feel()
+        else:
+            self._imus.clear()
         depths = []
         while self._depths:
             self._depth_taken, record = self._depths.popleft()
@@ -250,6 +250,13 @@ class ControlNode:
             self.depth.measured = depths[-1]
         self.depth.mean = sum(depths) / len(depths) if depths else None
         return self._depth_taken
+
+    def _feel(self) -> float | None:
+        felt = []
+        while self._imus:
+            imu = Imu.from_bytes(self._imus.popleft())
+            felt.append(sinking(imu.attitude, imu.force))
+        return sum(felt) / len(felt) if felt else None
 
     def _publish(self, now: float, taken: float | None) -> None:
         depth = self.depth.measured

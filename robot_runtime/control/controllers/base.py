@@ -31,12 +31,15 @@ class Controller(ABC):
     limits: ClassVar[Mapping[str, GainLimits]]
     averages: ClassVar[bool] = False
     """Whether it sees the mean of what was measured since the last step, instead of the newest."""
+    feels: ClassVar[bool] = False
+    """Whether it wants to know `felt`."""
 
     def __init__(self) -> None:
         self.down = 0.0
         """The command downwards that goes out with this one's, where that is for another axis."""
         self.felt: float | None = None
-        """m/s²: the mean acceleration downwards since the last step, for the depth; None where none came."""
+        """m/s²: the mean acceleration downwards since the last step, for the depth, where it
+        `feels`; None where none came."""
         self.gains = {name: limits.default for name, limits in self.limits.items()}
 
     @classmethod

@@ -21,7 +21,6 @@ class InertialHeave:
 
     def __init__(self, depth: float, speed: float) -> None:
         self._depth, self._speed, self._bias = depth, speed, 0.0
-        self._felt = 0.0
         self._covariance: Matrix = [[_DEPTH**2, 0.0, 0.0], [0.0, _SPEED**2, 0.0], [0.0, 0.0, _BIAS**2]]
 
     def observe(self, felt: float, measured: float, noise: float, seconds: float) -> tuple[float, float]:
@@ -32,7 +31,7 @@ class InertialHeave:
         self._predict(felt, seconds)
         # The mean is that of the middle of the time.
         row = [1.0, -(seconds / 2 + AGE - FELT_AGE), 0.0]
-        wrong = measured - dot(row, [self._depth, self._speed])
+        wrong = measured - dot(row, [self._depth, self._speed, self._bias])
         (depth, speed, bias), self._covariance = take_in(self._covariance, row, noise**2)
         self._depth += depth * wrong
         self._speed += speed * wrong

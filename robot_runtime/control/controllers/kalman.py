@@ -7,7 +7,7 @@ Matrix = list[list[float]]
 
 
 def dot(one: Sequence[float], other: Sequence[float]) -> float:
-    """Of two vectors of one length; what one has more is left out."""
+    """Of two vectors of one length."""
     return sum(map(mul, one, other), start=0.0)
 
 

@@ -68,6 +68,7 @@ class Predictive(Controller):
     name = "predictive"
     title = "Model-based"
     averages = True
+    feels = True
     limits: ClassVar[Mapping[str, GainLimits]] = {
         "noise": GainLimits(0.0022, 0.0005, 0.05, "m", "standard deviation of the depth that a step is told"),
         "response": GainLimits(2.4, 0.5, 10.0, "1/s", "how fast the wanted speed is taken up"),
