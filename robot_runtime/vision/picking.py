@@ -23,8 +23,13 @@ COLOURED_LEAST = 0.6
 PERCENTILES = (5, 95)
 HUE_SPREAD_MAX = 40
 """Between the percentiles; with more there are several colours."""
-HUE_MARGIN, SATURATION_MARGIN, VALUE_MARGIN = 5, 40, 50
+HUE_MARGIN, SATURATION_MARGIN = 5, 40
 """Beyond the percentiles: light, distance and noise change a colour by about so much. Chosen."""
+VALUE_LEFT = 0.6
+"""Of the brightness picked: ripples above focus the light, and somebody may point where it is brightest.
+
+A share, not a difference, since light multiplies what it falls on. Chosen.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +74,7 @@ def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
     return ColourRange(
         hue=(low, high),
         saturation=(max(floor(saturation_low) - SATURATION_MARGIN, SATURATION_LEAST), BYTE_MAX),
-        value=(max(floor(value_low) - VALUE_MARGIN, VALUE_LEAST), BYTE_MAX),
+        value=(max(floor(VALUE_LEFT * value_low), VALUE_LEAST), BYTE_MAX),
     )
 
 

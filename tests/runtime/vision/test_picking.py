@@ -58,6 +58,19 @@ def test_a_drawn_card_is_found_by_what_was_picked_on_it_and_water_is_not(card: s
         assert find(drawn(time, None), "picked", colours=picked) is None
 
 
+@pytest.mark.parametrize("card", sorted(COLOURS))
+def test_what_was_picked_in_the_brightest_light_holds_in_any(card: str) -> None:
+    brightest = max(
+        (drawn(0.5 * step, card) for step in range(200)), key=lambda one: one[116:125, 156:165].sum()
+    )
+    picked = propose(brightest, MIDDLE).colour
+    for time in range(0, 100, 4):
+        found = find(drawn(time, card), "picked", colours={"picked": picked})
+        assert found is not None
+        assert found.area == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.1)
+        assert find(drawn(time, None), "picked", colours={"picked": picked}) is None
+
+
 def one_colour(blue: int, green: int, red: int) -> Picture:
     return np.full((120, 160, 3), (blue, green, red), np.uint8)
 
