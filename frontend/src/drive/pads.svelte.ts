@@ -49,6 +49,8 @@ export class Pads {
     this.waits = true;
     this.#down = NAMES.filter((name) => pressed(pad, name));
     this.#looking = setInterval(this.#look, LOOK);
+    // At once, so that sticks in the middle count from the moment that the gamepad is shown.
+    this.#look();
   }
 
   #leave(): void {
