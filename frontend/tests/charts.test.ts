@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { depthRange, depthsRange, roundRange, settle } from '../src/charts/range';
-import { findSignals, searchSignals, SIGNALS } from '../src/charts/signals';
+import { findSignals, GROUPS, SIGNALS } from '../src/charts/signals';
 import { stripsOf } from '../src/charts/strips';
 import { ageLabel, agesBefore, momentLabel, momentsBefore, timeStep } from '../src/charts/ticks';
 import { ChartTime } from '../src/charts/time.svelte';
@@ -8,6 +8,7 @@ import { readAt } from '../src/charts/values';
 import { LEAST, SPANS, viewUntil, within, zoomed } from '../src/charts/view';
 import { ROW_TOPICS } from '../src/generated/topics';
 import { RowRing } from '../src/live/ring';
+import { searchChoices } from '../src/parts/choices';
 import { join, rowBytes } from './bytes';
 
 describe('signals', () => {
@@ -31,7 +32,7 @@ describe('signals', () => {
     ['measured ANGLE front left', ['motor.angle_3']],
     ['no such thing', []],
   ])('finds %s', (search, names) => {
-    expect(searchSignals(search).flatMap(({ signals }) => signals.map(({ name }) => name))).toEqual(names);
+    expect(searchChoices(GROUPS, search).flatMap(({ choices }) => choices.map(({ name }) => name))).toEqual(names);
   });
 });
 

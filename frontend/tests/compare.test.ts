@@ -63,9 +63,9 @@ describe('charts', () => {
 
   it('knows how many of the sessions have a signal', () => {
     const gathered = gather([[signal('depth.depth')], [signal('depth.depth'), signal('imu.rate_0')]]);
-    expect(gathered.map(({ signal: { name }, sessions }) => [name, sessions])).toEqual([
-      ['depth.depth', 2],
-      ['imu.rate_0', 1],
+    expect(gathered.map(({ topic, choices }) => [topic, choices.map(({ name, note }) => [name, note])])).toEqual([
+      ['depth', [['depth.depth', undefined]]],
+      ['imu', [['imu.rate_0', 'in 1 of 2 sessions']]],
     ]);
   });
 });

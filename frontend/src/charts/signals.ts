@@ -1,5 +1,6 @@
 /** Every number of every topic of rows, as something that a chart can show. */
 import { ROW_TOPICS, type Field, type Rows } from '../generated/topics';
+import type { ChoiceGroup } from '../parts/choices';
 
 export interface Signal {
   /** as recordings and exports call it: `depth.depth`, or `motor.angle_2` where a field holds several */
@@ -83,21 +84,9 @@ export function findSignals(names: readonly string[]): Signal[] {
   return names.map(findSignal).filter((signal) => signal !== null);
 }
 
-export interface Group {
-  readonly topic: keyof Rows;
-  readonly meaning: string;
-  readonly signals: readonly Signal[];
-}
-
-/** The signals in which every word of `search` occurs, by topic. */
-export function searchSignals(search: string): Group[] {
-  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-  return TOPICS.map((topic) => {
-    const { meaning } = ROW_TOPICS[topic];
-    const signals = SIGNALS.filter((signal) => {
-      const text = `${signal.topic} ${signal.label} ${signal.name} ${signal.unit} ${signal.meaning}`.toLowerCase();
-      return signal.topic === topic && words.every((word) => text.includes(word));
-    });
-    return { topic, meaning, signals };
-  }).filter((group) => group.signals.length > 0);
-}
+/** What a live chart may show. */
+export const GROUPS: readonly ChoiceGroup[] = TOPICS.map((topic) => ({
+  topic,
+  meaning: ROW_TOPICS[topic].meaning,
+  choices: SIGNALS.filter((signal) => signal.topic === topic),
+}));

@@ -1,5 +1,6 @@
 /** Which signals share a chart, and how they are drawn in it. */
 import type { Signal } from '../../api';
+import type { ChoiceGroup } from '../../parts/choices';
 
 export interface ChartSignal {
   readonly signal: Signal;
@@ -13,12 +14,6 @@ export interface Chart {
   /** values grow downwards */
   readonly downwards: boolean;
   readonly signals: readonly ChartSignal[];
-}
-
-/** A signal, and how many of the sessions have it. */
-export interface SharedSignal {
-  readonly signal: Signal;
-  readonly sessions: number;
 }
 
 export interface Preset {
@@ -76,13 +71,21 @@ export function chartsOf(signals: readonly Signal[]): Chart[] {
   return [...charts.values()];
 }
 
-/** The signals of all sessions together. */
-export function gather(lists: readonly (readonly Signal[])[]): SharedSignal[] {
-  const found = new Map<string, SharedSignal>();
-  for (const signal of lists.flat()) {
-    found.set(signal.name, { signal, sessions: (found.get(signal.name)?.sessions ?? 0) + 1 });
-  }
-  return [...found.values()];
+/** The signals of all sessions together, by topic; of those that not every session has it is said. */
+export function gather(lists: readonly (readonly Signal[])[]): ChoiceGroup[] {
+  const found = new Map(lists.flat().map((signal) => [signal.name, signal]));
+  const topics = new Set([...found.values()].map(({ topic }) => topic));
+  return [...topics].map((topic) => ({
+    topic,
+    meaning: '',
+    choices: [...found.values()]
+      .filter((signal) => signal.topic === topic)
+      .map(({ name, column, unit, meaning }) => {
+        const having = lists.filter((list) => list.some((signal) => signal.name === name)).length;
+        const note = having < lists.length ? { note: `in ${having} of ${lists.length} sessions` } : {};
+        return { name, label: columnWords(column), unit, meaning, ...note };
+      }),
+  }));
 }
 
 /** A signal in words, such as "angle 2". */
