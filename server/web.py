@@ -18,6 +18,10 @@ BACKLOG = 128
 MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
+KEEP_ALIVE_SECONDS = 60
+"""For which a connection waits for its next request. The 5 that are usual are those after which programs let go
+of theirs, too: whoever asks just then would find it reset.
+"""
 
 
 def open_socket(host: str, port: int) -> socket.socket:
@@ -64,5 +68,6 @@ def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn
         ws_max_size=MESSAGE_BYTES_MAX,
         h11_max_incomplete_event_size=HEAD_BYTES_MAX,
         timeout_graceful_shutdown=GRACE_SECONDS,
+        timeout_keep_alive=KEEP_ALIVE_SECONDS,
     )
     return uvicorn.Server(config)

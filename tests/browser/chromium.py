@@ -8,7 +8,7 @@ from playwright.sync_api import BrowserContext
 from server.settings import DataFolder
 from tests.shell import ShellToken
 
-EXECUTABLE = "/usr/bin/chromium"
+EXECUTABLE = Path(__file__).with_name("chromium.sh")
 ARGUMENTS = [
     "--headless",
     "--no-sandbox",
