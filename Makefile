@@ -9,6 +9,8 @@ CUTS ?= 10000
 QUESTIONS ?= 300
 WORDS ?= 500
 PYTHON := .venv/bin/python
+# Compiled once: where PYTHONDONTWRITEBYTECODE is set, each of the robot's processes would do it at every start.
+INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-bytecode
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
@@ -27,10 +29,10 @@ test: setup-test host-firmware ## every check and every test
 
 # Whole robots run in real time, one after the other, and wait a lot. Meanwhile the rest has what they leave of the
 # computer, and is told as a whole at its end.
-test-robots: setup-test
+test-robots:
 	$(PYTHON) -m pytest -m "stack and not long"
 
-test-rooms: setup-test host-firmware
+test-rooms:
 	@nice -n 19 $(MAKE) --no-print-directory check test-parts > build/test-rooms.log 2>&1; \
 	ended=$$?; cat build/test-rooms.log; exit $$ended
 
@@ -123,13 +125,14 @@ build/.packages-%: setup.sh
 	@echo "Python packages ..."
 	@python3 -m venv .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
-	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --editable . --group dev
-	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --no-build mujoco || \
+	@.venv/bin/uv pip install $(INSTALL) --editable . --group dev
+	@.venv/bin/uv pip install $(INSTALL) --no-build mujoco || \
 		echo "MuJoCo could not be installed; instead of rendered water the camera shows a drawn card."
+	@$(PYTHON) -m compileall -q robot_runtime server migrations
 	@touch $@
 
 .venv/.ready-bench: .venv/.ready
-	@.venv/bin/uv pip install --quiet --python $(PYTHON) --constraint constraints.txt --group bench
+	@.venv/bin/uv pip install $(INSTALL) --group bench
 	@touch $@
 
 frontend/node_modules/.ready: frontend/package.json frontend/package-lock.json | build/.packages-run

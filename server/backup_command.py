@@ -5,7 +5,6 @@ import os
 import sqlite3
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from server.backup import (
     CHECKSUM,
@@ -21,23 +20,10 @@ from server.running import Claim
 from server.schema import explain, read_revision, refuse_unknown
 from server.settings import DataFolder, Settings, SetupError
 
-if TYPE_CHECKING:
-    Actions = argparse._SubParsersAction[argparse.ArgumentParser]
-
 LOGS = ("-wal", "-journal")
 """What may hold a part of a database that was being written."""
 NICENESS = 15
 """Control and recording go first."""
-
-
-def add_arguments(commands: "Actions", kept: argparse.ArgumentParser) -> None:
-    """Add both commands."""
-    backup = commands.add_parser(
-        "backup", parents=[kept], help="copy the database, also while a server records"
-    )
-    backup.add_argument("file", nargs="?", type=Path, help="default a new one in data/backups")
-    restore = commands.add_parser("restore", parents=[kept], help="put a copy in the database's place")
-    restore.add_argument("file", type=Path, help="what `mucat backup` wrote")
 
 
 def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:

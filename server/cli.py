@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from server import VERSION, backup_command, simulator_command
+from server import VERSION, simulator_command
 from server.access.options import add_access, add_pair
 from server.durable import make_folder
 from server.exports.options import add_export, add_import
@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.command in ("pair", "access"):
             return _access(options, settings)
         if options.command in ("backup", "restore"):
-            return backup_command.perform(options, settings, _claim)
+            return _back_up(options, settings)
         relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
@@ -89,8 +89,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     sessions = commands.add_parser("sessions", help="find sessions, write about them, delete them")
     add_sessions(sessions.add_subparsers(dest="action", required=True), kept)
     record = commands.add_parser("record", help="record with the running server")
-    backup_command.add_arguments(commands, kept)
     add_record(record.add_subparsers(dest="action", required=True), kept)
+    _add_backup(commands, kept)
     add_pair(commands, kept)
     access = commands.add_parser("access", help="who may come in, in which role, and who no longer")
     add_access(access.add_subparsers(dest="action", required=True), kept)
@@ -145,6 +145,15 @@ def _add_report(report: argparse.ArgumentParser) -> None:
     report.add_argument(
         "--signals", nargs="+", metavar="TOPIC.COLUMN", help="default as the thesis's figures"
     )
+
+
+def _add_backup(commands: "Actions", kept: argparse.ArgumentParser) -> None:
+    backup = commands.add_parser(
+        "backup", parents=[kept], help="copy the database, also while a server records"
+    )
+    backup.add_argument("file", nargs="?", type=Path, help="default a new one in data/backups")
+    restore = commands.add_parser("restore", parents=[kept], help="put a copy in the database's place")
+    restore.add_argument("file", type=Path, help="what `mucat backup` wrote")
 
 
 @contextmanager
@@ -215,6 +224,12 @@ def _carry(options: argparse.Namespace, settings: Settings) -> int:
     from server.exports.command import export_session, import_session
 
     perform = export_session if options.command == "export" else import_session
+    return perform(options, settings, _claim)
+
+
+def _back_up(options: argparse.Namespace, settings: Settings) -> int:
+    from server.backup_command import perform
+
     return perform(options, settings, _claim)
 
 

@@ -41,6 +41,8 @@ from robot_runtime.topics import Kind, read_blocks, read_rows
 from robot_runtime.vision_settings import VisionSettings
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
+pytestmark = pytest.mark.stack
+
 ROOT = Path(__file__).resolve().parents[2]
 
 

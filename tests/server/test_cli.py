@@ -228,6 +228,15 @@ def test_no_heavy_library_is_in_the_server_s_process() -> None:
     assert printed(program) == ""
 
 
+def test_a_command_line_is_read_before_anything_slow_is_loaded() -> None:
+    program = (
+        "import sys, server.cli\n"
+        "try: server.cli.main(['--version'])\n"
+        "except SystemExit: print(*sorted({'sqlalchemy', 'pydantic', 'fastapi'} & set(sys.modules)))"
+    )
+    assert printed(program) == f"mucat {VERSION}"
+
+
 def test_what_the_server_loads_starts_no_thread() -> None:
     """The keeper forks itself after it has loaded all that, which only a process without threads may."""
     program = "import os, server.app, server.web; print(*os.listdir('/proc/self/task'), os.getpid())"
