@@ -19,8 +19,9 @@ MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
 KEEP_ALIVE_SECONDS = 60
-"""For which a connection waits for its next request. After the 5 that are usual programs let go of theirs, too:
-whoever asks just then would find it reset.
+"""For which a connection waits for its next request.
+
+After the 5 that are usual programs let go of theirs, too: whoever asks just then would find it reset.
 """
 
 
