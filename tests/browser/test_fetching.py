@@ -1,0 +1,13 @@
+"""Parts of the page that come when they are wanted, and sometimes do not."""
+
+from playwright.sync_api import Page, expect
+
+
+def test_a_part_of_the_page_that_cannot_be_fetched_is_told(page: Page) -> None:
+    page.route("**/assets/System-*.js", lambda route: route.abort())
+    page.get_by_role("link", name="System", exact=True).click()
+    told = page.get_by_role("alert").filter(has_text="could not be fetched")
+    expect(told).to_be_visible()
+    page.unroute("**/assets/System-*.js")
+    told.get_by_role("button", name="Try again").click()
+    expect(page.get_by_role("heading", name="System")).to_be_visible()
