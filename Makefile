@@ -24,7 +24,9 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: setup-test host-firmware ## every check and every test
+test: ## every check and every test
+	@$(MAKE) --no-print-directory --jobs 2 setup-test
+	@$(MAKE) --no-print-directory --jobs 2 host-firmware
 	@$(MAKE) --no-print-directory --jobs 2 test-robots test-rooms
 
 # Whole robots run in real time, one after the other, and wait a lot. Meanwhile the rest has what they leave of the
@@ -116,6 +118,9 @@ setup: build/.packages-run .venv/.ready server/page/index.html
 	@$(MAKE) --no-print-directory firmware
 
 setup-test: build/.packages-test setup
+
+# Two at once would wait for each other's apt.
+build/.packages-test: build/.packages-run
 
 build/.packages-%: setup.sh
 	@./setup.sh $*

@@ -18,6 +18,7 @@ from tests.two_hosts import HERE, TwoHosts
 PATIENCE = 60.0
 PORT = 7447
 CUT_SECONDS = 3.0
+DIVE_SECONDS = 8.0
 
 
 def main() -> None:
@@ -48,7 +49,7 @@ def main() -> None:
             told["simulator"] = health(stack, "simulator")
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
             stack.api.post("/robot/arm").raise_for_status()
-            time.sleep(12)
+            time.sleep(DIVE_SECONDS)
             told["armed"] = state(stack)["armed"]
             told["camera"] = state(stack)["camera"]
             hosts.loss = 1.0
