@@ -15,7 +15,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-robots test-rooms test-parts long check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test long check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -24,22 +24,12 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every check and every test
+test: ## every test, after every check
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory --jobs 2 test-robots test-rooms
-
-# Whole robots run in real time, one after the other, and wait a lot. Meanwhile the rest has what they leave of the
-# computer, and is told as a whole at its end.
-test-robots:
-	$(PYTHON) -m pytest -m "stack and not long"
-
-test-rooms:
-	@nice -n 19 $(MAKE) --no-print-directory check test-parts > build/test-rooms.log 2>&1; \
-	ended=$$?; cat build/test-rooms.log; exit $$ended
-
-test-parts:
+	@$(MAKE) --no-print-directory check
 	$(PYTHON) -m pytest -m "not stack and not long" --numprocesses 2 --dist loadfile
+	$(PYTHON) -m pytest -m "stack and not long"
 	cd frontend && npm test --silent
 
 long: setup-test ## the tests that take minutes: the thesis's whole example in the browser
