@@ -181,7 +181,7 @@ def test_what_a_killed_keeper_has_left_gives_way_to_the_next_start(tmp_path: Pat
 def test_whoever_is_killed_whenever_there_is_one_of_each_again(tmp_path: Path) -> None:
     chance = random.Random(5)
     with keeping(tmp_path) as family:
-        for _ in range(12):
+        for _ in range(20):
             family.kill(chance.choice(NAMES))
             # The others are about to notice, and then it hits the server, too.
             time.sleep(chance.uniform(0, 0.03))
