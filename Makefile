@@ -73,7 +73,7 @@ control: setup-test host-firmware ## remake the table of docs/control.md: each d
 	$(PYTHON) -m bench.control
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
-	$(PYTHON) -m server.comm_tests.samples
+	$(PYTHON) -m server.features.comm_tests.samples
 
 fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
 	@nice $(PYTHON) -m tests.proofs.fuzz $(FUZZ_SECONDS)
@@ -96,7 +96,7 @@ chaos: setup ## an hour of kills, noise, stalled viewers and a full disk while i
 firmware: ## compile the firmware for the baud of robot.toml, the boot loader and the emulated board
 	@$(MAKE) --silent -C firmware --question robot 2>/dev/null || echo "The firmware ..."
 	@$(MAKE) --silent -C firmware robot
-	@python3 -m robot_runtime.firmware
+	@python3 -m robot_runtime.simulation.boards.firmware
 	@$(MAKE) --silent -C firmware/bootloader
 	@$(MAKE) --silent -C firmware/emulator --question 2>/dev/null || echo "The emulated board ..."
 	@$(MAKE) --silent -C firmware/emulator

@@ -4,11 +4,11 @@ import time
 from math import sin
 from statistics import median
 
-from robot_runtime.samples import Truth
-from robot_runtime.simulation.parameters import Parameters
+from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents
-from robot_runtime.simulation.surroundings import Basin
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.surroundings import Basin
 
 _SIZE = (640, 480)
 _PICTURES = 100

@@ -4,11 +4,11 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from robot_runtime.contract.packets import DEFINITIONS_HASH, Debug, Heartbeat, Hello, Status, encode
 from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import Decoder, build
 from robot_runtime.link.session import session_key
-from robot_runtime.packets import DEFINITIONS_HASH, Debug, Heartbeat, Hello, Status, encode
-from robot_runtime.simulation.board import LineDirection
+from robot_runtime.simulation.boards.emulator_process import LineDirection
 from tests.board.rig import ROOT, Rig
 
 _BAUDS = (1200, 9600, 115_200, 250_000)

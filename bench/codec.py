@@ -8,8 +8,8 @@ from collections.abc import Callable
 from cobs import cobs
 from pymavlink.dialects.v10 import common as mavlink
 
+from robot_runtime.contract.packets import Navigation, Packet, decode
 from robot_runtime.link.framing import OPEN, Decoder, Frame, assemble, build
-from robot_runtime.packets import Navigation, Packet, decode
 from tests.runtime.link.line import PAYLOADS
 
 _ROUNDS = 100

@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
-from robot_runtime.comm_test.builder import SKETCHES, Builder
-from robot_runtime.comm_test.document import read_document
-from robot_runtime.comm_test.results import Direction
-from robot_runtime.comm_test.runner import Runner
+from robot_runtime.experiments.comm_test.builder import SKETCHES, Builder
+from robot_runtime.experiments.comm_test.document import read_document
+from robot_runtime.experiments.comm_test.results import Direction
+from robot_runtime.experiments.comm_test.runner import Runner
 
 _BUILD = Path("build")
 

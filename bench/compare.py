@@ -15,7 +15,7 @@ import httpx
 from playwright.sync_api import sync_playwright
 
 from bench.hour import record_hour
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.shell import ShellToken
 from tests.stack import ROOT, free_port

@@ -5,10 +5,10 @@ import time
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.packets import Heartbeat, Navigation
 from robot_runtime.link.connection import Connection
 from robot_runtime.link.session import Message
-from robot_runtime.packets import Heartbeat, Navigation
-from robot_runtime.simulation.board import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import BoardProcess
 from tests.board.host import BAUD, FIRMWARE
 from tests.board.rig import PROGRAM
 

@@ -16,14 +16,14 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.control.controllers import CONTROLLERS
-from robot_runtime.samples import Truth
-from robot_runtime.scenario.boards import boards
-from robot_runtime.scenario.document import Scenario, read_scenario
-from robot_runtime.scenario.run import Run
-from robot_runtime.simulation.geometry import rotation, to_world
-from robot_runtime.simulation.parameters import Parameters, Six
-from robot_runtime.topics import read_blocks, read_rows
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.simulation.water.geometry import rotation, to_world
+from robot_runtime.simulation.water.parameters import Parameters, Six
 
 BEST, THESIS = "predictive", "bang_bang"
 SEEDS = (3, 4, 5)

@@ -12,9 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.control.controllers import CONTROLLERS
-from robot_runtime.packets.layout import Record
-from robot_runtime.samples import (
+from robot_runtime.contract.documents import (
     Box,
     ControllerChoice,
     DebugLine,
@@ -25,9 +23,11 @@ from robot_runtime.samples import (
     Pace,
     State,
 )
-from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
-from robot_runtime.vision.looking import THUMBNAIL_WIDTH
+from robot_runtime.contract.packets.layout import Record
+from robot_runtime.contract.topics import BY_NAME, Block, Kind, pack_documents, row
+from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.vision.node import THUMBNAIL_SECONDS
+from robot_runtime.vision.pipeline import THUMBNAIL_WIDTH
 
 Floats = NDArray[np.float64]
 Fields = dict[str, Any]
@@ -82,7 +82,7 @@ class Dive:
             while last < len(all_of_them) and all_of_them[last].time < time:
                 last += 1
             if last > first:
-                yield Block.of(BY_NAME[name], last - first, first, documents(all_of_them[first:last]))
+                yield Block.of(BY_NAME[name], last - first, first, pack_documents(all_of_them[first:last]))
                 self._numbers[name] = last
 
         while (number := self._numbers["thumbnail"]) < len(self._thumbnails):

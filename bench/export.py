@@ -17,14 +17,14 @@ import pandas as pd
 from mcap.writer import CompressionType, Writer
 
 from bench.hour import record_hour
-from server.exports.files import write_part
-from server.exports.formats import check
-from server.exports.packing import LEVEL
-from server.exports.shapes import Wanted
-from server.exports.source import Source
-from server.sessions.chunks import row_layout
-from server.sessions.session import find_row
-from server.store import Reader
+from server.features.exports.files import write_part
+from server.features.exports.formats import check
+from server.features.exports.schemas import Wanted
+from server.features.exports.selection import Source
+from server.features.exports.zip_stream import LEVEL
+from server.features.sessions.chunks import row_layout
+from server.features.sessions.session import find_row
+from server.platform.store import Reader
 
 
 def measure() -> dict[str, float]:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.svg import Axis, Line, Panel, draw
-from server.sessions.recording import Recording
-from server.sessions.session import find_row
-from server.store import Reader
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
+from server.platform.store import Reader
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,8 +6,8 @@ from itertools import cycle
 from pathlib import Path
 
 from bench.chip import build_for
+from robot_runtime.contract.packets import Navigation, Start, Status, StatusFlag, encode
 from robot_runtime.link.session import NO_BOOT, Session
-from robot_runtime.packets import Navigation, Start, Status, StatusFlag, encode
 from tests.board.host import FIRMWARE
 from tests.board.rig import Rig
 

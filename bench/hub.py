@@ -16,7 +16,7 @@ import psutil
 from bench.hub_ends import TOPICS
 from bench.hub_viewers import OURS, THEIRS, Drain, Viewer, Watch
 from bench.stack import cpu_seconds
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import free_port
 

@@ -15,15 +15,15 @@ from collections.abc import Callable
 from pathlib import Path
 from struct import Struct
 
-from robot_runtime.cache import Cache
 from robot_runtime.clock import SteadyClock
-from robot_runtime.messages import Messages
-from robot_runtime.outbox import Outbox
-from robot_runtime.topics import BY_NAME, TIME
+from robot_runtime.contract.topics import BY_NAME, TIME
+from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.replay_cache import Cache
+from robot_runtime.transport.zenoh_transport import Messages
 from server.app import create_app
-from server.schema import prepare
-from server.settings import DataFolder, Settings
-from server.web import make_server, open_socket
+from server.http.serving import make_server, open_socket
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings
 
 TOPICS = ("imu", "depth", "beacon", "motor", "status", "navigation", "control", "link")
 RATE = 100.0

@@ -14,7 +14,7 @@ from websockets.protocol import State
 from websockets.uri import parse_uri
 
 from bench.hub_ends import TOPICS
-from robot_runtime.topics import BY_NAME, HEADER, ROW_BYTES, TIME
+from robot_runtime.contract.topics import BY_NAME, HEADER, ROW_BYTES, TIME
 
 _TIMEOUT = 20.0
 _DRAIN_EVERY = 0.05

@@ -10,10 +10,10 @@ from statistics import quantiles
 from playwright.sync_api import sync_playwright
 
 from bench.hour import record_hour
-from server.sessions.recording import Recording
-from server.sessions.session import find_row
-from server.settings import DataFolder
-from server.store import Reader
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
+from server.platform.settings import DataFolder
+from server.platform.store import Reader
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from playwright.sync_api import Page, expect, sync_playwright
 
-from robot_runtime.simulation.board import Board
-from robot_runtime.topics import BY_NAME
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.simulation.boards.emulator_process import Board
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 

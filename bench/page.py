@@ -10,7 +10,7 @@ import numpy as np
 from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
 
 from bench.hub import open_viewer, process, wait_for_samples
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import free_port
 

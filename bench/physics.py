@@ -3,8 +3,8 @@
 import time
 from math import cos, pi, sin
 
-from robot_runtime.simulation.parameters import Parameters
-from robot_runtime.simulation.simulator import FinMotion, Simulator
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 
 _PERIOD = 0.005
 _STEPS = 20_000

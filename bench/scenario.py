@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import robot_runtime.scenario
-from robot_runtime.scenario.boards import boards
-from robot_runtime.scenario.document import read_scenario
-from robot_runtime.scenario.run import AFTERWARDS, PRELUDE, Run
+import robot_runtime.experiments.scenario
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, Run
 
-_SCENARIO = Path(robot_runtime.scenario.__file__).parent / "shipped/hover_in_a_current.toml"
+_SCENARIO = Path(robot_runtime.experiments.scenario.__file__).parent / "shipped/hover_in_a_current.toml"
 
 
 class _Deaf:

@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 from statistics import quantiles
 
-from robot_runtime.packets import Navigation
+from robot_runtime.contract.packets import Navigation
 from tests.board.host import TICK, Robot, start
 
 _SAMPLES = 400

@@ -9,7 +9,7 @@ import psutil
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack
 

@@ -8,13 +8,13 @@ from pathlib import Path
 from bench.dive import Dive
 from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.topics import Block
-from server.live.notices import Notices
-from server.schema import prepare
-from server.sessions.recorder import PERIOD, Recorder
-from server.sessions.session import new_row
-from server.settings import DataFolder, Settings, make_folders
-from server.store import Store
+from robot_runtime.contract.topics import Block
+from server.features.sessions.recorder import PERIOD, Recorder
+from server.features.sessions.session import new_row
+from server.platform.notices import Notices
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
 
 SECONDS = 300.0
 

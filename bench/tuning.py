@@ -7,10 +7,10 @@ tables of docs/tuning.md.
 from collections.abc import Mapping
 
 from robot_runtime.control.controllers import CONTROLLERS
-from server.tuning.proposals import propose
-from server.tuning.shapes import LimitCycleFound
+from server.features.tuning.proposals import propose
+from server.features.tuning.schemas import LimitCycleFound
 from tests.runtime.control.flight import Flight
-from tests.server.tuning.rig import Rig
+from tests.server.features.tuning.rig import Rig
 
 BOARD = "host"
 AMPLITUDES = (0.3, 0.5, 0.8)

@@ -10,14 +10,14 @@ from statistics import median, quantiles
 from typing import Any
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.messages import Messages
-from robot_runtime.samples import Control
-from robot_runtime.topics import Block, read_blocks, read_rows
+from robot_runtime.contract.documents import Control
+from robot_runtime.contract.topics import Block, read_blocks, read_rows
+from robot_runtime.contract.vision_settings import COLOURS, VisionSettings
+from robot_runtime.transport.zenoh_transport import Messages
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
-from robot_runtime.vision.looking import Detector
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import COLOURS, VisionSettings
+from robot_runtime.vision.pipeline import Detector
 from tests.stack import Stack
 
 _SIZE = (640, 480)

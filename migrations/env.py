@@ -3,7 +3,7 @@
 from alembic import context
 from sqlmodel import SQLModel
 
-import server.models  # noqa: F401 - declares the tables
+import server.platform.models  # noqa: F401 - declares the tables
 
 
 def migrate() -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.config import ConfigError, load
-from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.messages import Messages
 from robot_runtime.robot import Robot
-from robot_runtime.vision.keeping import Kept
+from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.vision.settings_file import Kept
 
 
 def main() -> int:

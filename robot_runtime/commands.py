@@ -5,12 +5,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from robot_runtime.config import parse
+from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.experiment_request import read_experiment
 from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.core import Core
 from robot_runtime.errors import Refused
-from robot_runtime.samples import Mode
-from robot_runtime.vision_settings import VisionSettings
 
 CHANGING = ("controller", "loop", "parameters", "set_points", "steering")
 """What would change under an experiment what it measures."""

@@ -8,11 +8,11 @@ from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from robot_runtime.ranges import SET_POINT as SET_POINT
-from robot_runtime.ranges import VISION_RATE as VISION_RATE
-from robot_runtime.ranges import ConfigError as ConfigError
-from robot_runtime.ranges import Range as Range
-from robot_runtime.vision_settings import VisionSettings
+from robot_runtime.contract.limits import SET_POINT as SET_POINT
+from robot_runtime.contract.limits import VISION_RATE as VISION_RATE
+from robot_runtime.contract.limits import ConfigError as ConfigError
+from robot_runtime.contract.limits import Range as Range
+from robot_runtime.contract.vision_settings import VisionSettings
 
 T = TypeVar("T")
 

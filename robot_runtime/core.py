@@ -12,37 +12,9 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
 from robot_runtime.config import Config
-from robot_runtime.control.controllers import Controller
-from robot_runtime.control.experiments import Experiments
-from robot_runtime.control.in_the_loop import InTheLoop
-from robot_runtime.control.loop import ControlLoop
-from robot_runtime.control.node import ControlNode
-from robot_runtime.control.pilot import PILOT_LOOK
-from robot_runtime.control.supervisor import Supervisor
-from robot_runtime.link.conversation import Conversation
-from robot_runtime.link.dissection import dissect
-from robot_runtime.link.pace import periods
-from robot_runtime.link.session import Message
-from robot_runtime.messages import Messages
-from robot_runtime.outbox import Outbox
-from robot_runtime.packets import (
-    Beacon,
-    Debug,
-    Depth,
-    Hello,
-    Imu,
-    Motor,
-    Navigation,
-    Parameter,
-    Status,
-)
-from robot_runtime.parameters.board import BoardParameters
-from robot_runtime.parameters.providers import runtime_entries
-from robot_runtime.parameters.registry import Registry
-from robot_runtime.samples import (
+from robot_runtime.contract.documents import (
     ControllerChoice,
     DebugLine,
     Detection,
@@ -56,10 +28,38 @@ from robot_runtime.samples import (
     State,
     VisionInForce,
 )
-from robot_runtime.topics import TOPICS, Kind
+from robot_runtime.contract.packets import (
+    Beacon,
+    Debug,
+    Depth,
+    Hello,
+    Imu,
+    Motor,
+    Navigation,
+    Parameter,
+    Status,
+)
+from robot_runtime.contract.topics import TOPICS, Kind
+from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.control.controllers import Controller
+from robot_runtime.control.experiments import Experiments
+from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.loop import ControlLoop
+from robot_runtime.control.node import ControlNode
+from robot_runtime.control.pilot import PILOT_LOOK
+from robot_runtime.control.supervisor import Supervisor
+from robot_runtime.link.conversation import Conversation
+from robot_runtime.link.dissection import dissect
+from robot_runtime.link.pace import periods
+from robot_runtime.link.session import Message
+from robot_runtime.parameters.board import BoardParameters
+from robot_runtime.parameters.providers import runtime_entries
+from robot_runtime.parameters.registry import Registry
+from robot_runtime.transport.bus import Bus
+from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.zenoh_transport import Messages
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.node import Vision
-from robot_runtime.vision_settings import VisionSettings
 
 log = logging.getLogger(__name__)
 

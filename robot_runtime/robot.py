@@ -4,20 +4,20 @@ import threading
 import time
 from dataclasses import asdict
 
-from robot_runtime.cache import Cache
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config, ConfigError
-from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.contract.documents import Event
+from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.control.hil_feed import InTheLoop
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
-from robot_runtime.lifetime import HEARTBEAT
 from robot_runtime.link.connection import Connection
-from robot_runtime.messages import Messages
-from robot_runtime.outbox import Outbox
-from robot_runtime.samples import Event
-from robot_runtime.vision.keeping import Kept
-from robot_runtime.vision_settings import VisionSettings
+from robot_runtime.transport.lifetime import HEARTBEAT
+from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.replay_cache import Cache
+from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.vision.settings_file import Kept
 
 
 class Robot(Core):

@@ -9,56 +9,54 @@ from fastapi.responses import JSONResponse
 
 from robot_runtime.errors import Refused
 from server import VERSION
-from server.access.access import Access
-from server.access.admit import admit
-from server.access.devices import UnknownDevice
-from server.access.gate import Gate
-from server.access.secret import TOKEN_PREFIX, make_token
-from server.assembly import Assembly
-from server.comparison.shapes import NoSessionError
-from server.control.lease import NotInControl
-from server.download import CopyFailed
-from server.layouts.library import UnknownLayout
-from server.live.bridge import RuntimeSilent
-from server.page import Page, make_router
-from server.panels.own import UnknownPanel
-from server.parameters.profiles import UnknownProfile
-from server.processes.parts import Command
-from server.routes import (
-    access,
-    backup,
-    comm_tests,
-    compare,
-    control,
-    exports,
-    health,
-    layouts,
-    link,
-    live,
-    marks,
-    panels,
-    parameters,
-    past,
-    profiles,
-    replay,
-    robot,
-    scenarios,
-    scene,
-    sessions,
-    simulator,
-    storage,
-    tuning,
-    vision,
-)
-from server.routes.problems import EVERYWHERE
-from server.security import Guard
-from server.sessions.markers import UnknownMark
-from server.sessions.presence import NotNow, UnknownSession
-from server.sessions.recorder import RecordingRefused
-from server.sessions.recording import RecordingError
-from server.settings import Settings
-from server.store import StoreError
-from server.tuning.runs import UnknownRun
+from server.container import Assembly
+from server.features.backup import routes as backup
+from server.features.backup.download import CopyFailed
+from server.features.comm_tests import routes as comm_tests
+from server.features.comparison import routes as compare
+from server.features.comparison.schemas import NoSessionError
+from server.features.exports import routes as exports
+from server.features.layouts import routes as layouts
+from server.features.layouts.library import UnknownLayout
+from server.features.lease import routes as control
+from server.features.lease.lease import NotInControl
+from server.features.operate import link_routes as link
+from server.features.operate import routes as robot
+from server.features.operate import scene_routes as scene
+from server.features.panels import routes as panels
+from server.features.panels.scripts import UnknownPanel
+from server.features.parameters import profile_routes as profiles
+from server.features.parameters import routes as parameters
+from server.features.parameters.profiles import UnknownProfile
+from server.features.people import routes as access
+from server.features.scenarios import routes as scenarios
+from server.features.sessions import bookmark_routes as marks
+from server.features.sessions import replay_routes as replay
+from server.features.sessions import routes as sessions
+from server.features.sessions import storage_routes as storage
+from server.features.sessions.bookmarks import UnknownMark
+from server.features.sessions.presence import NotNow, UnknownSession
+from server.features.sessions.recorder import RecordingRefused
+from server.features.sessions.recording import RecordingError
+from server.features.simulator import routes as simulator
+from server.features.tuning import routes as tuning
+from server.features.tuning.runs import UnknownRun
+from server.features.vision import routes as vision
+from server.health import routes as health
+from server.http.page import Page, make_router
+from server.http.problems import EVERYWHERE
+from server.http.security import Guard
+from server.http.sign_in.access import Access
+from server.http.sign_in.authorization import admit
+from server.http.sign_in.devices import UnknownDevice
+from server.http.sign_in.gate import Gate
+from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
+from server.platform.settings import Settings
+from server.platform.store import StoreError
+from server.processes.supervisor import Command
+from server.stream import history_routes as past
+from server.stream import routes as live
+from server.stream.bridge import RuntimeSilent
 
 
 def create_app(

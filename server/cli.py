@@ -12,17 +12,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from server import VERSION, simulator_command
-from server.access.options import add_access, add_pair
-from server.durable import make_folder
-from server.exports.options import add_export, add_import
+from robot_runtime.durable_files import make_folder
+from server import VERSION
+from server.features.exports.options import add_export, add_import
+from server.features.people.options import add_access, add_pair
+from server.features.sessions.options import add_record, add_sessions
+from server.features.simulator import command as simulator_command
+from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from server.processes.keeper import Keeper, keeper_of, relieve
-from server.sessions.options import add_record, add_sessions
-from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 
 if TYPE_CHECKING:
-    from server.access.access import Access
-    from server.access.certificate import Certificate
+    from server.http.certificate import Certificate
+    from server.http.sign_in.access import Access
 
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -191,57 +192,57 @@ def _lock(handle: IO[str]) -> bool:
 
 
 def _commtest(options: argparse.Namespace, settings: Settings) -> int:
-    from server.comm_tests.command import perform
+    from server.features.comm_tests.command import perform
 
     return perform(options, settings, _claim)
 
 
 def _scenario(options: argparse.Namespace, settings: Settings) -> int:
-    from server.scenarios.command import perform
+    from server.features.scenarios.command import perform
 
     return perform(options, settings, _claim)
 
 
 def _sessions(options: argparse.Namespace, settings: Settings) -> int:
-    from server.sessions.command import perform
+    from server.features.sessions.command import perform
 
     return perform(options, settings, _claim)
 
 
 def _access(options: argparse.Namespace, settings: Settings) -> int:
-    from server.access.command import perform
+    from server.features.people.command import perform
 
     return perform(options, settings)
 
 
 def _report(options: argparse.Namespace, settings: Settings) -> int:
-    from server.comparison.command import perform
+    from server.features.comparison.command import perform
 
     return perform(options, settings, _claim)
 
 
 def _carry(options: argparse.Namespace, settings: Settings) -> int:
-    from server.exports.command import export_session, import_session
+    from server.features.exports.command import export_session, import_session
 
     perform = export_session if options.command == "export" else import_session
     return perform(options, settings, _claim)
 
 
 def _back_up(options: argparse.Namespace, settings: Settings) -> int:
-    from server.backup_command import perform
+    from server.features.backup.command import perform
 
     return perform(options, settings, _claim)
 
 
 def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
-    from robot_runtime.firmware import BuildError, build_firmware
-    from server.access.certificate import prepare_certificate
+    from robot_runtime.simulation.boards.firmware import BuildError, build_firmware
     from server.app import create_app
-    from server.processes.parts import plan
-    from server.running import announce
-    from server.schema import prepare
-    from server.web import make_server, open_socket
+    from server.http.certificate import prepare_certificate
+    from server.http.serving import make_server, open_socket
+    from server.platform.running_server import announce
+    from server.platform.schema import prepare
+    from server.processes.supervisor import plan
 
     if settings.emulated_board:
         try:
@@ -277,7 +278,7 @@ def _run(settings: Settings) -> int:
 
 
 def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:
-    from server.access.welcome import shows_pictures, welcome
+    from server.features.people.welcome import shows_pictures, welcome
 
     lines = welcome(settings, access, certificate, picture=shows_pictures(sys.stdout))
     print(*lines, sep="\n", flush=True)  # noqa: T201 - a command line speaks

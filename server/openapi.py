@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from server.app import create_app
-from server.settings import DataFolder, Settings
+from server.platform.settings import DataFolder, Settings
 
 
 def main() -> None:

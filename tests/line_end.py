@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
+from robot_runtime.contract.packets import Hello, Packet, Stop, encode
 from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import OPEN, Decoder, build
 from robot_runtime.link.session import session_key
-from robot_runtime.packets import Hello, Packet, Stop, encode
 
 _NO_PACE = 10**30
 """baud; a line on which everything goes out at once."""

@@ -4,7 +4,7 @@ from collections.abc import Generator
 
 import httpx
 
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 
 
 class ShellToken(httpx.Auth):

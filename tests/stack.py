@@ -14,8 +14,8 @@ from typing import Any, Self
 import httpx
 import psutil
 
+from server.platform.settings import DataFolder
 from server.processes.keeper import keeper_of
-from server.settings import DataFolder
 from tests.control import Commander
 from tests.shell import ShellToken
 

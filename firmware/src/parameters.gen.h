@@ -1,4 +1,4 @@
-// Written by `make generate` from robot_runtime/packets/chip_parameters.py. Do not edit.
+// Written by `make generate` from robot_runtime/contract/packets/chip_parameters.py. Do not edit.
 #pragma once
 #include <stdint.h>
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.faults import BY_NAME
-from robot_runtime.samples import Alarm, Event
 
 CLEAR_AFTER = 1.0
 """s without the fault after which it is over: what flickers is one alarm."""

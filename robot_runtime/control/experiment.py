@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.controllers.base import GainLimits
 from robot_runtime.control.loop import Loan
-from robot_runtime.samples import ExperimentKind, ExperimentPhase
 
 SETTLED_SECONDS = 2.0
 """s for which the value has to have stayed about the start before the step."""

@@ -4,12 +4,12 @@ import threading
 from collections.abc import Callable
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Experiment as Told
+from robot_runtime.contract.documents import Mode
 from robot_runtime.control.attitude import wrapped
 from robot_runtime.control.experiment import Experiment
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.errors import Refused
-from robot_runtime.samples import Experiment as Told
-from robot_runtime.samples import Mode
 
 TELL_EVERY = 0.5
 """s."""

@@ -6,7 +6,7 @@ What the chip does by itself, and how each is tested, is in docs/safety.md.
 from dataclasses import dataclass
 from typing import Literal
 
-from robot_runtime.samples import Mode, Severity
+from robot_runtime.contract.documents import Mode, Severity
 
 LOOK = 0.1
 """s between two looks at most."""

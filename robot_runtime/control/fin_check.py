@@ -1,8 +1,8 @@
 """The fin check: each axis for a moment, and whether every fin's encoder followed what was wanted of it."""
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.packets import FIN_COUNT, Motor, Navigation
 from robot_runtime.control.pilot import AXES, NEUTRAL
-from robot_runtime.packets import FIN_COUNT, Motor, Navigation
 
 FINS = ("front right", "back right", "back left", "front left")
 _STEP = 1.3

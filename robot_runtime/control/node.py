@@ -6,16 +6,16 @@ from collections.abc import Callable, Mapping
 from math import nan
 from typing import Any
 
-from robot_runtime.bus import Bus
 from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Control, Detection, Document, Event, Mode, Steering, Turning
+from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
 from robot_runtime.control.attitude import sinking, turned
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Beacon, Depth, Imu, Navigation
-from robot_runtime.samples import Control, Detection, Document, Event, Mode, Steering, Turning
+from robot_runtime.transport.bus import Bus
 
 BEACON_STALE = 0.5
 """s after which what the beacon detectors saw no longer counts."""

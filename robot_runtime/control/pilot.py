@@ -6,8 +6,8 @@ from collections import Counter
 from typing import Any
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.packets import Navigation
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Navigation
 
 PILOT = "pilot"
 """The name under which the server sends it."""

@@ -7,7 +7,7 @@ side on which it saw it last, until it has been all round.
 
 from typing import get_args
 
-from robot_runtime.samples import Steering
+from robot_runtime.contract.documents import Steering
 
 STEERINGS: tuple[Steering, ...] = get_args(Steering)
 

@@ -5,17 +5,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
+from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
 from robot_runtime.control.alarms import Alarms
+from robot_runtime.control.fault_detector import Line, Watch
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.fin_check import FinCheck
-from robot_runtime.control.in_the_loop import InTheLoop
+from robot_runtime.control.hil_feed import InTheLoop
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.control.transitions import ARMED, Trigger, follow
-from robot_runtime.control.watch import Line, Watch
 from robot_runtime.errors import Refused
 from robot_runtime.link.pace import airtime
-from robot_runtime.packets import Hello, Start, Status, StatusFlag, Stop
-from robot_runtime.samples import Alarm, Event, Mode, Severity
 
 _ARM_TRIES = 10
 ARM_WAIT = 0.1

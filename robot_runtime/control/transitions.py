@@ -2,7 +2,7 @@
 
 from typing import Literal, NamedTuple
 
-from robot_runtime.samples import Mode
+from robot_runtime.contract.documents import Mode
 
 Trigger = Literal[
     "arm", "arm manual", "check fins", "take over", "hand back", "checked", "stop", "fault", "acknowledge"

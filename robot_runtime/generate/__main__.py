@@ -19,7 +19,7 @@ def main() -> int:
     files = {
         "firmware/src/packets.gen.h": cpp.header(),
         "firmware/src/parameters.gen.h": cpp.parameters(),
-        "robot_runtime/packets/packets.schema.json": json_schema.schema(),
+        "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
         "docs/parameters.md": parameters.weave((ROOT / "docs/parameters.md").read_text(encoding="utf-8")),
         "docs/safety.md": safety.weave((ROOT / "docs/safety.md").read_text(encoding="utf-8")),

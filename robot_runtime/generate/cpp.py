@@ -2,7 +2,7 @@
 
 from enum import IntEnum, IntFlag
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     DEFINITIONS_HASH,
     FIN_COUNT,
@@ -15,10 +15,10 @@ from robot_runtime.packets import (
     SensorFault,
     StatusFlag,
 )
-from robot_runtime.packets.layout import C_TYPES, Wire
+from robot_runtime.contract.packets.layout import C_TYPES, Wire
 
 _HEAD = """\
-// Written by `make generate` from robot_runtime/packets/definitions.py. Do not edit.
+// Written by `make generate` from robot_runtime/contract/packets/definitions.py. Do not edit.
 #pragma once
 #include <stdint.h>
 
@@ -31,7 +31,7 @@ constexpr uint8_t kNotReady = %d;
 """
 
 _PARAMETERS = """\
-// Written by `make generate` from robot_runtime/packets/chip_parameters.py. Do not edit.
+// Written by `make generate` from robot_runtime/contract/packets/chip_parameters.py. Do not edit.
 #pragma once
 #include <stdint.h>
 

@@ -3,9 +3,9 @@
 import json
 from typing import Any
 
-from robot_runtime.packets import DEFINITIONS_HASH, PACKETS
-from robot_runtime.packets.layout import Record, Wire
-from robot_runtime.topics import TOPICS
+from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS
+from robot_runtime.contract.packets.layout import Record, Wire
+from robot_runtime.contract.topics import TOPICS
 
 
 def schema() -> str:

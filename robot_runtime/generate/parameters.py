@@ -2,10 +2,10 @@
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
+from robot_runtime.contract.documents import Parameter
 from robot_runtime.core import Core
 from robot_runtime.link.conversation import Conversation
-from robot_runtime.outbox import Outbox
-from robot_runtime.samples import Parameter
+from robot_runtime.transport.outbox import Outbox
 
 _BEGIN, _END = "<!-- parameters: from the code -->\n", "<!-- parameters: end -->\n"
 

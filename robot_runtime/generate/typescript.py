@@ -6,14 +6,14 @@ import types
 import typing
 from enum import IntEnum, IntFlag
 
-from robot_runtime import samples
-from robot_runtime.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
-from robot_runtime.packets.layout import Record, Wire
-from robot_runtime.topics import TIME, TOPICS, Kind, Topic
-from robot_runtime.vision_settings import ColourRange, VisionSettings
+from robot_runtime.contract import documents
+from robot_runtime.contract.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
+from robot_runtime.contract.packets.layout import Record, Wire
+from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
+from robot_runtime.contract.vision_settings import ColourRange, VisionSettings
 
 _HEAD = f"""\
-// Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
+// Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
 export const DEFINITIONS_HASH = '{DEFINITIONS_HASH:08x}';
@@ -110,8 +110,15 @@ def _row_name(topic: Topic) -> str:
 
 
 def _documents() -> list[type]:
-    shared = [samples.Box, samples.Gain, samples.ControllerChoice, samples.Loop, samples.Pace, samples.Alarm]
-    shared += [samples.Candidate, samples.Marker, samples.Parameter, ColourRange, VisionSettings]
+    shared = [
+        documents.Box,
+        documents.Gain,
+        documents.ControllerChoice,
+        documents.Loop,
+        documents.Pace,
+        documents.Alarm,
+    ]
+    shared += [documents.Candidate, documents.Marker, documents.Parameter, ColourRange, VisionSettings]
     return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
 
 
@@ -123,7 +130,7 @@ def _interface(cls: type) -> str:
 
 def _name(cls: type | None) -> str:
     # `Event` is the browser's own.
-    return "RobotEvent" if cls is samples.Event else getattr(cls, "__name__", "")
+    return "RobotEvent" if cls is documents.Event else getattr(cls, "__name__", "")
 
 
 def _type(hint: typing.Any) -> str:

@@ -39,6 +39,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import islice
 
+from robot_runtime.contract.packets import NOT_READY, PACKETS, Acknowledge, Packet
 from robot_runtime.link.framing import (
     MESSAGES_BYTES_MAX,
     OPEN,
@@ -48,7 +49,6 @@ from robot_runtime.link.framing import (
     assemble,
 )
 from robot_runtime.link.round_trip import RoundTrip
-from robot_runtime.packets import NOT_READY, PACKETS, Acknowledge, Packet
 
 WINDOW = 7
 """Reliable frames in flight, at most."""

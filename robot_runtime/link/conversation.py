@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.link_statistics import LinkStatistics
+from robot_runtime.contract.packets import Hello, Packet, Status, Stop
+from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.link.frame_ring import KeptFrame
 from robot_runtime.link.session import Message, Session, Stage
-from robot_runtime.link.statistics import LinkStatistics
-from robot_runtime.packets import Hello, Packet, Status, Stop
-from robot_runtime.packets.layout import LayoutError
 
 log = logging.getLogger(__name__)
 

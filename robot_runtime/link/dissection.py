@@ -6,9 +6,9 @@ from struct import Struct
 
 from cobs import cobs
 
+from robot_runtime.contract.packets import FRAME_BYTES_MAX, PACKETS
 from robot_runtime.link.frame_ring import KeptFrame
 from robot_runtime.link.framing import OPEN
-from robot_runtime.packets import FRAME_BYTES_MAX, PACKETS
 
 _CRC = Struct("<I")
 

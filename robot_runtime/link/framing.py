@@ -25,8 +25,8 @@ from cobs.cobs import DecodeError
 from cobs.cobs import decode as unstuff
 from cobs.cobs import encode as stuff
 
-from robot_runtime.packets import FRAME_BYTES_MAX, PACKETS, Packet, encode
-from robot_runtime.packets.layout import LayoutError
+from robot_runtime.contract.packets import FRAME_BYTES_MAX, PACKETS, Packet, encode
+from robot_runtime.contract.packets.layout import LayoutError
 
 OPEN = 0
 """The key of frames that belong to no session."""

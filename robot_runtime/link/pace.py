@@ -4,7 +4,7 @@ The board sends as firmware/src/schedule.h says. In ten slots of 10 ms each, or 
 where that would be more than four, in three slots, with Depth in all of them.
 """
 
-from robot_runtime.packets import FRAME_BYTES_MAX, Beacon, Depth, Imu, Motor, Packet, Status
+from robot_runtime.contract.packets import FRAME_BYTES_MAX, Beacon, Depth, Imu, Motor, Packet, Status
 
 TICK = 0.01
 """s, of the board's main loop."""

@@ -23,13 +23,8 @@ from collections.abc import Iterable
 from enum import Enum
 from typing import NamedTuple
 
-from robot_runtime.link.board_time import BoardTime
-from robot_runtime.link.channel import Channel, Counters
-from robot_runtime.link.frame_ring import FrameRing
-from robot_runtime.link.framing import OPEN, Decoder, Frame, build
-from robot_runtime.link.pace import frames_airtime
-from robot_runtime.link.statistics import LinkStatistics
-from robot_runtime.packets import (
+from robot_runtime.contract.link_statistics import LinkStatistics
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     FRAME_BYTES_MAX,
     PACKETS,
@@ -40,6 +35,11 @@ from robot_runtime.packets import (
     Stop,
     encode,
 )
+from robot_runtime.link.board_time import BoardTime
+from robot_runtime.link.channel import Channel, Counters
+from robot_runtime.link.frame_ring import FrameRing
+from robot_runtime.link.framing import OPEN, Decoder, Frame, build
+from robot_runtime.link.pace import frames_airtime
 
 SILENCE = 1.0
 """s without a valid frame after which the board counts as lost; on a slow line, three frames' airtime."""

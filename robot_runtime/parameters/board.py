@@ -10,8 +10,8 @@ from functools import partial
 from typing import Protocol
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.packets import CHIP_PARAMETERS, Packet, Parameter
 from robot_runtime.link.pace import airtime
-from robot_runtime.packets import CHIP_PARAMETERS, Packet, Parameter
 from robot_runtime.parameters.entry import Entry
 
 _ANSWER_SECONDS = 1.0

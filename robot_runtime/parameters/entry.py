@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from robot_runtime.samples import ParameterType, ParameterValue, Where
+from robot_runtime.contract.documents import ParameterType, ParameterValue, Where
 
 _WORDS: dict[ParameterType, str] = {
     "number": "a number",

@@ -5,13 +5,13 @@ from dataclasses import replace
 from functools import partial
 
 from robot_runtime.config import SET_POINT, VISION_RATE
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.steering import STEERINGS
 from robot_runtime.parameters.entry import Entry
 from robot_runtime.vision.node import Vision
-from robot_runtime.vision_settings import VisionSettings
 
 
 def runtime_entries(

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
+from robot_runtime.contract.documents import Parameter, ParameterValue
 from robot_runtime.errors import Refused
 from robot_runtime.parameters.entry import Entry
-from robot_runtime.samples import Parameter, ParameterValue
 
 Changed = dict[str, tuple[ParameterValue, ParameterValue]]
 """By name: the value before and after."""

@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.messages import Messages, join
-from robot_runtime.simulation.loop import Loop
-from robot_runtime.simulation.parameters import Parameters
-from robot_runtime.simulation.process import Process
-from robot_runtime.simulation.simulator import Simulator
+from robot_runtime.simulation.water.hil import Loop
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.process import Process
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.zenoh_transport import Messages, join
 
 log = logging.getLogger(__name__)
 

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_runtime.contract.vision_settings import BYTE_MAX, WhiteBalance
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import BYTE_MAX, WhiteBalance
 
 GAIN_MAX = 4.0
 """By which no channel is raised more: beyond that there is noise in place of light."""

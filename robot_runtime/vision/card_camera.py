@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.clock import Clock
-from robot_runtime.paints import Paint
+from robot_runtime.contract.card_colours import Paint
 from robot_runtime.vision.camera import Camera, Frame
 from robot_runtime.vision.cards import MARKER_CELLS, MARKER_SIDE, Card, marker_pattern
 from robot_runtime.vision.picture import Picture

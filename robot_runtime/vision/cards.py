@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.paints import MARKER_CARD, PAINTS, WHITE, Paint
-from robot_runtime.vision_settings import ColourRange, marker_name
+from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS, WHITE, Paint
+from robot_runtime.contract.vision_settings import ColourRange, marker_name
 
 MARKER_DICTIONARY = cv2.aruco.DICT_4X4_50
 MARKER_CELLS = 6

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from robot_runtime.samples import Candidate, Marker
+from robot_runtime.contract.documents import Candidate, Marker
+from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.vision.balance import BALANCES
 from robot_runtime.vision.markers import MarkerFinder
 from robot_runtime.vision.patches import Patches, find_patches
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import VisionSettings, marker_name
 
 
 @dataclass(frozen=True, slots=True)

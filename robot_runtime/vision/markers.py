@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import cv2
 import numpy as np
 
-from robot_runtime.samples import Marker
+from robot_runtime.contract.documents import Marker
+from robot_runtime.contract.vision_settings import MarkerDictionary, VisionSettings
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import MarkerDictionary, VisionSettings
 
 DICTIONARIES: Mapping[MarkerDictionary, int] = {
     "4x4_50": cv2.aruco.DICT_4X4_50,

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig, parse
+from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
+from robot_runtime.contract.documents import Detection, Event, Severity
+from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import Refused
-from robot_runtime.messages import Messages
-from robot_runtime.paints import MARKER_CARD, PAINTS
-from robot_runtime.samples import Detection, Event, Severity
+from robot_runtime.transport.zenoh_transport import Messages
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.pace import Pace
-from robot_runtime.vision_settings import VisionSettings, marker_name
 
 if TYPE_CHECKING:
     from robot_runtime.vision.cards import Card
+    from robot_runtime.vision.colour_picker import Proposal
     from robot_runtime.vision.detector import Detector, Sight
-    from robot_runtime.vision.picking import Proposal
     from robot_runtime.vision.picture import Picture
 
 log = logging.getLogger(__name__)
@@ -119,7 +119,7 @@ class Vision:
         if colour is None:
             self.held = None
         else:
-            from robot_runtime.vision.looking import make_card
+            from robot_runtime.vision.pipeline import make_card
 
             self.held = make_card(colour, self._settings.colours)
 
@@ -128,7 +128,7 @@ class Vision:
 
         `question` is a `Place` as a table. Changes nothing. Raises Refused, ConfigError.
         """
-        from robot_runtime.vision.looking import Detector, Place, propose
+        from robot_runtime.vision.pipeline import Detector, Place, propose
 
         place = parse(Place, question)
         frame = self._frame
@@ -174,7 +174,7 @@ class Vision:
 
     def _run(self) -> None:
         # Here, so that the first picture is not late for it.
-        importlib.import_module("robot_runtime.vision.looking")
+        importlib.import_module("robot_runtime.vision.pipeline")
         while not self._ending:
             remaining = self.tick()
             if remaining > 0:
@@ -197,11 +197,11 @@ class Vision:
 
     def _examine(self, frame: Frame) -> None:
         # Loads NumPy and OpenCV, which takes longest of all at a start; the robot is in hand before that.
-        from robot_runtime.vision import looking
+        from robot_runtime.vision import pipeline
 
         settings = self._settings
         if self._detector is None or self._detector.settings is not settings:
-            self._detector = looking.Detector(settings)
+            self._detector = pipeline.Detector(settings)
         begun = self._clock.now()
         sight = self._detector.look(frame.picture)
         ended = self._clock.now()
@@ -224,19 +224,19 @@ class Vision:
         self._hand_on(frame, sight)
         if self._on_thumbnail is not None and frame.taken >= self._thumbnail_due:
             self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
-            self._on_thumbnail(frame.taken, looking.as_thumbnail(frame.picture))
+            self._on_thumbnail(frame.taken, pipeline.as_thumbnail(frame.picture))
 
     def _hand_on(self, frame: Frame, sight: "Sight") -> None:
-        from robot_runtime.vision import looking
+        from robot_runtime.vision import pipeline
 
         made: dict[str, Callable[[], Picture]] = {
             "picture": lambda: frame.picture,
-            "mask": lambda: looking.draw_mask(sight.wanted),
+            "mask": lambda: pipeline.draw_mask(sight.wanted),
             "balanced": lambda: sight.balanced,
         }
         for topic, make in made.items():
             if self._watched(topic):
-                self._on_picture(topic, frame.taken, looking.as_jpeg(make()))
+                self._on_picture(topic, frame.taken, pipeline.as_jpeg(make()))
 
     def _fail(self, text: str, patience: float = 0.0) -> None:
         self._drop_camera()
@@ -261,7 +261,7 @@ class Vision:
                 log.exception("a camera could not be closed")
 
     def _configured_camera(self) -> Camera:
-        from robot_runtime.vision.looking import open_camera
+        from robot_runtime.vision.pipeline import open_camera
 
         def tell_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")

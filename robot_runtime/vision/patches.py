@@ -7,9 +7,9 @@ from math import pi
 import cv2
 import numpy as np
 
-from robot_runtime.samples import Box, Candidate
+from robot_runtime.contract.documents import Box, Candidate
+from robot_runtime.contract.vision_settings import HUE_MAX, ColourRange, VisionSettings
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import HUE_MAX, ColourRange, VisionSettings
 
 CONTOURS_MAX = 50
 """Patches that are measured, the largest ones: noise that nothing removes makes thousands."""

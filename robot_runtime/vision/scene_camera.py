@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
+from robot_runtime.contract.scene_picture import read_picture, write_request
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.messages import Messages
-from robot_runtime.scene_picture import read_picture, write_request
+from robot_runtime.transport.zenoh_transport import Messages
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.cards import Card
 

@@ -23,11 +23,11 @@ from pathlib import Path
 from struct import Struct
 from typing import NoReturn
 
-from robot_runtime.lifetime import is_served
+from robot_runtime.transport.lifetime import is_served
+from server.platform.settings import DataFolder
 from server.processes.backoff import Backoff, describe_pause
 from server.processes.pidfile import PidFile
 from server.processes.process import describe_status, started_at
-from server.settings import DataFolder
 
 Serve = Callable[[str], int]
 """Serves to the end; is told how the server before it ended, "" where it is the first. The exit status."""

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from robot_runtime.link.session import Session
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Heartbeat,
     Hello,
@@ -17,6 +16,7 @@ from robot_runtime.packets import (
     Stop,
     decode,
 )
+from robot_runtime.link.session import Session
 from tests.board.rig import ROOT, Rig
 from tests.line_end import LineEnd
 

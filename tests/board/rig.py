@@ -11,7 +11,7 @@ from typing import Self
 
 import serial
 
-from robot_runtime.simulation.board import Board, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import Board, BoardProcess
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"

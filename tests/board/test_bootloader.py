@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 import serial
 
+from robot_runtime.contract.packets import Hello
 from robot_runtime.link.framing import Decoder
-from robot_runtime.packets import Hello
-from robot_runtime.simulation.board import STILL_WATER, Board, BoardError, BoardProcess
-from robot_runtime.simulation.sensors import Reading
-from robot_runtime.simulation.simulator import FinMotion
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError, BoardProcess
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import BAUD
 from tests.board.monitor import REFUSED_ADDRESS, Monitor
 from tests.board.rig import PROGRAM, ROOT, SKETCHES, Port, Rig, build, wait_for

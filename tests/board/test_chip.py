@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.board import BoardError
+from robot_runtime.simulation.boards.emulator_process import BoardError
 from tests.board.conftest import Make
 from tests.board.monitor import Monitor
 from tests.board.rig import SKETCHES, Rig

@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from robot_runtime.simulation.board import STILL_WATER, BoardError
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, BoardError
 from tests.board.conftest import Make
 from tests.board.monitor import (
     ACKNOWLEDGED_ADDRESS,

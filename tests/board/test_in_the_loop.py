@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.packets import Beacon, Depth, Imu, Motor, Navigation, Sense, SensorFault, StatusFlag
+from robot_runtime.contract.packets import (
+    Beacon,
+    Depth,
+    Imu,
+    Motor,
+    Navigation,
+    Sense,
+    SensorFault,
+    StatusFlag,
+)
 from tests.board.host import TICK, Robot, all_of, last, start
 from tests.board.rig import ROOT, build
 

@@ -5,7 +5,7 @@ from collections import Counter
 
 import pytest
 
-from robot_runtime.simulation.board import BoardError, LineDirection, LineFault
+from robot_runtime.simulation.boards.emulator_process import BoardError, LineDirection, LineFault
 from tests.board.conftest import Make
 from tests.board.rig import Rig
 

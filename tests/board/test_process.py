@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.board import BoardError, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import BoardError, BoardProcess
 from tests.board.rig import PROGRAM, ROOT, SKETCHES, wait_for
 
 pytestmark = pytest.mark.usefixtures("built")

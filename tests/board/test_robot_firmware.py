@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Beacon,
     Debug,
@@ -24,9 +24,9 @@ from robot_runtime.packets import (
     Status,
     StatusFlag,
 )
-from robot_runtime.simulation.board import STILL_WATER
-from robot_runtime.simulation.sensors import Reading
-from robot_runtime.simulation.simulator import FinMotion
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import Robot, all_of, last, start
 from tests.board.rig import ROOT, build
 

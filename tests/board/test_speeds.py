@@ -6,10 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.firmware import build_firmware, firmware_path
-from robot_runtime.link.pace import airtime, periods
-from robot_runtime.link.session import Stage
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     FRAME_BYTES_MAX,
     Debug,
     Depth,
@@ -22,6 +19,9 @@ from robot_runtime.packets import (
     StatusFlag,
     Stop,
 )
+from robot_runtime.link.pace import airtime, periods
+from robot_runtime.link.session import Stage
+from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from tests.board.host import TICK, Host
 from tests.board.rig import ROOT, Rig
 

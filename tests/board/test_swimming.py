@@ -10,13 +10,13 @@ from statistics import fmean
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.messages import Messages
-from robot_runtime.packets import Beacon, Depth, Imu, Motor, Navigation, SensorFault
-from robot_runtime.simulation.board import STILL_WATER, Board, BoardError
-from robot_runtime.simulation.faults import Fault
-from robot_runtime.simulation.parameters import Parameters
-from robot_runtime.simulation.process import Process
-from robot_runtime.simulation.simulator import Simulator
+from robot_runtime.contract.packets import Beacon, Depth, Imu, Motor, Navigation, SensorFault
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError
+from robot_runtime.simulation.water.faults import Fault
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.process import Process
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.zenoh_transport import Messages
 from tests.board.host import TICK, Robot, all_of, last, start
 from tests.board.rig import ROOT, build, wait_for
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.board import STILL_WATER, Board, BoardError, BoardProcess
-from robot_runtime.simulation.sensors import Reading
-from robot_runtime.simulation.simulator import FinMotion
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError, BoardProcess
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.conftest import Make
 from tests.board.monitor import Monitor
 from tests.board.rig import PROGRAM, SKETCHES, wait_for

@@ -5,7 +5,7 @@ from pathlib import Path
 import httpx
 from playwright.sync_api import BrowserContext
 
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.shell import ShellToken
 
 EXECUTABLE = Path(__file__).with_name("chromium.sh")

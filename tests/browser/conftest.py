@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
 
-from robot_runtime.messages import Messages
+from robot_runtime.transport.zenoh_transport import Messages
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 

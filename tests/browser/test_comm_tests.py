@@ -10,7 +10,7 @@ from typing import NamedTuple
 import pytest
 from playwright.sync_api import Page, expect
 
-from server.comm_tests.reference import read_table
+from server.features.comm_tests.reference import read_table
 from tests.stack import Stack
 
 SWEEP_MS = 600_000

@@ -12,7 +12,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from server.settings import DataFolder
+from server.platform.settings import DataFolder
 from tests.browser.conftest import PHONE
 from tests.browser.test_swim import hold_to_arm
 from tests.proofs.watching import Fins

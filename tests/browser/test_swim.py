@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from robot_runtime.simulation.board import Board
+from robot_runtime.simulation.boards.emulator_process import Board
 from tests.stack import Stack
 
 DIVE_MS = 30_000

@@ -3,7 +3,7 @@
 import ctypes
 from typing import TYPE_CHECKING, Self, TypeVar
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Debug,
     Heartbeat,

@@ -9,9 +9,8 @@ from cobs import cobs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime import packets
-from robot_runtime.link import framing
-from robot_runtime.packets import (
+from robot_runtime.contract import packets
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     FRAME_BYTES_MAX,
     Debug,
@@ -23,6 +22,7 @@ from robot_runtime.packets import (
     Stop,
     encode,
 )
+from robot_runtime.link import framing
 
 CONTENT_MAX = FRAME_BYTES_MAX - 2
 MESSAGES_MAX = CONTENT_MAX - 6

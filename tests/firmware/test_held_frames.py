@@ -4,10 +4,10 @@ import ctypes
 
 import pytest
 
+from robot_runtime.contract.packets import Acknowledge, Packet, Start, encode
+from robot_runtime.contract.packets import TestMsg as NumberMsg
 from robot_runtime.link.framing import Decoder, assemble
 from robot_runtime.link.session import session_key
-from robot_runtime.packets import Acknowledge, Packet, Start, encode
-from robot_runtime.packets import TestMsg as NumberMsg
 from tests.firmware.robot import Robot, hello
 
 HOST_EPOCH = 7

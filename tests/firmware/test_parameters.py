@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     DEFINITIONS_HASH,
     Motor,
@@ -16,7 +16,7 @@ from robot_runtime.packets import (
     ResetCause,
     StatusFlag,
 )
-from robot_runtime.packets.layout import LayoutError
+from robot_runtime.contract.packets.layout import LayoutError
 from tests.firmware.library import load
 from tests.firmware.robot import BATTERY_FULL, Robot, hello, navigation
 

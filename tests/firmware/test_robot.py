@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     Beacon,
     Debug,
     DebugLevel,

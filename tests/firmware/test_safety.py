@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     DebugLevel,
     Heartbeat,

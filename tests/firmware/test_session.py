@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import pytest
 
+from robot_runtime.contract.packets import Debug, Imu, ResetCause, Start, Status, StatusFlag
 from robot_runtime.link.session import Session, Stage
-from robot_runtime.packets import Debug, Imu, ResetCause, Start, Status, StatusFlag
 from tests.firmware.robot import Robot
 from tests.runtime.link.line import Noise, Wire
 

@@ -30,8 +30,8 @@ from tempfile import TemporaryDirectory
 import httpx
 import psutil
 
-from robot_runtime.simulation.board import Board, BoardError
-from server.sessions.chunks import decode_documents
+from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from server.features.sessions.chunks import decode_documents
 from tests.proofs.counting import count
 from tests.proofs.kills import row_times
 from tests.proofs.outages import World

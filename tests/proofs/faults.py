@@ -13,17 +13,17 @@ from math import acos, inf
 from pathlib import Path
 
 from robot_runtime.config import LinkConfig
+from robot_runtime.contract.documents import Mode
+from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
-from robot_runtime.control.watch import TILT_MAX
 from robot_runtime.errors import Refused
-from robot_runtime.firmware import firmware_path
-from robot_runtime.samples import Mode
-from robot_runtime.scenario.boards import BUILD
-from robot_runtime.scenario.run import PRELUDE
-from robot_runtime.simulation.emulated_board import EmulatedBoard
-from robot_runtime.simulation.sensors import Reading
-from robot_runtime.simulation.simulator import FinMotion
-from robot_runtime.simulation.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.experiments.scenario.boards import BUILD
+from robot_runtime.experiments.scenario.run import PRELUDE
+from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
+from robot_runtime.simulation.boards.firmware import firmware_path
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
 from robot_runtime.vision.camera import CameraError, Frame
 from tests.proofs.watching import Motion
 from tests.runtime.control.flight import Flight

@@ -9,9 +9,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from robot_runtime.link.framing import build as build_frame
-from robot_runtime.link.session import session_key
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Acknowledge,
     Beacon,
@@ -23,6 +21,8 @@ from robot_runtime.packets import (
     Start,
     Stop,
 )
+from robot_runtime.link.framing import build as build_frame
+from robot_runtime.link.session import session_key
 from tests.board.rig import ROOT, build
 
 PROGRAM = ROOT / "build/firmware/fuzz_link"

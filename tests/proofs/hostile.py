@@ -18,16 +18,22 @@ from urllib.parse import quote, urlsplit
 
 import requests
 
-from robot_runtime.comm_test.builder import _macros
-from robot_runtime.comm_test.document import NEEDED, OPTIONAL, SKETCH, DocumentError, read_document
 from robot_runtime.errors import Refused
-from robot_runtime.scenario.document import ScenarioError
-from server.exports.reading import ArchiveRefused, open_archive
-from server.page import Page
-from server.processes.parts import plan
-from server.scenarios.library import keep_scenario
-from server.settings import Settings, SetupError, read_settings
-from server.web import MESSAGE_BYTES_MAX
+from robot_runtime.experiments.comm_test.builder import _macros
+from robot_runtime.experiments.comm_test.document import (
+    NEEDED,
+    OPTIONAL,
+    SKETCH,
+    DocumentError,
+    read_document,
+)
+from robot_runtime.experiments.scenario.document import ScenarioError
+from server.features.exports.archive_reader import ArchiveRefused, open_archive
+from server.features.scenarios.library import keep_scenario
+from server.http.page import Page
+from server.http.serving import MESSAGE_BYTES_MAX
+from server.platform.settings import Settings, SetupError, read_settings
+from server.processes.supervisor import plan
 from tests.proofs.interface import Surface, run_surface
 from tests.proofs.words import Words
 

@@ -31,7 +31,7 @@ from schemathesis.specs.openapi.checks import (
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from server.settings import DataFolder, Settings, make_folders
+from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.blocks import depth_block, state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until

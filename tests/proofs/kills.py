@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import httpx
 
-from robot_runtime.topics import BY_NAME, TIME, Kind
-from server.sessions.chunks import decode_documents, decode_rows
+from robot_runtime.contract.topics import BY_NAME, TIME, Kind
+from server.features.sessions.chunks import decode_documents, decode_rows
 from tests.stack import Stack
 
 RECORDED_MAX = 2.0

@@ -19,23 +19,23 @@ from sqlalchemy import Engine
 from sqlalchemy.pool import Pool
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.comm_test.document import read_document
-from robot_runtime.topics import BY_NAME, Block, row
-from server import store as store_module
+from robot_runtime.contract.topics import BY_NAME, Block, row
+from robot_runtime.experiments.comm_test.document import read_document
 from server.cli import main
-from server.comm_tests.runs import Runs
-from server.exports.jobs import Jobs
-from server.exports.shapes import NewExport
-from server.live.notices import Notices
-from server.scenarios.library import _shipped, keep_scenario
-from server.schema import prepare
-from server.sessions.catalogue import Catalogue
-from server.sessions.markers import Markers
-from server.sessions.recorder import PERIOD, Recorder
-from server.sessions.session import find_row, new_row
-from server.sessions.tidying import Tidying
-from server.settings import DataFolder, Settings, make_folders
-from server.store import Store
+from server.features.comm_tests.runs import Runs
+from server.features.exports.jobs import Jobs
+from server.features.exports.schemas import NewExport
+from server.features.scenarios.library import _shipped, keep_scenario
+from server.features.sessions.bookmarks import Markers
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.recorder import PERIOD, Recorder
+from server.features.sessions.retention import Tidying
+from server.features.sessions.session import find_row, new_row
+from server.platform import store as store_module
+from server.platform.notices import Notices
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
 from tests.proofs.disk import note
 from tests.proofs.facts import read_facts
 from tests.server.blocks import debug_block, depth_record

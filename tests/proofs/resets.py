@@ -19,9 +19,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal, NamedTuple, Self
 
+from robot_runtime.contract.packets import Debug, Hello, Navigation, Packet, Start, Status, StatusFlag
 from robot_runtime.link.session import Message, Session, Stage
-from robot_runtime.packets import Debug, Hello, Navigation, Packet, Start, Status, StatusFlag
-from robot_runtime.simulation.board import LineDirection, LineFault
+from robot_runtime.simulation.boards.emulator_process import LineDirection, LineFault
 from tests.board.host import BAUD, start
 from tests.board.rig import ROOT, build
 

@@ -8,9 +8,9 @@ from cobs import cobs
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robot_runtime.contract.packets import DEFINITIONS_HASH, FRAME_BYTES_MAX, PACKETS, Hello, encode
 from robot_runtime.link.framing import OPEN, Decoder, Frame, assemble
 from robot_runtime.link.session import Session, session_key
-from robot_runtime.packets import DEFINITIONS_HASH, FRAME_BYTES_MAX, PACKETS, Hello, encode
 from tests.proofs import fuzz
 
 EXECUTIONS = 10_000

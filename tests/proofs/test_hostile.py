@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.comm_test.document import SKETCH
+from robot_runtime.experiments.comm_test.document import SKETCH
 from tests.board.rig import ROOT
 from tests.proofs.hostile import ENTRANCES, Field, open_field
 from tests.proofs.words import SHELL, Words

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from server.app import create_app
-from server.settings import DataFolder, Settings
+from server.platform.settings import DataFolder, Settings
 from tests.board.rig import ROOT
 from tests.proofs.interface import Surface, run_surface
 

@@ -14,10 +14,10 @@ from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from robot_runtime.simulation.board import Board, BoardError
-from robot_runtime.simulation.simulator import FinMotion
-from robot_runtime.topics import Kind, read_blocks
-from server.settings import DataFolder
+from robot_runtime.contract.topics import Kind, read_blocks
+from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.water.simulator import FinMotion
+from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack
 

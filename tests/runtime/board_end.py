@@ -8,7 +8,7 @@ import tty
 from collections.abc import Callable
 from pathlib import Path
 
-from robot_runtime.packets import DEFINITIONS_HASH, Hello, Packet
+from robot_runtime.contract.packets import DEFINITIONS_HASH, Hello, Packet
 from tests.line_end import LineEnd
 
 DEADLINE = 10.0

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS, definitions
+from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.control.faults import FAULTS
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.generate import cpp, json_schema, safety, typescript
-from robot_runtime.packets import DEFINITIONS_HASH, PACKETS, definitions
-from robot_runtime.topics import TOPICS, Kind
 
 
 def test_a_changed_field_changes_the_hash() -> None:

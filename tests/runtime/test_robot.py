@@ -18,12 +18,7 @@ from typing import Any
 
 import pytest
 
-from robot_runtime.control.pilot import PILOT
-from robot_runtime.errors import Refused
-from robot_runtime.lifetime import HEARTBEAT
-from robot_runtime.messages import Messages
-from robot_runtime.outbox import STREAM
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     Debug,
     Depth,
@@ -37,8 +32,13 @@ from robot_runtime.packets import (
     StatusFlag,
     Stop,
 )
-from robot_runtime.topics import Kind, read_blocks, read_rows
-from robot_runtime.vision_settings import VisionSettings
+from robot_runtime.contract.topics import Kind, read_blocks, read_rows
+from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.control.pilot import PILOT
+from robot_runtime.errors import Refused
+from robot_runtime.transport.lifetime import HEARTBEAT
+from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.zenoh_transport import Messages
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 pytestmark = pytest.mark.stack

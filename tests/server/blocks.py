@@ -3,9 +3,9 @@
 import json
 from typing import Any
 
-from robot_runtime import packets, samples
-from robot_runtime.link.statistics import LinkStatistics
-from robot_runtime.topics import BY_NAME, Block, Kind, documents, row
+from robot_runtime.contract import documents, packets
+from robot_runtime.contract.link_statistics import LinkStatistics
+from robot_runtime.contract.topics import BY_NAME, Block, Kind, pack_documents, row
 
 
 def depth_record(number: int) -> packets.Depth:
@@ -23,9 +23,10 @@ def depth_block(first: int, count: int, start: float = 100.0, period: float = 0.
 
 def debug_block(first: int, *texts: str, start: float = 100.0) -> Block:
     lines = [
-        samples.DebugLine(time=start + first + place, level=1, text=text) for place, text in enumerate(texts)
+        documents.DebugLine(time=start + first + place, level=1, text=text)
+        for place, text in enumerate(texts)
     ]
-    return Block.of(BY_NAME["debug"], len(lines), first, documents(lines))
+    return Block.of(BY_NAME["debug"], len(lines), first, pack_documents(lines))
 
 
 def picture_block(number: int, size: int = 20, topic: str = "picture") -> Block:

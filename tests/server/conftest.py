@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from server.schema import prepare
-from server.settings import DataFolder, Settings, make_folders
-from server.store import Store
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
 
 
 @pytest.fixture

@@ -15,19 +15,19 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.topics import BY_NAME, Block, row
 from robot_runtime.errors import Refused
-from robot_runtime.topics import BY_NAME, Block, row
-from server.backup_command import back_up
-from server.comm_tests.runs import Runs
-from server.live.notices import Notices
-from server.scenarios.library import _shipped, keep_scenario
-from server.schema import prepare
-from server.sessions.recorder import Recorder
-from server.sessions.session import new_row
-from server.settings import DataFolder, Settings, SetupError, make_folders
-from server.store import Store, StoreError
+from server.features.backup.command import back_up
+from server.features.comm_tests.runs import Runs
+from server.features.scenarios.library import _shipped, keep_scenario
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import new_row
+from server.platform.notices import Notices
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, SetupError, make_folders
+from server.platform.store import Store, StoreError
 from tests.server.blocks import depth_record
-from tests.server.comm_tests.test_comm_tests import LOST, begin
+from tests.server.features.comm_tests.test_comm_tests import LOST, begin
 
 LEFT_BYTES = 400_000
 """Room for the database when recording begins."""

@@ -8,10 +8,10 @@ from alembic import command
 from alembic.config import Config
 from sqlalchemy import create_engine, pool
 
-from robot_runtime.topics import BY_NAME
-from server import schema
-from server.sessions.chunks import describe_topics, encode_rows
-from server.settings import Settings
+from robot_runtime.contract.topics import BY_NAME
+from server.features.sessions.chunks import describe_topics, encode_rows
+from server.platform import schema
+from server.platform.settings import Settings
 from tests.server.blocks import depth_block
 
 ROWS = depth_block(0, 10).payload

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
-from robot_runtime.cache import Cache
 from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.topics import Block, Kind
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import Refused
-from robot_runtime.messages import Messages
-from robot_runtime.outbox import STREAM
-from robot_runtime.topics import Block, Kind
-from robot_runtime.vision_settings import VisionSettings
+from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.replay_cache import Cache
+from robot_runtime.transport.zenoh_transport import Messages
 
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),

@@ -14,14 +14,14 @@ import httpx
 from websockets.asyncio.client import ClientConnection, connect
 
 from robot_runtime.errors import Refused
-from server.access.certificate import prepare_certificate, trust_only
 from server.app import create_app
-from server.assembly import Assembly
-from server.live.bridge import RuntimeSilent
-from server.processes.parts import Command
-from server.schema import prepare
-from server.settings import Settings
-from server.web import make_server, open_socket
+from server.container import Assembly
+from server.http.certificate import prepare_certificate, trust_only
+from server.http.serving import make_server, open_socket
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.processes.supervisor import Command
+from server.stream.bridge import RuntimeSilent
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
 from tests.shell import ShellToken, shell_headers

@@ -14,9 +14,9 @@ import psutil
 import pytest
 
 from server import VERSION
+from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from server.processes.keeper import keeper_of
 from server.processes.pidfile import pid_file, running_parts
-from server.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from tests.server.waiting import alive
 
 pytestmark = pytest.mark.stack
@@ -239,7 +239,7 @@ def test_a_command_line_is_read_before_anything_slow_is_loaded() -> None:
 
 def test_what_the_server_loads_starts_no_thread() -> None:
     """The keeper forks itself after it has loaded all that, which only a process without threads may."""
-    program = "import os, server.app, server.web; print(*os.listdir('/proc/self/task'), os.getpid())"
+    program = "import os, server.app, server.http.serving; print(*os.listdir('/proc/self/task'), os.getpid())"
     assert len(set(printed(program).split())) == 1
 
 

@@ -14,11 +14,11 @@ from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 from starlette.types import Message
 
-from server.access.policy import MESSAGES
 from server.app import create_app
-from server.assembly import Assembly
-from server.schema import prepare
-from server.settings import Settings
+from server.container import Assembly
+from server.http.sign_in.policy import MESSAGES
+from server.platform.schema import prepare
+from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-import server.live.bridge as bridge_module
-from robot_runtime.topics import read_blocks
+import server.stream.bridge as bridge_module
+from robot_runtime.contract.topics import read_blocks
 from server.openapi import main as print_openapi
-from server.processes.parts import Command
-from server.settings import Settings
+from server.platform.settings import Settings
+from server.processes.supervisor import Command
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
 from tests.server.waiting import until

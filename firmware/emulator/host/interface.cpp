@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board by plain C names, for robot_runtime/simulation/host_board.py.
+// The board by plain C names, for robot_runtime/simulation/boards/host_board.py.
 #include <string.h>
 
 #include "board.h"

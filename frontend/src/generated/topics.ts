@@ -1,4 +1,4 @@
-// Written by `make generate` from robot_runtime/topics.py and what it names. Do not edit.
+// Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
 
 /** What the page was built for; the server says its own, and the page asks for a reload where they differ. */
 export const DEFINITIONS_HASH = '02624005';

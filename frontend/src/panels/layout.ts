@@ -1,4 +1,4 @@
-/** Where the panels of Operate stand: a document that the server keeps (server/layouts/document.py) and files hold. */
+/** Where the panels of Operate stand: a document that the server keeps (server/features/layouts/document.py) and files hold. */
 
 export const FORMAT = 'mucat-layout';
 export const VERSION = 1;

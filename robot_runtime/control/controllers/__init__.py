@@ -1,11 +1,11 @@
 """The controllers of each loop, the first of which it begins with."""
 
+from robot_runtime.control.controllers.angle import HeadingPid, PitchPid, RollPid, TurnDeadZone
 from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
 from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.controllers.tilt import Tilt
-from robot_runtime.control.controllers.turning import HeadingPid, PitchPid, RollPid, TurnDeadZone
 
 __all__ = [
     "CONTROLLERS",

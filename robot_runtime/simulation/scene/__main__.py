@@ -6,9 +6,9 @@ import signal
 import sys
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.messages import Messages, join
 from robot_runtime.simulation.scene.process import Process
+from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.zenoh_transport import Messages, join
 
 
 def main() -> None:

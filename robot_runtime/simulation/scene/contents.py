@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from robot_runtime.config import Range
-from robot_runtime.paints import PAINTS, Paint
-from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.contract.card_colours import PAINTS, Paint
 from robot_runtime.simulation.scene.water import TURBIDITY, Kind
-from robot_runtime.simulation.surroundings import FAR, Basin, check_beacons
+from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.surroundings import FAR, Basin, check_beacons
 
 TARGETS_MAX = 16
 

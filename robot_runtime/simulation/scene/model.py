@@ -10,10 +10,10 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 import mujoco
 import numpy as np
 
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.scene import shapes, textures
 from robot_runtime.simulation.scene.contents import Contents
 from robot_runtime.simulation.scene.water import water
+from robot_runtime.simulation.water.parameters import Parameters
 
 WIDTH_MAX, HEIGHT_MAX = 1280, 960
 FIELD_OF_VIEW = 48.8

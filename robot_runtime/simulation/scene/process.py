@@ -16,18 +16,18 @@ import cv2
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import ConfigError, parse
+from robot_runtime.contract.card_colours import Paint
+from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.scene_picture import Picture, Request, read_request, write_picture
+from robot_runtime.contract.topics import BY_NAME, Block, read_blocks, read_rows, row
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.messages import Messages
-from robot_runtime.packets.layout import LayoutError
-from robot_runtime.paints import Paint
-from robot_runtime.samples import Truth
-from robot_runtime.scene_picture import Picture, Request, read_request, write_picture
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents, Place, Targets
 from robot_runtime.simulation.scene.view import View
-from robot_runtime.simulation.surroundings import Basin, check_beacons
-from robot_runtime.topics import BY_NAME, Block, read_blocks, read_rows, row
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.surroundings import Basin, check_beacons
+from robot_runtime.transport.zenoh_transport import Messages
 
 if TYPE_CHECKING:
     from robot_runtime.simulation.scene.scene import Scene

@@ -11,16 +11,16 @@ import numpy as np
 from mujoco.egl import GLContext
 from numpy.typing import NDArray
 
-from robot_runtime.paints import Paint
-from robot_runtime.samples import Truth
-from robot_runtime.simulation.geometry import Matrix, normalize, rotation, to_world
-from robot_runtime.simulation.parameters import Parameters, Vector
+from robot_runtime.contract.card_colours import Paint
+from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.scene import model as modelling
 from robot_runtime.simulation.scene.contents import Contents
-from robot_runtime.simulation.scene.look import Look, Picture
+from robot_runtime.simulation.scene.optics import Look, Picture
 from robot_runtime.simulation.scene.view import FIELD_OF_VIEW as OBSERVER_VIEW
 from robot_runtime.simulation.scene.view import View
 from robot_runtime.simulation.scene.water import NOISE, Water, water
+from robot_runtime.simulation.water.geometry import Matrix, normalize, rotation, to_world
+from robot_runtime.simulation.water.parameters import Parameters, Vector
 
 Floats = NDArray[np.float32]
 

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.paints import MARKER_CARD
+from robot_runtime.contract.card_colours import MARKER_CARD
 
 Texture = NDArray[np.uint8]
 Floats = NDArray[np.float32]

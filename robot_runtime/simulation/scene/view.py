@@ -5,9 +5,9 @@ from math import atan2, cos, radians, sin
 from typing import Annotated, Literal
 
 from robot_runtime.config import Range
-from robot_runtime.samples import Truth
-from robot_runtime.simulation.geometry import Matrix, rotation
-from robot_runtime.simulation.parameters import Vector
+from robot_runtime.contract.documents import Truth
+from robot_runtime.simulation.water.geometry import Matrix, rotation
+from robot_runtime.simulation.water.parameters import Vector
 
 FIELD_OF_VIEW = 45.0
 """°, upright: MuJoCo's own for free cameras."""

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from typing import Any, Self
 
 from robot_runtime.commands import Commands
-from robot_runtime.packets import Navigation
-from robot_runtime.samples import Event, Mode
-from robot_runtime.scenario.boards import boards
-from robot_runtime.scenario.document import read_scenario
-from robot_runtime.scenario.run import PRELUDE, _Performance
-from robot_runtime.scenario.stage import MakeBoard, Stage
-from robot_runtime.simulation.changes import changes
-from tests.runtime.scenario.staging import Told, document
+from robot_runtime.contract.documents import Event, Mode
+from robot_runtime.contract.packets import Navigation
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.rig import MakeBoard, Stage
+from robot_runtime.experiments.scenario.run import PRELUDE, _Performance
+from robot_runtime.simulation.water.requests import changes
+from tests.runtime.experiments.scenario.staging import Told, document
 
 STEP = 0.02
 """s, in which what the test does between two looks falls."""

@@ -6,10 +6,10 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
+from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.packets import Start, StatusFlag, Stop
 from robot_runtime.control.transitions import ARMED, TRANSITIONS
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Start, StatusFlag, Stop
-from robot_runtime.samples import Mode
 from tests.runtime.control.test_supervisor import Rig
 
 HEARTBEAT = 4.0

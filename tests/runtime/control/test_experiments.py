@@ -5,9 +5,9 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.documents import Experiment, State
 from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
 from robot_runtime.errors import Refused
-from robot_runtime.samples import Experiment, State
 from tests.runtime.control.flight import Flight
 
 STEP: dict[str, Any] = {

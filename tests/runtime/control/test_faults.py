@@ -5,11 +5,11 @@ from math import radians
 
 import pytest
 
+from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.packets import SensorFault, StatusFlag
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
+from robot_runtime.control.fault_detector import REPEATS
 from robot_runtime.control.faults import BY_NAME, FAULTS
-from robot_runtime.control.watch import REPEATS
-from robot_runtime.packets import SensorFault, StatusFlag
-from robot_runtime.samples import Mode
 from tests.runtime.control.test_supervisor import Rig
 
 MS = 0.001

@@ -5,11 +5,11 @@ from math import acos
 
 import pytest
 
+from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.pilot import PATIENCE
-from robot_runtime.control.watch import TILT_MAX
 from robot_runtime.errors import Refused
-from robot_runtime.simulation.stepped_board import PERIOD
+from robot_runtime.simulation.boards.stepped_board import PERIOD
 from tests.runtime.control.flight import Flight
 
 LATE = 0.03

@@ -5,16 +5,16 @@ from math import isnan, pi
 
 import pytest
 
-from robot_runtime.bus import Bus
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.documents import Mode, Turning
+from robot_runtime.contract.packets import Depth, Imu, Navigation
 from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers import BangBang
 from robot_runtime.control.loop import Loan
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Depth, Imu, Navigation
-from robot_runtime.samples import Mode, Turning
+from robot_runtime.transport.bus import Bus
 from tests.runtime.control.attitudes import quaternion
 
 

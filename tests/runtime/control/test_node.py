@@ -2,13 +2,13 @@
 
 import pytest
 
-from robot_runtime.bus import Bus
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.documents import Control, Detection, Document, Event, Mode
+from robot_runtime.contract.packets import Beacon, Depth, Navigation
 from robot_runtime.control.node import BEACON_STALE, ControlNode
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import Refused
-from robot_runtime.packets import Beacon, Depth, Navigation
-from robot_runtime.samples import Control, Detection, Document, Event, Mode
+from robot_runtime.transport.bus import Bus
 
 
 class Rig:

@@ -6,9 +6,8 @@ from math import cos, sin
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.control.supervisor import Supervisor
-from robot_runtime.errors import Refused
-from robot_runtime.packets import (
+from robot_runtime.contract.documents import Event
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Depth,
     Hello,
@@ -20,7 +19,8 @@ from robot_runtime.packets import (
     StatusFlag,
     Stop,
 )
-from robot_runtime.samples import Event
+from robot_runtime.control.supervisor import Supervisor
+from robot_runtime.errors import Refused
 
 
 class Board:

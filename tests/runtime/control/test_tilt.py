@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.control.attitude import turned, wrapped
 from robot_runtime.control.controllers import Tilt
-from robot_runtime.samples import Truth
-from robot_runtime.scenario.boards import boards
-from robot_runtime.scenario.document import read_scenario
-from robot_runtime.scenario.run import Run
-from robot_runtime.topics import read_blocks, read_rows
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.run import Run
 
 SECONDS = 0.1
 TURN, END = 15.0, 40.0

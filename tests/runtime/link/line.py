@@ -4,9 +4,9 @@ import random
 from dataclasses import dataclass
 from math import log
 
+from robot_runtime.contract.packets import Acknowledge, Heartbeat, Packet
 from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import Decoder
-from robot_runtime.packets import Acknowledge, Heartbeat, Packet
 
 KEY = 0x0102_0304
 _SHORTEST_STEP = 1e-6

@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import pytest
 
+from robot_runtime.contract.packets import Heartbeat, encode
 from robot_runtime.link.channel import WINDOW, Channel
 from robot_runtime.link.framing import Decoder
 from robot_runtime.link.round_trip import RoundTrip
-from robot_runtime.packets import Heartbeat, encode
 from tests.runtime.link.line import KEY, PACKETS, Line, Noise, goodput, numbered
 
 

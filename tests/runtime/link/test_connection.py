@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.packets import Debug, Heartbeat, Hello, Stop
 from robot_runtime.link.connection import Connection
 from robot_runtime.link.framing import build
 from robot_runtime.link.port import Port, PortError
 from robot_runtime.link.session import Message
-from robot_runtime.packets import Debug, Heartbeat, Hello, Stop
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 

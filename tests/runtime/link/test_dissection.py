@@ -2,10 +2,19 @@
 
 import pytest
 
+from robot_runtime.contract.packets import (
+    FRAME_BYTES_MAX,
+    Acknowledge,
+    Beacon,
+    Debug,
+    Hello,
+    Start,
+    Stop,
+    encode,
+)
 from robot_runtime.link.dissection import dissect
 from robot_runtime.link.frame_ring import KeptFrame
 from robot_runtime.link.framing import OPEN, assemble, build
-from robot_runtime.packets import FRAME_BYTES_MAX, Acknowledge, Beacon, Debug, Hello, Start, Stop, encode
 
 KEY = 0x0001_0004
 BEACON = Beacon(time=5, right=0, left=1)

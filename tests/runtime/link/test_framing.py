@@ -7,9 +7,18 @@ from cobs import cobs
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot_runtime.contract.packets import (
+    FRAME_BYTES_MAX,
+    Beacon,
+    Debug,
+    Hello,
+    Navigation,
+    Packet,
+    Start,
+    Stop,
+)
+from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.link.framing import MESSAGES_BYTES_MAX, Decoder, Frame, build
-from robot_runtime.packets import FRAME_BYTES_MAX, Beacon, Debug, Hello, Navigation, Packet, Start, Stop
-from robot_runtime.packets.layout import LayoutError
 
 SOME: list[Packet] = [
     Stop(),

@@ -2,8 +2,8 @@
 
 import pytest
 
+from robot_runtime.contract.packets import Depth, Imu, Status
 from robot_runtime.link.pace import periods, stale_after
-from robot_runtime.packets import Depth, Imu, Status
 
 
 def test_a_fast_line_carries_the_full_rate() -> None:

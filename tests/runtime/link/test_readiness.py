@@ -1,8 +1,8 @@
 """A receiver that has no room says so: the sender waits, asks now and then, and goes on when it may."""
 
+from robot_runtime.contract.packets import NOT_READY, Acknowledge
 from robot_runtime.link.channel import Channel
 from robot_runtime.link.framing import Decoder, Frame, Messages
-from robot_runtime.packets import NOT_READY, Acknowledge
 from tests.runtime.link.line import KEY, PACKETS, numbered
 
 GIVEN = 24

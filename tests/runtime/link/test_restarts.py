@@ -7,9 +7,9 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
+from robot_runtime.contract.packets import DEFINITIONS_HASH, Beacon, Debug, Hello, Packet, Start, decode
 from robot_runtime.link.framing import Decoder
 from robot_runtime.link.session import Session, Stage
-from robot_runtime.packets import DEFINITIONS_HASH, Beacon, Debug, Hello, Packet, Start, decode
 from tests.line_end import LineEnd
 from tests.runtime.link.line import Noise, Wire
 

@@ -4,9 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from robot_runtime.link.framing import Decoder, Frame, build
-from robot_runtime.link.session import NO_BOOT, SILENCE, Session, Stage, session_key
-from robot_runtime.packets import (
+from robot_runtime.contract.packets import (
     DEFINITIONS_HASH,
     Beacon,
     Debug,
@@ -18,6 +16,8 @@ from robot_runtime.packets import (
     Stop,
     encode,
 )
+from robot_runtime.link.framing import Decoder, Frame, build
+from robot_runtime.link.session import NO_BOOT, SILENCE, Session, Stage, session_key
 
 BAUD = 250_000
 KEY = session_key(1, 4)

@@ -8,11 +8,11 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
+from robot_runtime.contract.packets import Depth
 from robot_runtime.control.controllers import Pid
 from robot_runtime.core import Core
 from robot_runtime.link.conversation import Conversation
-from robot_runtime.outbox import Outbox
-from robot_runtime.packets import Depth
+from robot_runtime.transport.outbox import Outbox
 
 TICK_SECONDS = 0.1
 """Real s for which a change has the chance to come into the middle of a tick."""

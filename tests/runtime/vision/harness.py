@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.samples import Box
+from robot_runtime.contract.documents import Box
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
 from robot_runtime.vision.detector import Detector
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import COLOURS, ColourRange, VisionSettings
 
 
 class Found(NamedTuple):

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
 from robot_runtime.vision.cards import Card, make_card
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import COLOURS, ColourRange
 from tests.runtime.vision.harness import drawn, find
 
 FPS = 10.0

@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 import pytest
 
+from robot_runtime.contract.vision_settings import COLOURS, MarkerDictionary, VisionSettings
 from robot_runtime.vision.balance import BALANCES, grey_world, underwater
 from robot_runtime.vision.detector import Detector, Sight
 from robot_runtime.vision.markers import DICTIONARIES
 from robot_runtime.vision.mask import COUNTED, DROPPED, GROUND, OUTLINE, OUTLINE_REFUSED, draw_mask
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision_settings import COLOURS, MarkerDictionary, VisionSettings
 from tests.runtime.vision.harness import drawn, find
 
 TIMES = [0.0, 0.7, 3.0, 11.3, 60.0, 1000.2]

@@ -14,11 +14,11 @@ import pytest
 
 from robot_runtime.clock import Clock, SimulatedClock, SteadyClock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.documents import Detection, Event
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import Refused
-from robot_runtime.samples import Detection, Event
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.node import RETRY, Vision
-from robot_runtime.vision_settings import VisionSettings
 from tests.runtime.vision.harness import ShakyCamera, drawn
 
 DEADLINE = 10.0

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_runtime.config import Config, ConfigError, load, parse
-from robot_runtime.vision.keeping import Kept
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from robot_runtime.vision.patches import find_colour
-from robot_runtime.vision_settings import COLOURS, ColourRange, VisionSettings
+from robot_runtime.vision.settings_file import Kept
 
 WHOLE = (0, 255)
 GOOD = {"hue": [20, 35], "saturation": [100, 255], "value": [70, 255]}

@@ -9,8 +9,8 @@ import signal
 import sys
 from pathlib import Path
 
+from server.platform.settings import DataFolder
 from server.processes.keeper import Keeper
-from server.settings import DataFolder
 
 
 def main() -> int:

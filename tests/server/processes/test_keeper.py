@@ -11,8 +11,8 @@ from pathlib import Path
 import psutil
 import pytest
 
+from server.platform.settings import DataFolder
 from server.processes.keeper import keeper_of, relieve
-from server.settings import DataFolder
 from tests.server.waiting import SECONDS, alive
 
 pytestmark = pytest.mark.stack

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents
+from robot_runtime.simulation.water.parameters import Parameters
 
 if TYPE_CHECKING:
     from robot_runtime.simulation.scene.scene import Scene

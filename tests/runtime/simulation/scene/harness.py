@@ -5,11 +5,11 @@ from math import cos, radians, sin
 import cv2
 import numpy as np
 
-from robot_runtime.samples import Truth
-from robot_runtime.simulation.parameters import Vector
+from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.scene.contents import Contents, Place, Target
 from robot_runtime.simulation.scene.water import Kind
-from robot_runtime.simulation.surroundings import Basin
+from robot_runtime.simulation.water.parameters import Vector
+from robot_runtime.simulation.water.surroundings import Basin
 from robot_runtime.vision.picture import Picture
 
 

@@ -13,17 +13,23 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.contract.documents import Detection, Event, Truth
+from robot_runtime.contract.scene_picture import (
+    Picture,
+    read_picture,
+    read_request,
+    write_picture,
+    write_request,
+)
+from robot_runtime.contract.topics import BY_NAME, Block, Kind, read_blocks, row
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.messages import Messages
-from robot_runtime.samples import Detection, Event, Truth
-from robot_runtime.scene_picture import Picture, read_picture, read_request, write_picture, write_request
-from robot_runtime.simulation.changes import changes
-from robot_runtime.simulation.parameters import Parameters
 from robot_runtime.simulation.scene import process as process_module
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.process import Process
-from robot_runtime.simulation.simulator import Simulator
-from robot_runtime.topics import BY_NAME, Block, Kind, read_blocks, row
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.requests import changes
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.zenoh_transport import Messages
 from robot_runtime.vision.node import Vision
 from tests.runtime.simulation.scene.harness import truth
 

@@ -6,14 +6,14 @@ from itertools import product
 import numpy as np
 import pytest
 
-from robot_runtime.paints import MARKER_CARD, PAINTS, WHITE
-from robot_runtime.samples import Truth
+from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS, WHITE
+from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.simulation.scene.contents import Contents, Place, Target
 from robot_runtime.simulation.scene.view import View
 from robot_runtime.simulation.scene.water import Kind
-from robot_runtime.simulation.surroundings import Basin
+from robot_runtime.simulation.water.surroundings import Basin
 from robot_runtime.vision.detector import Detector
-from robot_runtime.vision_settings import VisionSettings
 from tests.runtime.simulation.scene.conftest import Make
 from tests.runtime.simulation.scene.harness import centre, changed, open_water, truth
 from tests.runtime.vision.harness import find

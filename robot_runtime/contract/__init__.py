@@ -1,0 +1,1 @@
+"""Packets, topics, documents, commands and limits: what processes and boards agree on, each defined once."""

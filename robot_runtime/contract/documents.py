@@ -1,0 +1,295 @@
+"""What flows beside the board's own packets: records of the runtime and documents, in SI units.
+
+Records have a byte layout, for numbers that come fast. Documents are JSON objects, for what is rare or has
+no fixed size. Both are frozen dataclasses; the page's types are generated from them.
+"""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Literal
+
+from robot_runtime.contract.packets.layout import Record, Wire, record
+from robot_runtime.contract.vision_settings import VisionSettings
+
+
+@record()
+class Control(Record):
+    """One tick of the control node."""
+
+    set_point: Annotated[float, Wire("f", unit="m", meaning="wanted depth")]
+    depth: Annotated[float, Wire("f", unit="m", meaning="depth that the controller saw")]
+    error: Annotated[float, Wire("f", unit="m", meaning="set point minus depth")]
+    output: Annotated[float, Wire("f", meaning="vertical command, -1 to 1, downwards")]
+    latency: Annotated[float, Wire("f", unit="s", meaning="age of the depth when it was used")]
+
+
+_TURNS = "heading, pitch, roll"
+
+
+@record()
+class Turning(Record):
+    """The same tick, for the angles: right, nose up and right side down count as more."""
+
+    set_point: Annotated[
+        tuple[float, float, float],
+        Wire("f", unit="rad", count=3, meaning=f"wanted {_TURNS}; NaN where it is not steered"),
+    ]
+    measured: Annotated[tuple[float, float, float], Wire("f", unit="rad", count=3, meaning=_TURNS)]
+    output: Annotated[
+        tuple[float, float, float],
+        Wire("f", count=3, meaning="commands yaw, pitch, roll, -1 to 1; NaN where it is not steered"),
+    ]
+
+
+@record()
+class Truth(Record):
+    """What the simulated body really does; north, east, down and forward, right, down."""
+
+    position: Annotated[tuple[float, float, float], Wire("f", unit="m", count=3, meaning="north, east, down")]
+    attitude: Annotated[
+        tuple[float, float, float, float],
+        Wire("f", count=4, meaning="unit quaternion w, x, y, z, body to world"),
+    ]
+    velocity: Annotated[tuple[float, float, float], Wire("f", unit="m/s", count=3, meaning="in body axes")]
+    rate: Annotated[tuple[float, float, float], Wire("f", unit="rad/s", count=3, meaning="in body axes")]
+    fins: Annotated[tuple[float, float, float, float], Wire("f", unit="rad", count=4, meaning="fin angles")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Document:
+    """Base of everything that travels as a JSON object; `time` is the steady clock's, in s."""
+
+    time: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DebugLine(Document):
+    """A line of text that the firmware wrote; level as in DebugLevel."""
+
+    level: int
+    text: str
+
+
+Severity = Literal["info", "caution", "alarm"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event(Document):
+    """Something that happened, in words for a person; `kind` is one word for programs."""
+
+    kind: str
+    severity: Severity
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """A rectangle in the picture; each number a share of the picture's width or height."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A patch of the wanted colour, and what it is measured by; `refused` says why it does not count."""
+
+    box: Box
+    area: float = field(metadata={"meaning": "share of the picture"})
+    fill: float = field(metadata={"meaning": "area over that of its box"})
+    aspect: float = field(metadata={"meaning": "the box's width over its height"})
+    circularity: float = field(metadata={"meaning": "4π area over perimeter²"})
+    refused: str = field(metadata={"meaning": "in words; empty where it counts"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Marker:
+    """An ArUco marker in the picture."""
+
+    number: int
+    corners: list[float] = field(
+        metadata={"meaning": "x and y of its four corners, clockwise, as shares of width and height"}
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Detection(Document):
+    """What the vision node found in one picture: the largest patch of each wanted colour that it saw."""
+
+    taken: float
+    colour: str | None
+    box: Box | None
+    area: float
+    processing: float
+    candidates: list[Candidate] = field(default_factory=list)
+    markers: list[Marker] = field(default_factory=list)
+    target: str | None = field(
+        default=None, metadata={"meaning": "what is acted on: the wanted colour, or what an action names"}
+    )
+    set_point: float | None = field(
+        default=None,
+        metadata={"meaning": "m; the action for the target; null: the wanted colour's detected set point"},
+    )
+    latency: float | None = field(
+        default=None,
+        metadata={"meaning": "s; age of the last picture that the control node used, when it did first"},
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionInForce(Document):
+    """How the vision node looks now; sent at every change, and every ten seconds."""
+
+    settings: VisionSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gain:
+    """One number of a controller that may be tuned."""
+
+    name: str
+    value: float
+    minimum: float
+    maximum: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControllerChoice:
+    """A controller that can be chosen, and its gains as they stand."""
+
+    name: str
+    title: str
+    gains: list[Gain]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """One thing that the robot steers by: depth (m), heading, pitch or roll (rad)."""
+
+    name: str
+    on: bool = field(
+        metadata={"meaning": "whether it is steered, in manual held; in automatic the depth always is"}
+    )
+    set_point: float
+    controller: str
+    controllers: list[ControllerChoice]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pace:
+    """How often the board sends a topic on this line: s between two samples."""
+
+    topic: str
+    period: float
+
+
+ParameterType = Literal["number", "whole", "choice", "switch"]
+ParameterValue = float | str | bool
+Where = Literal["runtime", "firmware"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """Something that may be tuned while the robot runs, and its value."""
+
+    name: str
+    type: ParameterType
+    value: ParameterValue
+    default: ParameterValue = field(metadata={"meaning": "its value when the runtime started"})
+    minimum: float | None = field(metadata={"meaning": "of numbers"})
+    maximum: float | None
+    unit: str
+    meaning: str
+    choices: list[str] = field(metadata={"meaning": "empty but for a choice"})
+    where: Where
+    while_armed: bool = field(metadata={"meaning": "whether it may change while the robot is armed"})
+    pending: bool = field(metadata={"meaning": "whether the board has not confirmed the value yet"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameters(Document):
+    """Every parameter; sent at each change and every ten seconds."""
+
+    parameters: list[Parameter]
+
+
+Steering = Literal["none", "beacons"]
+Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alarm:
+    """Something that is wrong, or was and has not been acknowledged yet."""
+
+    fault: str = field(metadata={"meaning": "one word for programs, as in docs/safety.md"})
+    severity: Severity
+    since: float = field(metadata={"meaning": "s, steady clock"})
+    active: bool = field(metadata={"meaning": "whether it is wrong still"})
+    acknowledged: bool
+    what: str
+    cause: str = field(metadata={"meaning": "the likely one"})
+    remedy: str = field(metadata={"meaning": "what to do"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State(Document):
+    """The robot as a whole; sent once a second and at every change."""
+
+    run: str = field(metadata={"meaning": "16 hexadecimal digits, new at every start of the runtime"})
+    mode: Mode
+    armed: bool
+    armed_since: float | None
+    alarms: list[Alarm]
+    refusals: list[str] = field(
+        metadata={"meaning": "why arming would be refused now; empty where it would not"}
+    )
+    connected: bool
+    connection: str = field(metadata={"meaning": "the serial connection in words"})
+    port: str
+    baud: int
+    paces: list[Pace]
+    epoch: int | None
+    controller: str
+    controllers: list[ControllerChoice]
+    set_point: float
+    set_point_default: float
+    set_point_detected: float
+    steering: Steering = field(
+        default="none", metadata={"meaning": "where it swims while it holds its depth"}
+    )
+    control_rate: float
+    vision_rate: float
+    vision_colour: str
+    colours: list[str]
+    card: str | None
+    cards: list[str] = field(
+        default_factory=list, metadata={"meaning": "what can be shown to the camera; empty where nothing can"}
+    )
+    camera: str
+    loops: list[Loop] = field(default_factory=list)
+    pilot_dropped: int = field(
+        default=0,
+        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
+    )
+
+
+ExperimentKind = Literal["step", "relay"]
+ExperimentPhase = Literal["settling", "balancing", "running", "complete", "stopped", "failed"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Experiment(Document):
+    """How an experiment on a loop goes; sent at every change and twice a second, and once at its end."""
+
+    number: int = field(metadata={"meaning": "as whoever began it named it"})
+    kind: ExperimentKind
+    loop: str
+    phase: ExperimentPhase
+    since: float = field(metadata={"meaning": "s, steady clock; when this phase began"})
+    progress: float = field(metadata={"meaning": "share that is done, 0 to 1"})
+    cycles: int = field(metadata={"meaning": "of the relay, that count so far"})
+    bias: float = field(metadata={"meaning": "of the relay: the mean command that balances the load"})
+    text: str = field(metadata={"meaning": "why it ended; empty where nothing special happened"})

@@ -1,0 +1,72 @@
+"""The question for a picture, and its answer, as they travel: see `scene/picture` in docs/architecture.md."""
+
+import json
+from dataclasses import asdict, dataclass
+from struct import Struct
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_runtime.config import ConfigError, Range, parse
+from robot_runtime.contract.card_colours import Paint
+
+HEADER = Struct("<dII")
+BYTE_MAX = 255
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """Which picture is wanted.
+
+    `card` is the blue, green and red of what is held before the camera, `marked` whether it shows the marker.
+    """
+
+    width: Annotated[int, Range(16, 1280)]
+    height: Annotated[int, Range(16, 960)]
+    card: tuple[int, int, int] | None = None
+    marked: bool = False
+
+    def __post_init__(self) -> None:
+        if self.card is not None and not all(0 <= part <= BYTE_MAX for part in self.card):
+            raise ValueError(f"the card's colours are {self.card}; each must be 0 to {BYTE_MAX}")
+
+
+class Picture(NamedTuple):
+    """A picture, uint8 of shape (height, width, 3), blue, green, red, and its time (s, steady clock)."""
+
+    time: float
+    pixels: NDArray[np.uint8]
+
+
+def write_request(width: int, height: int, card: Paint | None, marked: bool = False) -> bytes:
+    """The question as bytes."""
+    question = asdict(Request(width=width, height=height, card=card, marked=marked))
+    return json.dumps({name: value for name, value in question.items() if value is not None}).encode()
+
+
+def read_request(data: bytes) -> Request:
+    """The question that these bytes are. Raises ConfigError where they are none."""
+    try:
+        question = json.loads(data)
+    except ValueError as problem:
+        raise ConfigError(f"a question for a picture must be JSON: {problem}") from problem
+    if not isinstance(question, dict):
+        raise ConfigError("a question for a picture must be a JSON object")
+    return parse(Request, question)
+
+
+def write_picture(picture: Picture) -> bytes:
+    """The answer as bytes."""
+    height, width = picture.pixels.shape[:2]
+    return HEADER.pack(picture.time, width, height) + picture.pixels.tobytes()
+
+
+def read_picture(data: bytes) -> Picture:
+    """The answer that these bytes are. Raises ValueError where they are none."""
+    if len(data) < HEADER.size:
+        raise ValueError(f"a picture of {len(data)} bytes")
+    time, width, height = HEADER.unpack_from(data)
+    if len(data) != HEADER.size + 3 * width * height:
+        raise ValueError(f"{len(data)} bytes are not a picture of {width} × {height}")
+    return Picture(time, np.frombuffer(data, np.uint8, offset=HEADER.size).reshape(height, width, 3))

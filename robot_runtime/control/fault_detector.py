@@ -1,0 +1,266 @@
+"""What is wrong now: when everything that the robot lives by was last seen, and how long that may be ago.
+
+Arrivals count, not stamps: an emulated board that had to pause keeps its clock behind. All of it goes by the
+steady clock, so that nobody who sets the computer's time changes anything.
+"""
+
+from collections.abc import Callable, Collection
+from math import cos, pi
+from typing import Protocol
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.packets import Depth, Hello, Imu, Packet, SensorFault, Status, StatusFlag
+from robot_runtime.control.faults import BY_NAME, LOOK
+from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.pilot import Pilot
+from robot_runtime.link.pace import frames_airtime, stale_after
+
+ARRIVAL = 0.05
+"""s for which what the board said may lie on its way here."""
+DEPTH_MIN, DEPTH_MAX = -1.0, 20.0
+"""m: air pressure and the sensor's own drift stay above, and the robot's set point ends at 10 m."""
+REPEATS = 10
+"""Equal readings of the pressure in a row that no sound sensor gives; see docs/safety.md."""
+TILT_MAX = 75 * pi / 180
+"""rad between the robot's down and the world's; steering alone stays far below."""
+AT_SURFACE = 0.2
+"""m: so deep the pressure sensor of a floating robot may be, in waves."""
+RISE_OVER = 9.5
+"""s over which it is looked at whether the robot rises: once it has lost its way downwards."""
+RISE_MIN = 0.1
+"""m in that time. In still water it rises by 0.3; 0.1 m/s, usual for larger craft, it never reaches."""
+_STATUS_STALE = 0.5
+_NEVER = float("-inf")
+
+
+class Line(Protocol):
+    """What is asked of the connection to the board."""
+
+    text: str
+    baud: int
+
+    @property
+    def connected(self) -> bool:
+        """Whether the board answers and speaks the same definitions."""
+        ...
+
+    @property
+    def board(self) -> Hello | None:
+        """The greeting of the board."""
+        ...
+
+    def send(self, *packets: Packet) -> bool:
+        """Hand these packets to the line; False where nobody is there to take them."""
+        ...
+
+
+class Watch:
+    """`see_...` say what came; `wrong` and `refusals` judge it. Without `heartbeat` no server is expected."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        line: Line,
+        pilot: Pilot,
+        loop: InTheLoop | None,
+        heartbeat: float | None,
+        unsettled: Callable[[], list[str]],
+    ) -> None:
+        self.status: Status | None = None
+        self.server_patience = heartbeat
+        """s for which the server may be silent now; None where there is none."""
+        self._clock = clock
+        self._line = line
+        self._pilot = pilot
+        self._loop = loop
+        self._unsettled = unsettled
+        baud = line.baud
+        self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
+        self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
+        self._imu_stale = stale_after(BY_NAME["imu_stale"].limit - ARRIVAL, Imu, baud)
+        self._status_stale = stale_after(_STATUS_STALE, Status, baud)
+        self._heard = self._imu = self._upright = _NEVER
+        self._status_time = self._depth_time = self._depth_sane = _NEVER
+        self._depth = 0.0
+        self._pressure: int | None = None
+        self._moved, self._repeats = _NEVER, 0
+        self._server = self._looked = clock.now()
+        self._vision = float("inf")
+        self._ascent: tuple[float, float] | None = None
+        self._sinks = False
+
+    def see_messages(self) -> None:
+        """Something came from the board."""
+        self._heard = self._clock.now()
+
+    def see_depth(self, depth: Depth) -> None:
+        """A depth came."""
+        now = self._clock.now()
+        self._depth_time, self._depth = now, depth.depth
+        if DEPTH_MIN <= depth.depth <= DEPTH_MAX:
+            self._depth_sane = now
+        if depth.pressure == self._pressure:
+            self._repeats += 1
+        else:
+            self._pressure, self._moved, self._repeats = depth.pressure, now, 0
+
+    def see_imu(self, imu: Imu) -> None:
+        """An attitude came."""
+        self._imu = self._clock.now()
+        w, x, y, z = imu.attitude
+        if w * w - x * x - y * y + z * z >= cos(TILT_MAX):
+            self._upright = self._imu
+
+    def see_status(self, status: Status) -> None:
+        """The board said how it is."""
+        self.status, self._status_time = status, self._clock.now()
+
+    def see_server(self) -> None:
+        """The server lives."""
+        self._server = self._clock.now()
+
+    def see_picture(self, taken: float) -> None:
+        """The vision node looked at a picture of that time (s)."""
+        self._vision = taken
+
+    def note_look(self) -> bool:
+        """Somebody looks for faults; whether nobody had for so long that what is known may be of long ago.
+
+        What the board sent before is read first then, as if it came just now.
+        """
+        stalled = self._age(self._looked) > _limit("runtime_stalled")
+        self._looked = self._clock.now()
+        return stalled
+
+    def note_stopped(self) -> None:
+        """From now on the robot should rise."""
+        self._ascent, self._sinks = (self._clock.now(), float("inf")), False
+
+    def note_armed(self) -> None:
+        """It steers again."""
+        self._ascent, self._sinks = None, False
+
+    def wrong(self, mode: Mode, active: Collection[str]) -> dict[str, str]:
+        """The faults there are, each with what is special about it, if anything.
+
+        All are looked for but where the robot is disarmed: then only some, and those `active` already.
+        """
+        found = self._conditions(mode)
+        looked_for = {name for name in found if mode != "disarmed" or BY_NAME[name].always} | {*active}
+        wrong = {name: "" for name, there in found.items() if there and name in looked_for}
+        if "board_silent" in wrong and not self._line.connected:
+            wrong["board_silent"] = f"({self._line.text})"
+        if "fin_failing" in wrong:
+            wrong["fin_failing"] = f"({', '.join(self._fins())})"
+        return wrong
+
+    def refusals(self) -> list[str]:
+        """Why arming would be refused now; empty where it would not."""
+        if not self._line.connected:
+            return [f"There is no connection to the board: {self._line.text}."]
+        status = self.status
+        if status is None or self._age(self._status_time) > self._status_stale:
+            return ["The board says nothing of its state. Wait a moment, or reset it."]
+        if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
+            return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
+        reasons = self._loop.refusals() if self._loop else []
+        return reasons or [*self.depth_refusals(), *self._other_refusals(status), *self._unsettled()]
+
+    def depth_refusals(self) -> list[str]:
+        """Why the depth cannot be steered by now; empty where it can."""
+        if self._faults & SensorFault.PRESSURE:
+            return ["The pressure sensor does not answer."]
+        if self._age(self._depth_time) > self._depth_stale:
+            return ["There is no fresh depth. Check the pressure sensor."]
+        if self._frozen():
+            return ["The pressure does not change by a single count. Check the sensor, or the simulator."]
+        if self._age(self._depth_sane) > self._depth_stale:
+            return [
+                f"The depth is {self._depth:.1f} m, where this robot cannot be. Switch the board off and on "
+                "at the surface."
+            ]
+        return []
+
+    def _other_refusals(self, status: Status) -> list[str]:
+        reasons = [f"The {name} fin does not answer." for name in self._fins()]
+        if self._faults & SensorFault.IMU:
+            reasons.append("The IMU does not answer.")
+        elif self._imu_is_stale():
+            reasons.append("There is no fresh attitude. Check the IMU.")
+        elif self._capsized():
+            reasons.append("The robot lies on its side or on its back. Turn it upright.")
+        if status.flags & StatusFlag.BATTERY_LOW:
+            reasons.append(f"The battery is low ({status.battery:.2f} V). Charge it.")
+        return reasons
+
+    def _conditions(self, mode: Mode) -> dict[str, bool]:
+        pilot = self._age(self._pilot.taken) if mode == "manual" else 0.0
+        patience = self.server_patience
+        depth_age = self._age(self._depth_time)
+        low = self.status is not None and bool(self.status.flags & StatusFlag.BATTERY_LOW)
+        return {
+            "pilot_quiet": pilot > _limit("pilot_quiet"),
+            "pilot_lost": pilot > _limit("pilot_lost"),
+            "server_silent": patience is not None and self._age(self._server) > patience,
+            "board_silent": not self._line.connected or self._age(self._heard) > self._silent,
+            "depth_stale": depth_age > self._depth_stale,
+            "depth_frozen": depth_age <= self._depth_stale and self._frozen(),
+            "depth_range": depth_age <= self._depth_stale < self._age(self._depth_sane),
+            "imu_stale": self._imu_is_stale(),
+            "capsized": self._capsized(),
+            "vision_stale": mode == "automatic" and self._age(self._vision) > _limit("vision_stale"),
+            "not_rising": self._does_not_rise(),
+            "battery_low": low,
+            "fin_failing": bool(self._fins()),
+            "simulator_silent": self._loop is not None and self._loop.lost,
+        }
+
+    def _frozen(self) -> bool:
+        return self._repeats >= REPEATS and self._age(self._moved) > _limit("depth_frozen")
+
+    def _imu_is_stale(self) -> bool:
+        """Judged by what else came: a board that says nothing at all is another fault."""
+        return self._heard - self._imu > self._imu_stale
+
+    def _capsized(self) -> bool:
+        return not self._imu_is_stale() and self._age(self._upright) > _limit("capsized")
+
+    def _fins(self) -> list[str]:
+        return [name for fault, name in _FINS.items() if self._faults & fault]
+
+    def _does_not_rise(self) -> bool:
+        if self._ascent is None or self._depth <= AT_SURFACE:
+            return False
+        since, depth = self._ascent
+        if self._age(since) >= RISE_OVER and self._age(self._depth_time) <= self._depth_stale:
+            self._sinks = depth - self._depth < RISE_MIN
+            self._ascent = self._clock.now(), self._depth
+        return self._sinks
+
+    @property
+    def _faults(self) -> int:
+        return self.status.faults if self.status is not None else 0
+
+    def _age(self, time: float) -> float:
+        return self._clock.now() - time
+
+
+def _limit(name: str) -> float:
+    """s after which it is so at a look, for it to be noticed within the fault's limit."""
+    return BY_NAME[name].limit - LOOK
+
+
+_FINS = {
+    SensorFault.FIN_FRONT_RIGHT: "front right",
+    SensorFault.FIN_BACK_RIGHT: "back right",
+    SensorFault.FIN_BACK_LEFT: "back left",
+    SensorFault.FIN_FRONT_LEFT: "front left",
+}
+_WRONG_FIRMWARE = (
+    "The board runs the firmware for hardware in the loop, which moves nothing. Upload the robot's own, or "
+    "set robot.mode to hil."
+)
+_NO_HIL_FIRMWARE = (
+    "The board does not run the firmware for hardware in the loop. Upload build/firmware/hil/robot.hex."
+)

@@ -1,0 +1,1 @@
+"""Tools of experimenters: scenarios, the communication test, faults of the serial line."""

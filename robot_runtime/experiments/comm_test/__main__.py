@@ -1,0 +1,97 @@
+"""The lab as a process: runs the tests of a document from its standard input, and tells how it goes.
+
+On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again.
+
+On its standard output are JSON objects, one to a line; docs/communication.md lists them.
+"""
+
+import argparse
+import os
+import signal
+import sys
+from pathlib import Path
+
+from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
+from robot_runtime.experiments.comm_test.lab import (
+    TROUBLE,
+    EmulatedLab,
+    Lab,
+    RobotLab,
+    Teller,
+    run_tests,
+    upload_to,
+)
+from robot_runtime.experiments.comm_test.line import Stop
+from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
+from robot_runtime.transport.lifetime import end_with_parent
+
+REFUSED = 2
+"""The exit status for a document that cannot be run."""
+NICENESS = 10
+
+
+def main() -> int:
+    """Run the document. Exit status: 0 if every test is complete, 1 if one is not, 2 if it is refused."""
+    parser = _parser()
+    arguments = parser.parse_args()
+    if not arguments.restore and not (arguments.where and arguments.build):
+        parser.error("--where and --build, or --restore, are needed")
+    if (arguments.restore or arguments.where == "robot") and not (arguments.port and arguments.reset):
+        parser.error("the robot's board needs --port and --reset")
+    if arguments.with_parent:
+        end_with_parent()
+    if arguments.restore:
+        return _restore(arguments)
+    stop = Stop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.set())
+    teller = Teller(sys.stdout)
+    try:
+        tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
+    except DocumentError as problem:
+        teller.tell("refused", problems=problem.problems)
+        return REFUSED
+    lab: Lab = EmulatedLab(arguments.build, stop)
+    if arguments.where == "emulated":
+        os.nice(NICENESS)
+    else:
+        try:
+            pull = find_reset(arguments.reset)
+        except ResetError as problem:
+            sys.exit(f"comm_test: {problem}")
+        lab = RobotLab(arguments.build, arguments.port, pull, arguments.reset == "dtr", stop)
+    return 0 if run_tests(tests, lab, teller, stop) else 1
+
+
+def _restore(arguments: argparse.Namespace) -> int:
+    try:
+        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Stop())
+    except TROUBLE as problem:
+        sys.exit(f"comm_test: {problem}")
+    return 0
+
+
+def _decode(document: bytes) -> str:
+    try:
+        return document.decode()
+    except UnicodeDecodeError as problem:
+        raise DocumentError([f"the document is not UTF-8: {problem}"]) from problem
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m robot_runtime.experiments.comm_test",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--build", type=Path, help="the folder of everything that is built")
+    parser.add_argument("--where", choices=["emulated", "robot"], help="where the cells run")
+    parser.add_argument("--restore", type=Path, metavar="HEX", help="only upload the robot's firmware")
+    parser.add_argument("--port", help="the robot's serial port")
+    parser.add_argument("--reset", metavar="SPEC", help="gpio:CHIP:LINE, board:SOCKET or dtr")
+    parser.add_argument("--with-parent", action="store_true", help="end, in order, when the parent ends")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

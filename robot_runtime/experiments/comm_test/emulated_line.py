@@ -1,0 +1,88 @@
+"""A host at the serial port of a paused emulated board: time passes only while the host waits."""
+
+from pathlib import Path
+from typing import get_args
+
+from robot_runtime.experiments.comm_test.faults import RateKind
+from robot_runtime.experiments.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, Stop, check
+from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
+from robot_runtime.simulation.boards.emulator_process import Board, LineDirection
+from robot_runtime.simulation.boards.paused_port import PausedPort
+
+READ_STEP_BYTES = 1024
+DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)
+
+
+class EmulatedLine(Line):
+    """The port at `tty` of a paused board, whose power is switched off and on once the port is open.
+
+    So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
+    """
+
+    start_time = 0.02
+
+    def __init__(self, board: Board, tty: Path, baud: int, stop: Stop | None = None) -> None:
+        super().__init__(baud)
+        self._board = board
+        self._stop = stop or Stop()
+        self._port = PausedPort(board, tty, baud)
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+    def errors(self) -> LineErrors:
+        """What the two UARTs have counted since the start, and what has befallen the line."""
+        stats = {name: int(value) for name, value in self._board.stats().items()}
+        return LineErrors(
+            framing_board=stats["framing_errors_board"],
+            framing_host=stats["framing_errors_host"],
+            overruns=stats["overruns"],
+            faults=FaultCounts.add_up(stats),
+        )
+
+    def _wire(self) -> "_EmulatedWire":
+        return _EmulatedWire(self._board)
+
+    def _hand_over(self, data: bytes) -> None:
+        # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
+        while self._port.count("waiting") + len(data) > WRITE_BUFFER_BYTES:
+            self.wait(len(data) * self.byte_time)
+        self._port.write(data)
+        self.written += len(data)
+
+    def _pass(self, seconds: float) -> None:
+        end = self.now + seconds
+        step = READ_STEP_BYTES * self.byte_time
+        while (left := end - self.now) > TIME_MIN:
+            check(self._stop)
+            self.now = self._board.run(min(left, step))
+            self.heard += self._port.receive()
+
+
+class _EmulatedWire:
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def seed(self, seed: int) -> None:
+        self._board.seed_line(seed)
+
+    def rate(self, kind: RateKind, rate: float) -> None:
+        for direction in DIRECTIONS:
+            self._board.disturb_line(direction, kind, rate)
+
+    def burst(self, rate: float, bits: int) -> None:
+        for direction in DIRECTIONS:
+            self._board.burst_line(direction, rate, bits)
+
+    def stall(self, seconds: float) -> None:
+        for direction in DIRECTIONS:
+            self._board.stall_line(direction, seconds)
+
+    def cut(self, cut: bool) -> None:
+        for direction in DIRECTIONS:
+            self._board.cut_line(direction, cut)
+
+    def clean(self) -> None:
+        for direction in DIRECTIONS:
+            self._board.clean_line(direction)

@@ -1,0 +1,166 @@
+"""Runs the tests of a document in the place they are meant for, and tells of every step."""
+
+import json
+import os
+import platform
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from threading import Lock
+from typing import Any, Protocol, TextIO
+
+from robot_runtime.experiments.comm_test.builder import Builder, BuildError, hash_file
+from robot_runtime.experiments.comm_test.document import CommTest
+from robot_runtime.experiments.comm_test.faults import Faults
+from robot_runtime.experiments.comm_test.line import Stop, StoppedError, check
+from robot_runtime.experiments.comm_test.port_line import PortLine
+from robot_runtime.experiments.comm_test.reset_pin import Pull, ResetError
+from robot_runtime.experiments.comm_test.results import CellResult
+from robot_runtime.experiments.comm_test.runner import BOOTLOADER, Phase, Runner, run_cell
+from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, avrdude_version, upload
+from robot_runtime.link.port import PortError
+from robot_runtime.simulation.boards.emulator_process import BoardError
+
+TROUBLE = (BuildError, UploadError, ResetError, BoardError, PortError)
+"""What may end a test before it is complete; the texts say why."""
+
+SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
+"""s until a sketch listens after its upload, and after a reset, when the boot loader listens first."""
+ATTEMPTS = 3
+
+
+class Teller:
+    """Writes events, one JSON object to a line, at once. May be used by several threads."""
+
+    def __init__(self, output: TextIO) -> None:
+        self._output = output
+        self._lock = Lock()
+
+    def tell(self, event: str, **values: Any) -> None:
+        """One event."""
+        line = json.dumps({"event": event, **values}, ensure_ascii=False)
+        with self._lock:
+            self._output.write(line + "\n")
+            self._output.flush()
+
+
+class Lab(Protocol):
+    """A place for tests. All methods raise the errors in TROUBLE."""
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """The cells of a test, in order. Raises StoppedError too."""
+
+
+class EmulatedLab:
+    """Boards of the lab's own, in emulated time, as many at once as there are cores."""
+
+    def __init__(self, build: Path, stop: Stop) -> None:
+        self._build = build
+        self._stop = stop
+        self._runner: Runner | None = None
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """See Lab."""
+        program = self._build / "board"
+        if not program.exists():
+            raise BoardError(f"there is no emulated board at {program}; `make firmware` builds it")
+        bootloader = self._build / BOOTLOADER
+        if not bootloader.exists():
+            raise BoardError(f"there is no boot loader at {bootloader}; `make firmware` builds it")
+        builder = Builder(self._build / "comm_test")
+        self._runner = Runner(builder, program, os.cpu_count() or 1, self._stop)
+        tools = {
+            "compiler": builder.compiler,
+            "avrdude": avrdude_version(),
+            "boot loader": hash_file(bootloader),
+            "emulated board": hash_file(program),
+        }
+        return builder.firmware_hash, tools, f"{_host()}, emulated board"
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """See Lab."""
+        assert self._runner
+        return self._runner.run(test, tell)
+
+
+class RobotLab:
+    """The robot's own board at `port`, in real time, cell by cell.
+
+    In the end the board holds the last sketch; `upload_to` brings the robot's firmware back.
+    """
+
+    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Stop) -> None:
+        self._build = build
+        self._port = port
+        self._pull = pull
+        self._boot_time = BOOT_LOADER_TIME if opening_resets else SKETCH_TIME
+        self._stop = stop
+        self._builder: Builder | None = None
+
+    def prepare(self) -> tuple[str, dict[str, str], str]:
+        """See Lab."""
+        self._builder = Builder(self._build / "comm_test")
+        tools = {"compiler": self._builder.compiler, "avrdude": avrdude_version()}
+        return self._builder.firmware_hash, tools, f"{_host()}, the robot's own board at {self._port}"
+
+    def run(self, test: CommTest, tell: Callable[[int, Phase], None]) -> Iterator[CellResult]:
+        """See Lab."""
+        assert self._builder
+        for number, cell in enumerate(test.cells):
+            check(self._stop)
+            tell(number, "compile")
+            product = self._builder.build(test, cell.baud, cell.arduino_delay)
+            tell(number, "upload")
+            upload_to(self._port, self._pull, product.hex, self._stop)
+            tell(number, "run")
+            with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+                proxy = Path(folder) if test.faults != Faults(seed=test.faults.seed) else None
+                with PortLine(self._port, cell.baud, self._boot_time, self._stop, proxy) as line:
+                    result = run_cell(test, cell, line)
+            yield result
+
+
+def upload_to(port: str, pull: Pull, program: Path, stop: Stop) -> None:
+    """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TROUBLE."""
+    # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
+    for left in reversed(range(ATTEMPTS)):
+        pull()
+        try:
+            upload(program, port, BOOT_BAUD, stop)
+            return
+        except UploadError as problem:
+            if not left:
+                raise
+            print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
+
+
+def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Stop) -> bool:
+    """Run tests one after the other up to the first that does not come to its end; whether all did."""
+    return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
+
+
+def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Stop) -> bool:
+    state, problem = "complete", ""
+    try:
+        firmware, tools, host = lab.prepare()
+        teller.tell("started", test=number, firmware=firmware, tools=tools, host=host)
+        results = lab.run(
+            test, lambda cell, phase: teller.tell("phase", test=number, number=cell, phase=phase)
+        )
+        for cell, result in enumerate(results):
+            teller.tell("cell", test=number, number=cell, values=result.values)
+    except StoppedError:
+        state = "cancelled"
+    except TROUBLE as trouble:
+        # A terminal interrupts the boards and tools of the lab as well, so their end is no failure then.
+        state, problem = ("cancelled", "") if stop.is_set() else ("failed", str(trouble))
+    teller.tell("ended", test=number, state=state, problem=problem)
+    return state == "complete"
+
+
+def _host() -> str:
+    return f"{platform.node()} {platform.system()} {platform.machine()}"

@@ -1,0 +1,145 @@
+"""The host's end of the serial line as a cell needs it, whatever the board and whoever's time."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from typing import Self
+
+from robot_runtime.experiments.comm_test.faults import Faults, Moment, Wire
+from robot_runtime.experiments.comm_test.results import LineErrors
+
+BITS_PER_BYTE = 10
+WRITE_BUFFER_BYTES = 4000
+"""A little less than Linux keeps for a serial port; a longer write waits for the line."""
+TIME_MIN = 1e-6
+"""s; the emulated board tells its time with six digits."""
+
+
+class StoppedError(Exception):
+    """Somebody has asked that the test end before it is complete."""
+
+
+class Stop:
+    """Whether somebody has asked for the end. Signal handlers may set it.
+
+    An Event would not do: a second signal may interrupt the handler of the first while that has its lock.
+    """
+
+    def __init__(self) -> None:
+        self._set = False
+
+    def set(self) -> None:
+        """Ask for the end."""
+        self._set = True
+
+    def is_set(self) -> bool:
+        """Whether it was asked for."""
+        return self._set
+
+
+def check(stop: Stop) -> None:
+    """Raises StoppedError once `stop` is set."""
+    if stop.is_set():
+        raise StoppedError("it was cancelled")
+
+
+class Line(ABC):
+    """A board with a sketch on it that has just been started, and its port open at `baud` (bit/s).
+
+    `now` is the test's time in s, `written` and `heard` are what went over the port, `byte_time` is what a
+    byte takes (s); `start_time` is how long the sketch takes until it listens (s). Every method raises
+    BoardError or PortError where the board or the port goes away.
+    """
+
+    start_time: float
+
+    def __init__(self, baud: int) -> None:
+        self.byte_time = BITS_PER_BYTE / baud
+        self.written = 0
+        self.heard = b""
+        self.now = 0.0
+        self._line_free = 0.0
+        self._stretch = 1.0
+        self._disturbed = False
+        self._moments: Iterator[Moment] = iter(())
+        self._moment: Moment | None = None
+
+    @abstractmethod
+    def errors(self) -> LineErrors:
+        """What happened on the wire since the start, as far as it can be known."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of port and board."""
+
+    @abstractmethod
+    def _wire(self) -> Wire:
+        """What can be harmed."""
+
+    @abstractmethod
+    def _hand_over(self, data: bytes) -> None:
+        """Give bytes to the port."""
+
+    @abstractmethod
+    def _pass(self, seconds: float) -> None:
+        """Let time pass: set `now`, and add what comes to `heard`. Raises StoppedError."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def busy(self) -> float:
+        """s until everything that was written is through the line."""
+        return max(self._line_free - self.now, 0.0)
+
+    def disturb(self, faults: Faults) -> None:
+        """Let these befall the line from now on."""
+        if faults == Faults(seed=faults.seed):
+            return
+        self._disturbed = True
+        faults.begin(self._wire())
+        self._stretch = 1 + faults.double + faults.insert
+        self._moments = faults.moments(self.now)
+        self._moment = next(self._moments, None)
+
+    def calm(self) -> None:
+        """From now on nothing befalls the line any more."""
+        if self._disturbed:
+            self._wire().clean()
+        self._moment = None
+        self._stretch = 1.0
+
+    def drain(self) -> None:
+        """Wait until everything that was written is through the line, which a stall may put off."""
+        while self.busy > TIME_MIN:
+            self.wait(self.busy)
+
+    def write(self, data: bytes) -> None:
+        """Hand bytes to the port, waiting for the line where they find no room."""
+        room = WRITE_BUFFER_BYTES * self.byte_time
+        airtime = len(data) * self.byte_time * self._stretch
+        while self.busy + airtime > room + TIME_MIN:
+            self.wait(self.busy + airtime - room)
+        self._hand_over(data)
+        self._line_free = self.now + self.busy + airtime
+
+    def wait(self, seconds: float) -> None:
+        """Let the test's time pass, and read what comes meanwhile into `heard`. Raises StoppedError."""
+        end = self.now + seconds
+        while end - self.now > TIME_MIN:
+            pause = end if self._moment is None else min(end, self._moment[0])
+            if pause - self.now > TIME_MIN:
+                self._pass(pause - self.now)
+            while self._moment is not None and self._moment[0] - self.now <= TIME_MIN:
+                self._befall(self._moment)
+                self._moment = next(self._moments, None)
+
+    def _befall(self, moment: Moment) -> None:
+        _, kind, seconds = moment
+        if kind == "stall":
+            self._wire().stall(seconds)
+            self._line_free = self.now + self.busy + seconds
+        else:
+            self._wire().cut(kind == "cut")

@@ -1,0 +1,173 @@
+"""The host's end of a cell over the robot's own link, driven by the line's clock.
+
+`Session` and `Channel` are those of the robot. Numbers, the question and the answer are reliable packets:
+they arrive exactly once and in order, and what the other end has no room for is sent again until it has. So
+nothing has to be timed: a cell ends when the answer is there. It is asked for behind the last number; where
+the board sends numbers too, once all of those are there.
+"""
+
+from robot_runtime.contract.packets import Packet, RequestResult, TestMsg, TestResult
+from robot_runtime.experiments.comm_test.document import CommTest
+from robot_runtime.experiments.comm_test.framings import Sequence
+from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, Line
+from robot_runtime.experiments.comm_test.results import Cell, CellResult, Counts, Finding, LinkCellResult
+from robot_runtime.link.session import Session, Stage
+
+HOST_EPOCH = 1
+"""The board's epoch differs in every cell, so this one need not."""
+REACTION_BYTES = 16
+REACTION_MIN, REACTION_MAX = 0.005, 0.02
+"""s between two looks at the line while something is awaited: about as long as so many bytes take."""
+NUMBER_BYTES, NUMBER_BYTES_ALONE = 4, 20
+"""What a number costs on the line with others in a frame, and in a frame of its own; about."""
+GREETING_TIME = 0.5
+"""s, about."""
+GREETING_PATIENCE = 30.0
+"""s of test time for the first answer."""
+PATIENCE = 60.0
+PATIENCE_FACTOR = 5
+"""A cell is given up after so many times what it should take, and PATIENCE s."""
+
+
+def run_link_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
+    """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
+    return _LinkCell(test, cell, line).run()
+
+
+def estimate_link_seconds(test: CommTest, cell: Cell) -> float:
+    """About how long a cell takes over the robot's own link, s of test time."""
+    alone = cell.arduino_delay > 0 or cell.pi_delay > 0
+    airtime = test.expected * (NUMBER_BYTES_ALONE if alone else NUMBER_BYTES) * BITS_PER_BYTE / cell.baud
+    # The sketch takes or sends every number, so every delay counts.
+    delays = [cell.arduino_delay] if test.direction == "to_host" else [cell.arduino_delay, cell.pi_delay]
+    return GREETING_TIME + max(airtime, *(test.expected * delay for delay in delays))
+
+
+class _LinkCell:
+    def __init__(self, test: CommTest, cell: Cell, line: Line) -> None:
+        self._test, self._cell, self._line = test, cell, line
+        self._patience = PATIENCE_FACTOR * estimate_link_seconds(test, cell) + PATIENCE
+        self._session = Session(HOST_EPOCH, cell.baud)
+        self._reaction = min(max(REACTION_BYTES * line.byte_time, REACTION_MIN), REACTION_MAX)
+        sends = test.direction != "to_host"
+        self._numbers = iter(range(test.from_val, test.to_val if sends else test.from_val + 1))
+        self._next: int | None = next(self._numbers)
+        self._next_at = 0.0
+        self._awaits = test.expected if test.direction != "to_board" else 0
+        self._sequence = Sequence(test.from_val, test.to_val)
+        self._boot: int | None = None
+        self._asked = False
+        self._answer: TestResult | None = None
+        self._read = 0
+
+    def run(self) -> CellResult:
+        self._line.wait(self._line.start_time)
+        self._line.disturb(self._test.faults)
+        while self._answer is None and not self._hopeless():
+            self._give()
+            self._line.wait(self._pause())
+            self._take()
+        return self._result()
+
+    @property
+    def _established(self) -> bool:
+        return self._session.stage is Stage.ESTABLISHED
+
+    @property
+    def _all_here(self) -> bool:
+        return self._sequence.right + self._sequence.out_of_sequence >= self._awaits
+
+    def _hopeless(self) -> bool:
+        if self._session.board is None:
+            return self._line.now > GREETING_PATIENCE
+        refused = self._session.stage is Stage.REFUSED
+        return refused or self._restarted or self._line.now > self._patience
+
+    @property
+    def _restarted(self) -> bool:
+        board = self._session.board
+        return board is not None and self._boot not in (None, board.epoch)
+
+    def _give(self) -> None:
+        now = self._line.now
+        packets = self._due_packets(now) if self._established else []
+        data = self._session.send(packets, now) if packets else self._session.poll(now)
+        if data:
+            self._line.write(data)
+
+    def _due_packets(self, now: float) -> list[Packet]:
+        packets: list[Packet] = []
+        while self._next is not None and now >= self._next_at:
+            packets.append(TestMsg(number=self._next))
+            self._next = next(self._numbers, None)
+            self._next_at = now + self._cell.pi_delay
+        if self._next is None and now >= self._next_at and self._all_here and not self._asked:
+            self._asked = True
+            packets.append(RequestResult())
+        return packets
+
+    def _pause(self) -> float:
+        """s until something is to be done; while something is awaited, no longer than a reaction takes."""
+        now = self._line.now
+        due = self._session.due()
+        if self._established and not self._asked:
+            due = min(due, self._next_at) if self._next_at > now else due
+        awaits = self._session.urgent or self._asked or not self._all_here or not self._established
+        pause = due - now
+        return max(min(pause, self._reaction) if awaits else pause, self._line.byte_time)
+
+    def _take(self) -> None:
+        heard = self._line.heard
+        data, self._read = heard[self._read :], len(heard)
+        for message in self._session.receive(data, self._line.now):
+            if message.type == TestMsg.type:
+                self._sequence.take(TestMsg.from_bytes(message.payload).number)
+            elif message.type == TestResult.type:
+                self._answer = TestResult.from_bytes(message.payload)
+        if self._boot is None and self._established and self._session.board:
+            self._boot = self._session.board.epoch
+
+    def _result(self) -> CellResult:
+        statistics, answer = self._session.statistics(), self._answer
+        board = None
+        if answer is not None:
+            board = Counts(
+                right=answer.right,
+                out_of_sequence=answer.out_of_sequence,
+                checksum_errors=answer.frames_invalid,
+                bytes_read=self._line.written - answer.bytes_lost,
+            )
+        host = Counts()
+        if self._awaits:
+            host = Counts(
+                right=self._sequence.right,
+                out_of_sequence=self._sequence.out_of_sequence,
+                checksum_errors=statistics.frames_invalid,
+                bytes_read=statistics.bytes_received,
+            )
+        return LinkCellResult(
+            cell=self._cell,
+            direction=self._test.direction,
+            expected=self._test.expected,
+            board=board,
+            host=host,
+            lost_to_board=answer.bytes_lost if answer else 0,
+            lost_to_host=0,
+            line=self._line.errors(),
+            seconds=self._line.now,
+            repeated=statistics.frames_repeated + (answer.frames_repeated if answer else 0),
+            trouble=self._trouble(),
+        )
+
+    def _trouble(self) -> tuple[Finding, ...]:
+        if self._session.board is None:
+            words = f"the chip did not answer a greeting within {GREETING_PATIENCE:g} s"
+            return (("no link", f"{words}: it does not run the sketch, or at another baud"),)
+        if self._session.stage is Stage.REFUSED:
+            return (("other definitions", "the sketch was compiled with other packet definitions"),)
+        if self._restarted:
+            lost = self._session.counters.messages_discarded
+            return (("restart", f"the chip restarted after {self._line.now:.1f} s; on their way: {lost}"),)
+        if self._answer is None:
+            return (("out of time", f"after {self._line.now:.0f} s of test time the result was not there"),)
+        return ()

@@ -1,0 +1,103 @@
+"""A host at a real serial port, in real time."""
+
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+from robot_runtime.experiments.comm_test.faults import RateKind
+from robot_runtime.experiments.comm_test.line import Line, Stop, check
+from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
+from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, FaultLine
+from robot_runtime.link.port import Port
+
+LOOK = 0.1
+"""s between two looks whether somebody wants it to stop."""
+
+
+class PortLine(Line):
+    """The port at `path`, opened `boot_time` s before the test's time begins; what came before is forgotten.
+
+    With `folder`, a place for its link, a line with faults is put before the port. Raises PortError and
+    StoppedError.
+    """
+
+    start_time = 0.0
+
+    def __init__(self, path: str, baud: int, boot_time: float, stop: Stop, folder: Path | None) -> None:
+        super().__init__(baud)
+        self._stop = stop
+        self._faulty: FaultLine | None = None
+        self._began = time.monotonic()
+        with ExitStack() as stack:
+            if folder:
+                self._faulty = stack.enter_context(FaultLine(path, baud, folder / "faulty"))
+                path = str(folder / "faulty")
+            self._port = stack.enter_context(Port(path, baud))
+            self._pass(boot_time)
+            self._files = stack.pop_all()
+        self.heard = b""
+        self.now = 0.0
+        self._began = time.monotonic()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._files.close()
+
+    def errors(self) -> LineErrors:
+        """What has befallen the line; what its UARTs have seen cannot be asked."""
+        if self._faulty is None:
+            return LineErrors()
+        channels = self._faulty.channels.items()
+        return LineErrors(
+            faults=FaultCounts.add_up(
+                {
+                    f"{name}_{what}": many
+                    for name, channel in channels
+                    for what, many in channel.counts.items()
+                }
+            )
+        )
+
+    def _wire(self) -> "_FaultyWire":
+        assert self._faulty
+        return _FaultyWire(self._faulty)
+
+    def _hand_over(self, data: bytes) -> None:
+        self._port.write(data)
+        self.written += len(data)
+
+    def _pass(self, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            check(self._stop)
+            if self._port.wait(min(left, LOOK)):
+                self.heard += self._port.read()
+        self.now = time.monotonic() - self._began
+
+
+class _FaultyWire:
+    def __init__(self, line: FaultLine) -> None:
+        self._line = line
+
+    def seed(self, seed: int) -> None:
+        self._line.seed(seed)
+
+    def rate(self, kind: RateKind, rate: float) -> None:
+        for channel in self._line.channels.values():
+            channel.disturb(kind, rate)
+
+    def burst(self, rate: float, bits: int) -> None:
+        for channel in self._line.channels.values():
+            channel.burst(rate, bits)
+
+    def stall(self, seconds: float) -> None:
+        for direction in DIRECTIONS:
+            self._line.stall(direction, seconds)
+
+    def cut(self, cut: bool) -> None:
+        for channel in self._line.channels.values():
+            channel.cut(cut)
+
+    def clean(self) -> None:
+        for direction in DIRECTIONS:
+            self._line.clean(direction)

@@ -1,0 +1,116 @@
+"""Uploads through the boot loader, with avrdude."""
+
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from robot_runtime.experiments.comm_test.line import Stop, check
+from robot_runtime.simulation.boards.emulator_process import Board
+
+BOOT_BAUD = 115200
+"""bit/s; optiboot's."""
+WORDS_MAX = 300
+LIMIT = 120.0
+"""s for an upload, on a busy computer; 30 kB take 8 s."""
+LOOK = 0.002
+"""s between two looks whether it has ended, or has written something to a board that is paused."""
+LISTEN_TIME = 0.02
+"""s of emulated time after a reset until the boot loader listens, for 1 s."""
+STEP = 0.002
+"""s of emulated time that the boot loader takes for any answer, at most."""
+
+
+class UploadError(Exception):
+    """avrdude could not upload; the text says why, with its own words."""
+
+
+def avrdude_version() -> str:
+    """Of avrdude, as it says it. Raises UploadError where it is not there."""
+    said = _run_briefly(["avrdude", "-?"])
+    version = [line.partition(",")[0] for line in said.splitlines() if line.startswith("avrdude version")]
+    return version[0] if version else "avrdude"
+
+
+def upload(
+    program: Path, port: str, baud: int, stop: Stop, attend: Callable[[], None] = lambda: None
+) -> None:
+    """Write an Intel HEX file into the flash memory of a chip whose boot loader listens, and verify it.
+
+    `attend` is called again and again meanwhile. Raises UploadError, and StoppedError.
+    """
+    # Whatever ends this process ends avrdude too: it must not go on to write behind somebody's back.
+    command = ["setpriv", "--pdeathsig", "KILL", "avrdude", "-q", "-q", "-c", "arduino", "-p", "m328p"]
+    command += ["-b", str(baud), "-P", port, "-D", "-U", f"flash:w:{program}:i"]
+    with tempfile.TemporaryFile() as said:
+        try:
+            avrdude = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True
+            )
+        except OSError as problem:
+            raise UploadError(
+                f"avrdude cannot be started: {problem}; install the package avrdude"
+            ) from problem
+        try:
+            status = _wait(avrdude, stop, attend)
+        finally:
+            if avrdude.poll() is None:
+                avrdude.kill()
+                avrdude.wait()
+        said.seek(0)
+        words = _shorten(said.read().decode(errors="replace"))
+    if status is None:
+        raise UploadError(f"avrdude did not end within {LIMIT:g} s: {words}")
+    if status:
+        raise UploadError(f"avrdude could not upload {program.name} through {port}: {words}")
+
+
+def upload_paused(program: Path, tty: Path, board: Board, stop: Stop) -> None:
+    """The same for a paused board with a boot loader, whose time passes only while there is something to do.
+
+    avrdude waits by its own clock, for about a second in all; here the boot loader's patience, 1 s, does not
+    run out meanwhile, however busy the computer is. Raises BoardError too.
+    """
+    board.reset()
+    board.run(LISTEN_TIME)
+    known = _traffic(board)
+
+    def attend() -> None:
+        nonlocal known
+        while (now := _traffic(board)) != known:
+            known = now
+            board.run(STEP)
+
+    upload(program, str(tty), BOOT_BAUD, stop, attend)
+
+
+def _traffic(board: Board) -> tuple[float, ...]:
+    stats = board.stats()
+    return tuple(stats[name] for name in ("bytes_from_host", "bytes_to_board", "bytes_to_host"))
+
+
+def _wait(avrdude: subprocess.Popen[bytes], stop: Stop, attend: Callable[[], None]) -> int | None:
+    """Its exit status; None where it takes too long."""
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end:
+        check(stop)
+        attend()
+        with suppress(subprocess.TimeoutExpired):
+            return avrdude.wait(LOOK)
+    return None
+
+
+def _shorten(said: str) -> str:
+    lines = dict.fromkeys(line.removeprefix("avrdude: ").strip() for line in said.splitlines())
+    words = " / ".join(line for line in lines if line)
+    return words if len(words) <= WORDS_MAX else "... " + words[-WORDS_MAX:]
+
+
+def _run_briefly(command: list[str]) -> str:
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
+        return done.stderr
+    except (OSError, subprocess.TimeoutExpired) as problem:
+        raise UploadError(f"avrdude cannot be started: {problem}; install the package avrdude") from problem

@@ -1,0 +1,1 @@
+"""A serial line with faults: what passes is harmed at chosen rates."""

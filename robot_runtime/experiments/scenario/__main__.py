@@ -1,0 +1,92 @@
+"""`python -m robot_runtime.experiments.scenario --board host|emulated`: run a scenario in simulated time.
+
+It goes as fast as it can. The scenario's TOML comes on standard input. Messages go out on standard output, or
+into a file: `u32 size | u8 kind | bytes`, little-endian. Kind 0 is a JSON object with the word `event`:
+`started`, with the hashes of `firmware` and `software`, `progress`, `marker`, `ended`, or `refused`, with all
+`problems`. Kind 1 are blocks, one after the other. SIGTERM and SIGINT cancel it in order.
+"""
+
+import argparse
+import json
+import logging
+import signal
+import sys
+from contextlib import ExitStack
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from struct import Struct
+from typing import IO, Any
+
+import cv2
+
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.link.port import PortError
+from robot_runtime.provenance import HASH_CHARACTERS, hash_software
+from robot_runtime.simulation.boards.emulator_process import BoardError
+
+HEADER = Struct("<IB")
+EVENTS, BLOCKS = 0, 1
+REFUSED, FAILED = 2, 1
+
+
+class Messages:
+    """Writes to a stream what a run tells."""
+
+    def __init__(self, stream: IO[bytes]) -> None:
+        self._stream = stream
+
+    def blocks(self, data: bytes) -> None:
+        """A message of blocks."""
+        self._stream.write(HEADER.pack(len(data), BLOCKS) + data)
+
+    def event(self, event: str, **more: Any) -> None:
+        """A message of words, which take what waits along."""
+        data = json.dumps({"event": event, **more}, allow_nan=False, separators=(",", ":")).encode()
+        self._stream.write(HEADER.pack(len(data), EVENTS) + data)
+        self._stream.flush()
+
+
+def main() -> int:
+    """Exit status: 2 where the scenario is refused, 1 where its board fails."""
+    made = boards()
+    parser = argparse.ArgumentParser(prog="python -m robot_runtime.experiments.scenario", description=__doc__)
+    parser.add_argument("--board", choices=sorted(made), default="host", help="what runs the firmware")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write there instead of standard output")
+    options = parser.parse_args()
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
+    cv2.setNumThreads(1)
+    with ExitStack() as opened:
+        stream = opened.enter_context(options.out.open("wb")) if options.out else sys.stdout.buffer
+        messages = Messages(stream)
+        try:
+            scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"))
+        except ScenarioError as problem:
+            messages.event("refused", problems=list(problem.problems))
+            return REFUSED
+        run = Run(scenario, made[options.board], messages)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda *_: run.cancel())
+        try:
+            run.perform(partial(_describe, scenario.name, scenario.seed, options.board))
+        except (BoardError, PortError) as problem:
+            logging.error("%s", problem)
+            return FAILED
+    return 0
+
+
+def _describe(name: str, seed: int, board: str, firmware: bytes) -> dict[str, Any]:
+    program = sha256(firmware).hexdigest()[:HASH_CHARACTERS]
+    return {
+        "scenario": name,
+        "seed": seed,
+        "board": board,
+        "firmware": program,
+        "software": hash_software(),
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""What the vision node looks through in simulated time: the scene, or drawn cards."""
+
+from collections.abc import Callable
+
+from robot_runtime.clock import Clock
+from robot_runtime.config import VisionConfig
+from robot_runtime.contract.documents import Truth
+from robot_runtime.experiments.scenario.document import Scenario, Scene
+from robot_runtime.experiments.scenario.events import Card
+from robot_runtime.simulation.scene.contents import Contents, Place, Target
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.vision.camera import Camera, Frame
+from robot_runtime.vision.cards import Card as Held
+
+
+def needs_eyes(scenario: Scenario) -> bool:
+    """Whether there is anything to see in it: before the card camera, nothing but cards."""
+    return scenario.vision.camera == "scene" or any(isinstance(event, Card) for event in scenario.events)
+
+
+class SceneCamera(Camera):
+    """Renders what the robot sees now. Raises RuntimeError or ImportError where nothing can be rendered."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        config: VisionConfig,
+        clock: Clock,
+        simulator: Simulator,
+        card: Callable[[], Held | None],
+    ) -> None:
+        # Loads MuJoCo, which most scenarios do without.
+        from robot_runtime.simulation.scene.scene import Scene as Rendered
+
+        self._size = (config.width, config.height)
+        self._clock = clock
+        self._simulator = simulator
+        self._card = card
+        self._place = scenario.scene
+        self._rendered = Rendered(_contents(self._place, simulator), scenario.robot)
+
+    def read(self) -> Frame:
+        """What it sees now."""
+        contents = _contents(self._place, self._simulator)
+        if contents != self._rendered.contents:
+            self._rendered.fill(contents)
+        time, truth, card = self._clock.now(), self._simulator.truth(), self._card()
+        # Numbers as they travel to the scene's own process.
+        seen = Truth.from_bytes(truth.to_bytes())
+        picture = self._rendered.render_camera(
+            time, seen, *self._size, card.paint if card else None, marked=bool(card and card.marked)
+        )
+        return Frame(picture, time)
+
+    def close(self) -> None:
+        """Give back what rendering took."""
+        self._rendered.close()
+
+    def __str__(self) -> str:
+        card = self._card()
+        return f"rendered scene with a {card.name} card" if card else "rendered scene"
+
+
+def _contents(scene: Scene, simulator: Simulator) -> Contents:
+    return Contents(
+        place=Place(kind=scene.kind, turbidity=scene.turbidity),
+        basin=scene.basin,
+        beacons=simulator.surroundings().beacons,
+        targets=tuple(
+            Target(colour=one.colour, position=one.position, size=one.size) for one in scene.targets
+        ),
+    )

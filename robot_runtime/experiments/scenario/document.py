@@ -1,0 +1,284 @@
+"""The scenario: a TOML document that says everything about an experiment, read strictly.
+
+SI units; world axes north, east, down from the start, angles in rad. docs/simulation.md has the table.
+"""
+
+import re
+import tomllib
+from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from typing import Annotated, Any, Literal, get_type_hints
+
+from robot_runtime.config import VISION_RATE, ConfigError, ControlConfig, Range, parse, place, read_value
+from robot_runtime.experiments.scenario.events import Colour, Event, WavesChange, check_controller, read_event
+from robot_runtime.simulation.water.parameters import Parameters, Quality, Vector
+from robot_runtime.simulation.water.surroundings import (
+    BUOYANCY_MAX,
+    BUOYANCY_MIN,
+    FLOATING,
+    OFFSET_MAX,
+    Basin,
+    Current,
+    Start,
+    Trim,
+    Waves,
+    check_beacons,
+    check_start,
+)
+from robot_runtime.simulation.water.world import World
+
+TEXT_BYTES_MAX = 60_000
+DURATION = Range(1, 3600)
+"""s."""
+SEED = Range(0, 2**32 - 1)
+EVENTS_MAX = 500
+TARGETS_MAX = 16
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,59}")
+TITLE_MAX, DESCRIPTION_MAX = 100, 2000
+FACTOR = 4.0
+"""By which a number of the robot may be smaller or larger than the one it replaces: twice what is uncertain
+about the assumed ones, and as far as steps of 5 ms remain stable."""
+_LIMITS: dict[str, tuple[float, float]] = {
+    "buoyancy": (BUOYANCY_MIN, BUOYANCY_MAX),
+    "buoyancy_height": (-OFFSET_MAX, OFFSET_MAX),
+    "restitution": (0.0, 1.0),
+    "friction": (0.0, 2.0),
+    "temperature": (0.0, 40.0),
+    "pressure_position": (-0.2, 0.2),
+    "latency": (0.0, 5.0),
+}
+_ELSEWHERE = {"floor": "[scene] depth", "beacons": "[scene] beacons"}
+
+
+class ScenarioError(ConfigError):
+    """A scenario that cannot be run; `problems` says in words what is wrong, field by field."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Target:
+    """A coloured ball that the camera can see; position in m north, east, down, size in m across."""
+
+    colour: Colour
+    position: Vector
+    size: Annotated[float, Range(0.02, 2)] = 0.2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """Where it happens: a pool with walls, or natural water without; lengths in m."""
+
+    kind: Literal["pool", "natural"]
+    depth: float
+    length: float | None = None
+    width: float | None = None
+    turbidity: Annotated[float, Range(0, 1)] = 0.1
+    """0: clear, 1: nothing is seen beyond a hand's breadth."""
+    targets: list[Target] = field(default_factory=list)
+    beacons: tuple[Vector, ...] = ()
+
+    def __post_init__(self) -> None:
+        if (self.kind == "pool") != (self.length is not None):
+            raise ValueError("a pool has length and width, natural water neither")
+        if len(self.targets) > TARGETS_MAX:
+            raise ValueError(f"{len(self.targets)} targets; there can be at most {TARGETS_MAX}")
+        check_beacons(self.beacons)
+        _ = self.basin
+
+    @property
+    def basin(self) -> Basin:
+        """What holds the water."""
+        return Basin(self.depth, self.length, self.width)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Water:
+    """How the water moves at the start."""
+
+    current: Current = field(default_factory=Current)
+    waves: Waves = field(default_factory=Waves)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionChoice:
+    """What the vision node looks at: drawn water with cards, or the rendered scene; rate in Hz."""
+
+    camera: Literal["card", "scene"] = "card"
+    rate: Annotated[float, VISION_RATE] = 4.0
+    colour: Colour = "yellow"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario:
+    """One experiment. `trim` is None where the hull's parameters say it; events are in order of time."""
+
+    name: str
+    title: str
+    description: str = ""
+    duration: Annotated[float, DURATION]
+    seed: Annotated[int, SEED] = 1
+    scene: Scene
+    start: Start = FLOATING
+    water: Water = Water()
+    trim: Trim | None = None
+    robot: Parameters = field(default_factory=Parameters)
+    control: ControlConfig = field(default_factory=ControlConfig)
+    vision: VisionChoice = VisionChoice()
+    events: tuple[Event, ...] = ()
+
+    def __post_init__(self) -> None:
+        problems = [*self._words(), *self._water(), *self._events()]
+        if problems:
+            raise ConfigError(*problems)
+
+    def _words(self) -> list[str]:
+        problems = []
+        if not NAME.fullmatch(self.name):
+            problems.append(
+                f"name is {self.name!r}; it is 1 to 60 small letters, digits, - and _, as it names a file"
+            )
+        if not 1 <= len(self.title.strip()) <= TITLE_MAX:
+            problems.append(f"title must be a text of 1 to {TITLE_MAX} characters")
+        if len(self.description) > DESCRIPTION_MAX:
+            problems.append(f"description has more than {DESCRIPTION_MAX} characters")
+        return problems
+
+    def _water(self) -> list[str]:
+        world = World(self.robot)
+        world.set_basin(self.scene.basin)
+        problems = []
+        waves = [("water: waves", self.water.waves)]
+        waves += [
+            (f"event at {one.at:g} s", Waves(one.amplitude, one.period, one.direction))
+            for one in self.events
+            if isinstance(one, WavesChange)
+        ]
+        for where, wave in waves:
+            try:
+                world.set_waves(wave)
+            except ValueError as problem:
+                problems.append(f"{where}: {problem}")
+        try:
+            check_start(self.start, self.scene.basin, self.robot.size)
+        except ValueError as problem:
+            problems.append(f"start: {problem}")
+        try:
+            check_controller("depth", self.control.controller, self.control.gains)
+        except ValueError as problem:
+            problems.append(f"control: {problem}")
+        return problems
+
+    def _events(self) -> list[str]:
+        return [
+            f"event {one.do} at {one.at:g} s comes after the end; the scenario lasts {self.duration:g} s"
+            for one in self.events
+            if one.at > self.duration
+        ]
+
+
+_STAND_IN: dict[str, Any] = {
+    "name": "scenario",
+    "title": "Scenario",
+    "duration": DURATION.maximum,
+    "scene": Scene(kind="natural", depth=1000.0),
+}
+"""What must be there, and what the rest is checked against where it is not."""
+
+
+def read_scenario(text: str) -> Scenario:
+    """The scenario that a TOML text says. Raises ScenarioError with all problems."""
+    if len(text.encode("utf-8", "replace")) > TEXT_BYTES_MAX:
+        raise ScenarioError(f"the scenario is larger than {TEXT_BYTES_MAX} bytes")
+    try:
+        table = tomllib.loads(text)
+    except (ValueError, RecursionError) as problem:
+        raise ScenarioError(f"the scenario is not TOML: {problem}") from problem
+    problems: list[str] = []
+    values = _read_entries(table, problems)
+    try:
+        scenario = Scenario(**(_STAND_IN | values))
+    except ConfigError as problem:
+        raise ScenarioError(*problems, *problem.problems) from problem
+    if problems:
+        raise ScenarioError(*problems)
+    return scenario
+
+
+def _read_entries(table: dict[str, Any], problems: list[str]) -> dict[str, Any]:
+    """What of the table is as it should be."""
+    hints = get_type_hints(Scenario, include_extras=True)
+    values: dict[str, Any] = {}
+    for name, value in table.items():
+        try:
+            if name not in hints:
+                problems.append(f"{name!r} is not known here; known are {', '.join(hints)}")
+            elif name == "events":
+                values[name] = tuple(sorted(_read_events(value, problems), key=lambda one: one.at))
+            elif name == "robot":
+                values[name] = _read_robot(value)
+            else:
+                values[name] = read_value(hints[name], value, name)
+        except ConfigError as problem:
+            problems += problem.problems
+    problems += [f"{name} is missing" for name in _STAND_IN if name not in table]
+    return values
+
+
+def _read_events(tables: Any, problems: list[str]) -> list[Event]:
+    if not isinstance(tables, list):
+        problems.append("events must be tables, each headed [[events]]")
+        return []
+    if len(tables) > EVENTS_MAX:
+        problems.append(f"{len(tables)} events; there can be at most {EVENTS_MAX}")
+        return []
+    events = []
+    for number, table in enumerate(tables, 1):
+        try:
+            events.append(read_event(table, f"event {number}"))
+        except ConfigError as problem:
+            problems += problem.problems
+    return events
+
+
+def _read_robot(table: Any) -> Parameters:
+    """The simulated robot with what the scenario changes about it. Raises ConfigError."""
+    plain = Parameters()
+    if not isinstance(table, dict):
+        raise ConfigError("robot must be a table")
+    problems = [f"robot: {name} belongs to {there}" for name, there in _ELSEWHERE.items() if name in table]
+    given = {name: value for name, value in table.items() if name not in _ELSEWHERE}
+    for name, value in given.items():
+        default = getattr(plain, name, None)
+        if is_dataclass(default) and isinstance(value, dict):
+            # What a sensor's table leaves out stays as it is.
+            given[name] = asdict(default) | value  # type: ignore[arg-type]
+    try:
+        changed = parse(Parameters, given, "robot")
+    except ConfigError as problem:
+        raise ConfigError(*problems, *problem.problems) from problem
+    for one in fields(Parameters):
+        if one.name in given:
+            problems += _check_number(one.name, getattr(changed, one.name), getattr(plain, one.name))
+    if problems:
+        raise ConfigError(*problems)
+    return changed
+
+
+def _check_number(name: str, value: Any, default: Any) -> list[str]:
+    """What of an overridden number, or of each in a tuple, is beyond what the physics bears."""
+    if isinstance(value, tuple):
+        return [
+            problem
+            for index, (one, own) in enumerate(zip(value, default, strict=True))
+            for problem in _check_number(f"{name}[{index}]", one, own)
+        ]
+    if isinstance(value, Quality):
+        return _check_number(f"{name}.latency", value.latency, 0.0) if value.latency else []
+    if not isinstance(value, float):
+        return []
+    low, high = (
+        _LIMITS.get(name.partition("[")[0])
+        or _LIMITS.get(name.rpartition(".")[2])
+        or sorted((default / FACTOR, default * FACTOR))
+    )
+    if low <= value <= high:
+        return []
+    return [f"{place('robot', name)} is {value:g}; it must lie between {low:g} and {high:g}"]

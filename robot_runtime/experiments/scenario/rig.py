@@ -1,0 +1,174 @@
+"""The robot, its board and its water, put together for one scenario in simulated time, in one thread."""
+
+from collections.abc import Callable
+from hashlib import sha256
+from random import Random
+from typing import Protocol, Self
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.config import Config, LinkConfig, VisionConfig
+from robot_runtime.contract.documents import Event
+from robot_runtime.core import Core
+from robot_runtime.experiments.scenario.cameras import SceneCamera
+from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.link.conversation import Conversation
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.water.process import TRUTH_PERIOD
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion, Simulator
+from robot_runtime.transport.outbox import STREAM, Outbox
+from robot_runtime.vision.camera import Camera
+from robot_runtime.vision.card_camera import CardCamera
+from robot_runtime.vision.cards import Card
+
+_NOISY = -round(1.0 / PERIOD)
+_TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
+
+
+class MakeBoard(Protocol):
+    """Makes the board that the robot runs on, in this water."""
+
+    def __call__(self, water: Water, /) -> SteppedBoard:
+        """The board, just powered. Raises BoardError."""
+        ...
+
+
+class Robot(Core):
+    """The robot whose time is the scenario's; `send` gets what it publishes, blocks one after the other."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        clock: SimulatedClock,
+        send: Callable[[bytes], None],
+        open_camera: Callable[[], Camera],
+    ) -> None:
+        number = sha256(f"{scenario.name} {scenario.seed}".encode())
+        baud = LinkConfig().baud
+        config = Config(
+            control=scenario.control,
+            vision=VisionConfig(
+                camera=scenario.vision.camera, rate=scenario.vision.rate, colour=scenario.vision.colour
+            ),
+        )
+        self.conversation = Conversation(
+            "simulated",
+            baud,
+            clock,
+            int.from_bytes(number.digest()[:2], "big"),
+            self.take_messages,
+            self.link_changed,
+        )
+
+        def publish(name: str, payload: bytes) -> None:
+            if name == STREAM:
+                send(payload)
+
+        super().__init__(
+            config,
+            clock,
+            number.hexdigest()[:16],
+            self.conversation,
+            Outbox(publish, lambda _: False),
+            watched=lambda _: False,
+            open_camera=open_camera,
+        )
+
+
+class Stage:
+    """Everything as it is at the scenario's start, `prelude` (s) before it.
+
+    The board feels still water at the surface until time 0. Raises BoardError where there is no board.
+    """
+
+    def __init__(
+        self, scenario: Scenario, make_board: MakeBoard, send: Callable[[bytes], None], prelude: float
+    ) -> None:
+        self.scenario = scenario
+        self.clock = SimulatedClock(-prelude)
+        self.simulator = _fill(scenario)
+        self._period = -round(prelude / PERIOD)
+        self._swum = 0
+        self._at_surface = STILL_WATER._replace(
+            pressure=scenario.robot.surface_pressure, temperature=scenario.robot.temperature
+        )
+        # No sensor is without noise, and one that is counts as frozen. Before that it learns the surface's,
+        # which is exact then, as the scenario says it.
+        self._noise = Random(f"{scenario.seed} prelude").gauss
+        self._broken: frozenset[str] = frozenset()
+        self._camera: Camera | None = None
+        self.robot = Robot(scenario, self.clock, send, self._open_camera)
+        self.board = make_board(self._feel)
+        self.board.seed_line(scenario.seed)
+        self.robot.conversation.open(self.board.write)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._camera is not None:
+            self._camera.close()
+        self.board.close()
+
+    def run(self, periods: int) -> bytes:
+        """Let this many `PERIOD`s pass; what came from the board in them."""
+        data = self.board.run(periods)
+        # Not a sum of many small numbers.
+        self._period += periods
+        self.clock.forward(self._period * PERIOD - self.clock.now())
+        return data
+
+    def break_devices(self) -> None:
+        """Let the board's devices fail that the sensors' faults ask for, and the others answer again."""
+        wanted = self.simulator.broken_devices
+        for device in sorted(wanted - self._broken):
+            self.board.fault(device, "absent")
+        for device in sorted(self._broken - wanted):
+            self.board.fault(device, "none")
+        self._broken = wanted
+
+    def _feel(self, fins: FinMotion) -> Reading:
+        if self._period < 0:
+            if self._period < _NOISY:
+                return self._at_surface
+            pressure = self._noise(self._at_surface.pressure, self.scenario.robot.pressure.noise)
+            return self._at_surface._replace(pressure=pressure)
+        reading = self.simulator.advance(PERIOD, fins)
+        self._swum += 1
+        if self._swum % _TRUTH_EVERY == 0:
+            self.robot.bus.publish_row("truth", self._swum * PERIOD, self.simulator.truth().to_bytes())
+        return reading
+
+    def _open_camera(self) -> Camera:
+        vision, config = self.robot.vision, self.robot.config.vision
+
+        def card() -> Card | None:
+            return vision.held
+
+        self._camera = CardCamera(config.width, config.height, self.clock, card)
+        if config.camera == "scene":
+            try:
+                problem = missing()
+                if problem is None:
+                    self._camera = SceneCamera(self.scenario, config, self.clock, self.simulator, card)
+            except (ImportError, RuntimeError) as error:
+                problem = str(error)
+            if problem is not None:
+                words = f"Camera: the scene cannot be rendered: {problem}. A drawn card stands in."
+                self.robot.tell(Event(time=self.clock.now(), kind="camera", severity="caution", text=words))
+        return self._camera
+
+
+def _fill(scenario: Scenario) -> Simulator:
+    """The water and the hull at the scenario's start."""
+    simulator = Simulator(scenario.robot, scenario.seed)
+    simulator.set_basin(scenario.scene.basin)
+    simulator.set_beacons(scenario.scene.beacons)
+    simulator.set_current(scenario.water.current)
+    simulator.set_waves(scenario.water.waves)
+    if scenario.trim is not None:
+        simulator.set_trim(scenario.trim)
+    simulator.reset(scenario.start)
+    return simulator

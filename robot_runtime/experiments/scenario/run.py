@@ -1,0 +1,240 @@
+"""A scenario in simulated time, as fast as it goes: the same steps as in real time, one after the other.
+
+Nothing here looks at the computer's clock, and nothing runs beside it, so that the same scenario and seed
+give the same bytes. Before time 0 the board lies powered in still water at the surface for `PRELUDE`, as a
+robot does before a dive: it learns the surface's pressure, and is greeted.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from robot_runtime.commands import Commands
+from robot_runtime.control.supervisor import ARM_WAIT, Arming
+from robot_runtime.core import PUBLISH_EVERY
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.cameras import needs_eyes
+from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.experiments.scenario.events import Arm, Event, Line, Mark
+from robot_runtime.experiments.scenario.rig import MakeBoard, Stage
+from robot_runtime.link.conversation import PERIOD as GATHERING
+from robot_runtime.simulation.boards.stepped_board import PERIOD
+from robot_runtime.simulation.water.requests import changes
+
+PRELUDE = 2.0
+"""s."""
+AFTERWARDS = 0.5
+"""s after the end for which the robot is watched as it disarms."""
+PROGRESS_EVERY = 1.0
+"""s of simulated time."""
+_SAME_TIME = 1e-6
+"""s; much less than a step, much more than sums of steps are off by."""
+
+
+class Teller(Protocol):
+    """Who is told of the run; times are s since its start."""
+
+    def blocks(self, data: bytes) -> None:
+        """What the robot published: blocks one after the other."""
+        ...
+
+    def event(self, event: str, **more: Any) -> None:
+        """Something about the run: started, progress, marker or ended."""
+        ...
+
+
+class _Rhythm:
+    """Something that is done every `period` (s); what came late is not made up for."""
+
+    def __init__(self, start: float, period: float, action: Callable[[], object]) -> None:
+        self.due = start
+        self._period = period
+        self._action = action
+
+    def keep(self, now: float) -> None:
+        """Do it where it is due."""
+        if now >= self.due - _SAME_TIME:
+            self.due = max(self.due + self._period, now)
+            self._action()
+
+
+class Run:
+    """One run of a scenario on this kind of board; `perform` does it all."""
+
+    def __init__(self, scenario: Scenario, make_board: MakeBoard, teller: Teller) -> None:
+        self._scenario = scenario
+        self._make_board = make_board
+        self._teller = teller
+        self._performance: _Performance | None = None
+        self._cancelled = False
+
+    def cancel(self) -> None:
+        """Let `perform` end soon, in order; may be called from a signal handler."""
+        self._cancelled = True
+
+    def perform(self, describe: Callable[[bytes], Mapping[str, str]]) -> None:
+        """From the start to the end. `describe` says of the board's program what the start tells.
+
+        Raises BoardError where there is no board, or it goes away.
+        """
+        with Stage(self._scenario, self._make_board, self._send, PRELUDE) as stage:
+            performance = _Performance(stage, self._teller, lambda: self._cancelled)
+            performance.wait_for_start()
+            self._teller.event("started", time=0.0, **describe(stage.board.firmware))
+            self._performance = performance
+            performance.play()
+            performance.finish(cancelled=self._cancelled)
+
+    def _send(self, data: bytes) -> None:
+        if self._performance is not None:
+            self._teller.blocks(data)
+
+
+class _Performance:
+    """What happens on the stage, from the prelude on; `stopped` tells whether it is to end early."""
+
+    def __init__(self, stage: Stage, teller: Teller, stopped: Callable[[], bool]) -> None:
+        self._stage = stage
+        self._teller = teller
+        self._stopped = stopped
+        self._commands = Commands(stage.robot).do
+        self._changes = changes(stage.simulator)
+        self._remarks: list[str] = []
+        self._arming: tuple[Arming, Arm] | None = None
+        self._ask_again = 0.0
+        self._heard = b""
+        self._look_at = now = stage.clock.now()
+        self._rhythms = [
+            _Rhythm(now, 1 / stage.scenario.control.rate, stage.robot.control_tick),
+            _Rhythm(now, PUBLISH_EVERY, stage.robot.publish_tick),
+        ]
+        self._looks = needs_eyes(stage.scenario)
+
+    def wait_for_start(self) -> None:
+        """Let the prelude pass."""
+        self._until(0.0)
+        robot = self._stage.robot
+        robot.outbox.flush()
+        robot.announce()
+        self._rhythms.append(_Rhythm(0.0, PROGRESS_EVERY, self._tell_progress))
+
+    def play(self) -> None:
+        """Let everything happen, until the end or until it is stopped."""
+        scenario = self._stage.scenario
+        for event in scenario.events:
+            self._until(event.at)
+            if self._stopped():
+                return
+            self._happen(event)
+        self._until(scenario.duration)
+
+    def finish(self, *, cancelled: bool) -> None:
+        """Disarm, watch that, and say how it ended."""
+        robot, clock = self._stage.robot, self._stage.clock
+        if robot.supervisor.armed:
+            robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
+        self._stopped = lambda: False
+        self._until(clock.now() + AFTERWARDS)
+        self._take_in()
+        robot.publish_tick()
+        self._teller.event(
+            "ended",
+            time=_tidy(clock.now()),
+            state="cancelled" if cancelled else "complete",
+            problem=" ".join(self._remarks) or None,
+        )
+
+    def _until(self, end: float) -> None:
+        """Let time pass up to `end` (s), or until it is stopped."""
+        stage = self._stage
+        while (now := stage.clock.now()) < end - _SAME_TIME and not self._stopped():
+            self._converse(now)
+            for rhythm in self._rhythms:
+                rhythm.keep(now)
+            due = [end, self._look_at, stage.robot.pilot_tick(), *(rhythm.due for rhythm in self._rhythms)]
+            if self._arming is not None:
+                self._go_on_arming(now)
+                due.append(self._ask_again)
+            if self._looks and now > -_SAME_TIME:
+                due.append(now + stage.robot.vision.tick())
+            periods = max(round((min(due) - now) / PERIOD), 1)
+            self._heard += stage.run(periods)
+
+    def _converse(self, now: float) -> None:
+        """What the connection's thread does in real time: let bytes gather, take them, say what is due."""
+        line = self._stage.robot.conversation
+        if now < self._look_at - _SAME_TIME and (line.gathering or not self._heard):
+            return
+        self._take_in()
+        line.poll()
+        # Where bytes may come at any time, they are looked for in every step.
+        self._look_at = now + (GATHERING if line.gathering else min(line.wait(), PERIOD))
+
+    def _take_in(self) -> None:
+        if self._heard:
+            heard, self._heard = self._heard, b""
+            self._stage.robot.conversation.receive(heard)
+
+    def _happen(self, event: Event) -> None:
+        now = self._stage.clock.now()
+        try:
+            self._do(event, now)
+        except (Refused, ValueError) as problem:
+            self._refuse(event, str(problem))
+        else:
+            if not isinstance(event, Arm):
+                self._mark(event.words)
+
+    def _do(self, event: Event, now: float) -> None:
+        stage = self._stage
+        if isinstance(event, Arm):
+            self._arming = stage.robot.supervisor.begin_arming(alone=event.alone), event
+            self._ask_again = now + ARM_WAIT
+        elif isinstance(event, Line):
+            stage.board.line(event.command)
+        elif event.to == "runtime":
+            self._commands[event.do](event.question)
+        elif event.to == "simulator":
+            self._changes[event.do](_as_asked(event.question))
+            stage.break_devices()
+        elif not isinstance(event, Mark):
+            raise ValueError(f"{event.do} cannot be done in simulated time")
+
+    def _go_on_arming(self, now: float) -> None:
+        assert self._arming is not None
+        arming, event = self._arming
+        supervisor = self._stage.robot.supervisor
+        if not arming.over and (supervisor.board_armed or now >= self._ask_again - _SAME_TIME):
+            self._ask_again = now + ARM_WAIT
+            supervisor.go_on_arming()
+        if arming.over:
+            self._arming = None
+            if arming.refusal:
+                self._refuse(event, arming.refusal)
+            else:
+                self._mark(event.words)
+
+    def _refuse(self, event: Event, problem: str) -> None:
+        # As with an operator, whom the robot may refuse something: the experiment goes on.
+        words = f"{event.words}: refused. {problem}"
+        self._remarks.append(f"At {event.at:g} s: {words}")
+        self._mark(words)
+
+    def _mark(self, words: str) -> None:
+        self._teller.event("marker", time=_tidy(self._stage.clock.now()), text=words)
+
+    def _tell_progress(self) -> None:
+        self._teller.event("progress", time=_tidy(self._stage.clock.now()))
+
+
+def _as_asked(question: Mapping[str, Any]) -> dict[str, Any]:
+    """As it comes to the simulator's process in JSON, where there are no tuples."""
+    return {
+        name: [list(one) if isinstance(one, tuple) else one for one in value]
+        if isinstance(value, tuple)
+        else value
+        for name, value in question.items()
+    }
+
+
+def _tidy(time: float) -> float:
+    return round(time, 6)

@@ -1,0 +1,61 @@
+"""The lines of text between the water and the emulated board, without any socket.
+
+The board tells of its fins, `fins TIME A0..A3 S0..S3 D0..D3 POWER LED`, and waits to be answered with
+`sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3`.
+"""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
+
+LINE_BYTES_MAX = 1024
+FIN_NUMBERS = 15
+SWING_MAX = 1000.0
+"""rad and rad/s beyond which no fin can be or turn; such numbers would break the physics."""
+
+
+class LineError(ValueError):
+    """What came from the board is not what was agreed; the text says what is wrong with it."""
+
+
+class Lines:
+    """Puts lines together from bytes as they come."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, data: bytes) -> Iterator[str]:
+        """The lines that `data` completes, without their ends. Raises LineError on one that never ends."""
+        *whole, self._rest = (self._rest + data).split(b"\n")
+        if len(self._rest) > LINE_BYTES_MAX:
+            raise LineError(f"a line of more than {LINE_BYTES_MAX} bytes")
+        for line in whole:
+            yield line.decode("utf-8", "replace").strip()
+
+
+def read_fins(line: str) -> FinMotion:
+    """The fins of a `fins` line. Raises LineError where it is none."""
+    word, *texts = line.split()
+    if word != "fins" or len(texts) != FIN_NUMBERS:
+        raise LineError(f"{line!r} is not `fins` and {FIN_NUMBERS} numbers")
+    try:
+        numbers = [float(text) for text in texts]
+    except ValueError as problem:
+        raise LineError(f"{line!r}: {problem}") from problem
+    if not all(map(isfinite, numbers)) or max(map(abs, numbers[1:9])) > SWING_MAX:
+        raise LineError(f"{line!r} tells of fins that cannot be")
+    _, a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power, _ = numbers
+    return FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
+
+
+def write_sense(reading: Reading) -> str:
+    """The answer to a `fins` line, with its end."""
+    numbers = (*reading.force, *reading.rate)
+    motion = " ".join(f"{number:.6f}" for number in numbers)
+    encoders = " ".join(f"{error:.5f}" for error in reading.encoders)
+    return (
+        f"sense {reading.pressure:.1f} {reading.temperature:.2f} {motion} "
+        f"{reading.beacon_right:d} {reading.beacon_left:d} {reading.battery:.4f} {encoders}\n"
+    )

@@ -1,0 +1,245 @@
+"""The emulated board as a process, and a connection to its socket. See docs/architecture.md."""
+
+import select
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Literal, Self
+
+from robot_runtime.simulation.boards.board_line import Lines, read_fins, write_sense
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
+
+START_TIMEOUT = 10.0
+"""s within which the board must be ready, and within which it must have ended."""
+ANSWER_TIMEOUT = 60.0
+"""s of real time for an answer; a `run` of many emulated seconds takes a while."""
+
+Water = Callable[[FinMotion], Reading]
+FaultKind = Literal["none", "absent", "stuck"]
+LineDirection = Literal["to_board", "from_board"]
+LineFault = Literal["bit_errors", "drop", "double", "insert"]
+
+STILL_WATER = Reading(
+    pressure=101325.0,
+    temperature=20.0,
+    force=(0.0, 0.0, -9.80665),
+    rate=(0.0, 0.0, 0.0),
+    beacon_right=False,
+    beacon_left=False,
+    battery=7.4,
+)
+"""What the board's sensors feel until they are told something else."""
+
+
+class BoardError(Exception):
+    """The board did not start, went away, or refused a command; the text says why."""
+
+
+class Board:
+    """A connection to the board's socket. Where it is the water, it answers the board's `fins` lines."""
+
+    def __init__(self, path: Path) -> None:
+        """Connect. Raises BoardError where no board answers at `path`."""
+        self._water: Water | None = None
+        self._lines = Lines()
+        self._pending: list[str] = []
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._socket.settimeout(ANSWER_TIMEOUT)
+        try:
+            self._socket.connect(str(path))
+        except OSError as problem:
+            self._socket.close()
+            raise BoardError(f"no emulated board answers at {path}: {problem}") from problem
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Disconnect; the board runs on with the last values."""
+        self._socket.close()
+
+    def attach(self, period: float, water: Water) -> None:
+        """Be the water: while an answer is awaited, `water` is asked every `period` (s of emulated time).
+
+        Raises BoardError where another connection is the water, or no board can keep such a period.
+        """
+        self._water = water
+        self._insist(f"attach {period!r}")
+
+    def sense(self, reading: Reading) -> None:
+        """Let the sensors feel this from now on.
+
+        Raises BoardError on values that cannot be, or where another connection is the water.
+        """
+        self._insist(write_sense(reading).strip())
+
+    def fins(self) -> FinMotion:
+        """The fins as they are now."""
+        return read_fins(f"fins {self._look()}")
+
+    def led(self) -> bool:
+        """Whether the LED is on."""
+        return self._look().endswith(" 1")
+
+    def run(self, seconds: float) -> float:
+        """Let emulated time pass on a paused board, as fast as it goes; returns its time (s)."""
+        self._send(f"run {seconds!r}")
+        return float(self._answer("ok"))
+
+    def stats(self) -> dict[str, float]:
+        """The board's counters, by name."""
+        self._send("stats")
+        pairs = (pair.split("=") for pair in self._answer("stats").split())
+        return {name: float(value) for name, value in pairs}
+
+    def fault(self, device: str, kind: FaultKind) -> None:
+        """Break a device (imu, pressure, encoder0-3, bridge0-3), or mend it. Raises BoardError."""
+        self.order(f"fault {device} {kind}")
+
+    def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
+        """Let this happen to each bit (bit_errors) or character with this probability. Raises BoardError."""
+        self.order(f"line {direction} {kind} {rate!r}")
+
+    def burst_line(self, direction: LineDirection, rate: float, bits: float) -> None:
+        """Let bursts begin at each bit with this probability; half of the bits in one are wrong."""
+        self.order(f"line {direction} burst {rate!r} {bits!r}")
+
+    def stall_line(self, direction: LineDirection, seconds: float) -> None:
+        """Hold back what is sent for this much emulated time; nothing gets lost."""
+        self.order(f"line {direction} stall {seconds!r}")
+
+    def cut_line(self, direction: LineDirection, cut: bool) -> None:
+        """Cut the wire, or mend it."""
+        self.order(f"line {direction} cut {'on' if cut else 'off'}")
+
+    def clean_line(self, direction: LineDirection) -> None:
+        """End everything that disturbs it."""
+        self.order(f"line {direction} clean")
+
+    def seed_line(self, seed: int) -> None:
+        """Let all that befalls the line from now on follow from this number."""
+        self.order(f"seed {seed}")
+
+    def reset(self) -> None:
+        """Pull the reset pin."""
+        self.order("reset")
+
+    def power(self) -> None:
+        """Take the power away and give it back: it begins anew, but for flash memory and EEPROM."""
+        self.order("power")
+
+    def load(self, elf: Path) -> None:
+        """Upload another program and reset. Raises BoardError where it is none."""
+        self.order(f"load {elf}")
+
+    def order(self, command: str) -> None:
+        """Any command that is answered with a plain `ok`. Raises BoardError where it is refused."""
+        self._send(command)
+        self._answer("ok")
+
+    def _insist(self, command: str) -> None:
+        # The board answers this command only where it refuses it, and always before it answers the next one.
+        self._send(command)
+        self._send("stats")
+        try:
+            self._answer("stats")
+        except BoardError:
+            self._answer("stats")
+            raise
+
+    def _look(self) -> str:
+        self._send("fins")
+        return self._answer("ok")
+
+    def _send(self, line: str) -> None:
+        try:
+            self._socket.sendall(line.encode() + b"\n")
+        except OSError as problem:
+            raise BoardError(f"the emulated board has gone: {problem}") from problem
+
+    def _answer(self, expected: str) -> str:
+        while True:
+            line = self._next_line()
+            word, _, rest = line.partition(" ")
+            if word == "error":
+                raise BoardError(rest)
+            if word == "fins" and self._water:
+                self._send(write_sense(self._water(read_fins(line))).strip())
+            elif word == expected:
+                return rest
+            else:
+                raise BoardError(f"the emulated board answered {line!r} where {expected!r} was expected")
+
+    def _next_line(self) -> str:
+        while not self._pending:
+            try:
+                data = self._socket.recv(4096)
+            except OSError as problem:
+                raise BoardError(f"the emulated board does not answer: {problem}") from problem
+            if not data:
+                raise BoardError("the emulated board has closed the connection")
+            self._pending.extend(self._lines.feed(data))
+        return self._pending.pop(0)
+
+
+class BoardProcess:
+    """The board's program; ends with the `with` statement. `tty` and `socket` are the paths that it makes."""
+
+    def __init__(self, program: Path, elf: Path | None, tty: Path, socket: Path, *options: str) -> None:
+        """Start it and wait until it is ready. Raises BoardError, with the program's own words.
+
+        Without an `elf` its flash memory is empty but for the boot loader that `options` must name.
+        """
+        self.tty = tty
+        self.socket = socket
+        command = [str(program), "--tty", str(tty), "--socket", str(socket), *options]
+        if elf:
+            command += ["--elf", str(elf)]
+        self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
+        try:
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self._errors)
+        except OSError as problem:
+            self._errors.close()
+            raise BoardError(f"cannot start {program}: {problem}; `make firmware` builds it") from problem
+        if self._first_line() != b"ready\n":
+            self.stop()
+            raise BoardError(self._said or "the emulated board ended without a word")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def connect(self) -> Board:
+        """A new connection to its socket."""
+        return Board(self.socket)
+
+    def stop(self) -> int:
+        """End it as a signal would, wait, and return its exit status."""
+        if self.process.poll() is None:
+            self.process.terminate()
+        status = self.process.wait(START_TIMEOUT)
+        if self.process.stdout:
+            self.process.stdout.close()
+        if not self._errors.closed:
+            self._errors.seek(0)
+            self._said = self._errors.read().decode(errors="replace").strip()
+            self._errors.close()
+        return status
+
+    _said = ""
+
+    def _first_line(self) -> bytes:
+        output = self.process.stdout
+        deadline = time.monotonic() + START_TIMEOUT
+        if output is None or not select.select([output], [], [], deadline - time.monotonic())[0]:
+            return b""
+        return output.readline()

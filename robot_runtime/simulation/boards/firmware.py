@@ -1,0 +1,77 @@
+"""The robot's firmware for one speed of the serial line: where it lies, and how it is built.
+
+The speed is compiled in. Each has a folder of its own, so that none is ever taken for another's; that of the
+default lies at the top. `python -m robot_runtime.simulation.boards.firmware` builds what
+`robot.toml` asks for.
+"""
+
+import argparse
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from robot_runtime.config import ConfigError, LinkConfig, load
+
+_SOURCES = Path(__file__).parents[3] / "firmware"
+_LINES_TOLD = 5
+
+
+class BuildError(Exception):
+    """The firmware cannot be built; the text says why and what to do."""
+
+
+def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> Path:
+    """The robot's firmware for this many bit/s; the suffix is ".elf" (emulated board) or ".hex" (upload).
+
+    `build` is the folder of everything built, `hil` asks for that of a board in the loop. The file need not
+    be there yet.
+    """
+    folder = build / "firmware"
+    if baud != LinkConfig().baud:
+        folder /= str(baud)
+    return (folder / "hil" if hil else folder) / f"robot{suffix}"
+
+
+def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
+    """Bring the firmware for this many bit/s up to date. Raises BuildError where that is not possible.
+
+    A computer without the compiler takes what is there.
+    """
+    product = firmware_path(build, baud, ".elf", hil=hil)
+    if shutil.which("make") is None or shutil.which("avr-gcc") is None:
+        if product.exists():
+            return
+        raise BuildError(
+            f"There is no firmware for {baud} baud ({product}), and no compiler to build it. Install make, "
+            "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
+        )
+    command = ["make", "--silent", "-C", str(_SOURCES), "robot", f"BAUD={baud}", f"BUILD={product.parent}"]
+    command += ["HIL=1"] if hil else []
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    if made.returncode != 0:
+        last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_TOLD:]).strip()
+        raise BuildError(f"The firmware for {baud} baud could not be built: {last}")
+
+
+def main() -> int:
+    """Exit status: 0 once the firmware is there, 1 where the configuration or the compiler is in the way."""
+    parser = argparse.ArgumentParser(
+        prog="python -m robot_runtime.simulation.boards.firmware", description=__doc__
+    )
+    parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
+    parser.add_argument(
+        "--build", type=Path, default=_SOURCES.parent / "build", help="folder of the products"
+    )
+    options = parser.parse_args()
+    try:
+        config = load(options.config)
+        build_firmware(options.build.absolute(), config.link.baud, hil=config.robot.mode == "hil")
+    except (ConfigError, BuildError) as problem:
+        print(problem, file=sys.stderr)  # noqa: T201 - a command line speaks
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

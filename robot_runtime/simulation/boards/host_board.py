@@ -1,0 +1,119 @@
+"""The robot's firmware compiled for this computer, in this process, with the emulated board's own devices."""
+
+import ctypes
+from ctypes import POINTER, c_bool, c_char_p, c_double, c_int, c_uint8, c_uint32, c_uint64, c_void_p
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.simulation.boards.emulator_process import BoardError, FaultKind
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
+
+_MILLISECONDS = round(1000 * PERIOD)
+_RECEIVED_MAX = 4096
+_DIRECTIONS = {"to_board": 0, "from_board": 1}
+_STALL_MAX = 3600.0
+_DOUBLES = POINTER(c_double)
+
+# Each name's result, then its arguments.
+_SIGNATURES: dict[str, tuple[Any, ...]] = {
+    "board_create": (c_void_p,),
+    "board_destroy": (None, c_void_p),
+    "board_reset": (None, c_void_p),
+    "board_send": (None, c_void_p, c_char_p, c_uint32),
+    "board_run": (c_uint32, c_void_p, c_uint32, POINTER(c_uint8), c_uint32),
+    "board_fins": (None, c_void_p, _DOUBLES),
+    "board_sense": (c_bool, c_void_p, _DOUBLES),
+    "board_fault": (c_bool, c_void_p, c_char_p, c_char_p),
+    "board_seed": (None, c_void_p, c_uint64),
+    "board_disturb": (c_bool, c_void_p, c_int, c_char_p, c_char_p),
+    "board_stall": (None, c_void_p, c_int, c_double),
+}
+
+
+class HostBoard(SteppedBoard):
+    """The board in the shared library `path`. What its firmware computes takes none of its time.
+
+    Raises BoardError where the library is not there.
+    """
+
+    def __init__(self, path: Path, water: Water) -> None:
+        self._water = water
+        try:
+            self.firmware = path.read_bytes()
+            self._library = ctypes.CDLL(str(path.absolute()))
+        except OSError as problem:
+            raise BoardError(f"cannot load {path}: {problem}; `make firmware` builds it") from problem
+        for name, (result, *arguments) in _SIGNATURES.items():
+            function = getattr(self._library, name)
+            function.restype, function.argtypes = result, arguments
+        self._board = self._library.board_create()
+        self._received = (c_uint8 * _RECEIVED_MAX)()
+        self._fins = (c_double * 13)()
+
+    def run(self, periods: int) -> bytes:
+        """Let this many periods pass; what came for the host."""
+        library, board, received, fins = self._library, self._board, self._received, self._fins
+        data = b""
+        for _ in range(periods):
+            size = library.board_run(board, _MILLISECONDS, received, _RECEIVED_MAX)
+            if size:
+                data += bytes(memoryview(received)[:size])
+            library.board_fins(board, fins)
+            a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power = fins
+            motion = FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
+            self._sense(self._water(motion))
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Put these bytes on the line."""
+        self._library.board_send(self._board, data, len(data))
+
+    def fault(self, device: str, kind: FaultKind) -> None:
+        """Break a device, or mend it."""
+        if not self._library.board_fault(self._board, device.encode(), kind.encode()):
+            raise BoardError(f"there is no device {device!r}, or no fault {kind!r}")
+
+    def line(self, command: str) -> None:
+        """Disturb the line by a command such as `line to_board cut on`."""
+        _, direction, kind, *rest = command.split()
+        value = " ".join(rest)
+        if kind == "stall":
+            done = 0 <= float(value) <= _STALL_MAX
+            if done:
+                self._library.board_stall(self._board, _DIRECTIONS[direction], float(value))
+        else:
+            done = self._library.board_disturb(
+                self._board, _DIRECTIONS[direction], kind.encode(), value.encode()
+            )
+        if not done:
+            raise BoardError(f"there is no such command: {command}")
+
+    def seed_line(self, seed: int) -> None:
+        """Let all that befalls the line follow from this number."""
+        self._library.board_seed(self._board, seed)
+
+    def reset(self) -> None:
+        """Pull the reset pin."""
+        self._library.board_reset(self._board)
+
+    def close(self) -> None:
+        """End it."""
+        if self._board is not None:
+            self._library.board_destroy(self._board)
+            self._board = None
+
+    def _sense(self, reading: Reading) -> None:
+        numbers = (c_double * 15)(
+            reading.pressure,
+            reading.temperature,
+            *reading.force,
+            *reading.rate,
+            reading.beacon_right,
+            reading.beacon_left,
+            reading.battery,
+            *reading.encoders,
+        )
+        if not self._library.board_sense(self._board, numbers):
+            raise BoardError(f"the board refused what its sensors were to feel: {reading}")

@@ -1,0 +1,127 @@
+"""What happens where the hull touches the floor or a wall.
+
+The hull is an ellipsoid, so that it touches each plane at one point. Its speed at that point is changed by
+impulses, with the mass that it has in water: one along the plane's normal, which returns `restitution` of the
+approach (Newton), then one along the plane against the sliding, at most `friction` times the first (Coulomb).
+An impulse -(1+e)·v/K along a line in which the hull has the speed v and the mass 1/K changes the energy by
+-(1-e²)·v²/2K; neither impulse can create any. What the hull has moved too far is taken back in the same
+direction as the first impulse pushes, turning included: a hull that lies on the floor lies still. Fins touch
+nothing.
+"""
+
+from math import sqrt
+
+from robot_runtime.simulation.water.geometry import (
+    Matrix,
+    attitude_rate,
+    cross,
+    normalize,
+    rotation,
+    to_world,
+)
+from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.surroundings import Basin
+
+RESTING = 0.01
+"""m/s of approach below which the hull does not bounce, so that it comes to rest."""
+
+
+class Contact:
+    """Keeps the hull within its basin."""
+
+    def __init__(self, parameters: Parameters) -> None:
+        length, width, height = parameters.size
+        self._half = (length / 2, width / 2, height / 2)
+        self._reach = max(self._half)
+        self._mass = parameters.total_mass
+        self._restitution = parameters.restitution
+        self._friction = parameters.friction
+
+    def settle(self, state: State, basin: Basin) -> State:
+        """The state of a hull that may have gone through floor or walls, put back and stopped there."""
+        reach, (north, east, down) = self._reach, state.position
+        if down + reach > basin.depth:
+            state = self._touch(state, 2, 1.0, basin.depth)
+        if basin.length is not None and basin.width is not None:
+            if abs(north) + reach > basin.length / 2:
+                state = self._touch(state, 0, 1.0 if north > 0 else -1.0, basin.length / 2)
+            if abs(east) + reach > basin.width / 2:
+                state = self._touch(state, 1, 1.0 if east > 0 else -1.0, basin.width / 2)
+        return state
+
+    def _touch(self, state: State, axis: int, side: float, limit: float) -> State:
+        """One plane: across this world axis, at `side`·`limit` (m)."""
+        matrix = rotation(state.attitude)
+        x, y, z = matrix[axis]
+        a, b, c = self._half
+        reach = sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2)
+        if side * state.position[axis] + reach <= limit:
+            return state
+        scale = side / reach
+        point = (a * a * x * scale, b * b * y * scale, c * c * z * scale)
+        inwards = (-side * x, -side * y, -side * z)
+        depth = side * state.position[axis] + reach - limit
+        back = self._take_back(state, matrix, point, inwards, depth)
+        x, y, z = rotation(back.attitude)[axis]
+        place = list(back.position)
+        place[axis] = side * min(side * place[axis], limit - sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2))
+        return self._stop(back._replace(position=(place[0], place[1], place[2])), point, inwards)
+
+    def _take_back(self, state: State, matrix: Matrix, point: Vector, inwards: Vector, depth: float) -> State:
+        """The state moved and turned as a push at the point would, so far that the point is back inside."""
+        size = depth * self._mass_along(point, inwards)
+        x, y, z, roll, pitch, yaw = (
+            size * part / mass
+            for part, mass in zip((*inwards, *cross(point, inwards)), self._mass, strict=True)
+        )
+        (north, east, down), moved = state.position, to_world(matrix, (x, y, z))
+        w, i, j, k = state.attitude
+        turned = attitude_rate(state.attitude, (roll, pitch, yaw))
+        return state._replace(
+            position=(north + moved[0], east + moved[1], down + moved[2]),
+            attitude=normalize((w + turned[0], i + turned[1], j + turned[2], k + turned[3])),
+        )
+
+    def _stop(self, state: State, point: Vector, inwards: Vector) -> State:
+        approach = -_dot(_speed_at(state, point), inwards)
+        if approach <= 0:
+            return state
+        bounce = self._restitution if approach > RESTING else 0.0
+        impulse = (1 + bounce) * approach * self._mass_along(point, inwards)
+        state = self._push(state, point, inwards, impulse)
+        x, y, z = _speed_at(state, point)
+        away = _dot((x, y, z), inwards)
+        slide = (x - away * inwards[0], y - away * inwards[1], z - away * inwards[2])
+        speed = sqrt(_dot(slide, slide))
+        if speed == 0:
+            return state
+        against = (-slide[0] / speed, -slide[1] / speed, -slide[2] / speed)
+        grip = min(self._friction * impulse, speed * self._mass_along(point, against))
+        return self._push(state, point, against, grip)
+
+    def _mass_along(self, point: Vector, line: Vector) -> float:
+        """kg with which the hull resists a push at this point along this line."""
+        lever = cross(point, line)
+        yielding = sum(part * part / mass for part, mass in zip((*line, *lever), self._mass, strict=True))
+        return 1 / yielding
+
+    def _push(self, state: State, point: Vector, line: Vector, impulse: float) -> State:
+        lever = cross(point, line)
+        u, v, w, p, q, r = (
+            speed + impulse * part / mass
+            for speed, part, mass in zip(
+                (*state.velocity, *state.rate), (*line, *lever), self._mass, strict=True
+            )
+        )
+        return state._replace(velocity=(u, v, w), rate=(p, q, r))
+
+
+def _speed_at(state: State, point: Vector) -> Vector:
+    x, y, z = cross(state.rate, point)
+    u, v, w = state.velocity
+    return u + x, v + y, w + z
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -1,0 +1,71 @@
+"""Force and torque of four flapping fins."""
+
+from math import cos, sin
+from typing import Protocol
+
+from robot_runtime.simulation.water.parameters import Parameters, Six, Vector
+
+Four = tuple[float, float, float, float]
+
+
+class Propulsion(Protocol):
+    """Whatever pushes the body."""
+
+    def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
+        """Force (N) and torque (N m) on the body, in body axes."""
+        ...
+
+
+class Fins:
+    """Blades on shafts across the hull's sides.
+
+    A fin that turns pushes the body from its tip towards its shaft with ½ρ·C_T·S·(r_c·θ̇)². Besides, the
+    water resists its blade with ½ρ·C_N·S·u·|u|, where u is the speed across the blade: of the fin's own
+    turning and of the hull's motion through the water. Both act at the distance r_c from the shaft. A fin's
+    own mass is part of the hull's.
+    """
+
+    def __init__(self, parameters: Parameters) -> None:
+        self._mounts = [
+            (*position, *direction)
+            for position, direction in zip(parameters.fin_positions, parameters.fin_directions, strict=True)
+        ]
+        self._centre = parameters.fin_centre
+        half = 0.5 * parameters.density * parameters.fin_area
+        self._thrust = half * parameters.thrust_coefficient
+        self._normal = half * parameters.fin_normal
+
+    def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
+        """Force (N) and torque (N m) in body axes.
+
+        `angles` in rad, `speeds` in rad/s; `velocity` (m/s) of the hull through the water and its turn `rate`
+        (rad/s) in body axes.
+        """
+        u, v, w = velocity
+        p, q, r = rate
+        x = y = z = roll = pitch = yaw = 0.0
+        for (root_x, root_y, out_x, out_y), angle, speed in zip(self._mounts, angles, speeds, strict=True):
+            along, down = cos(angle), sin(angle)
+            at_x = root_x + self._centre * along * out_x
+            at_y = root_y + self._centre * along * out_y
+            at_z = self._centre * down
+            normal_x, normal_y = -down * out_x, -down * out_y
+            sweep = self._centre * speed
+            across = (
+                sweep
+                + (u + q * at_z - r * at_y) * normal_x
+                + (v + r * at_x - p * at_z) * normal_y
+                + (w + p * at_y - q * at_x) * along
+            )
+            thrust = self._thrust * sweep * sweep
+            drag = self._normal * across * abs(across)
+            force_x = -thrust * along * out_x - drag * normal_x
+            force_y = -thrust * along * out_y - drag * normal_y
+            force_z = -thrust * down - drag * along
+            x += force_x
+            y += force_y
+            z += force_z
+            roll += at_y * force_z - at_z * force_y
+            pitch += at_z * force_x - at_x * force_z
+            yaw += at_x * force_y - at_y * force_x
+        return x, y, z, roll, pitch, yaw

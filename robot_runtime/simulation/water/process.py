@@ -1,0 +1,109 @@
+"""The water as a process: attached to the emulated board for ever, heard and asked over Zenoh."""
+
+import logging
+import socket
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from robot_runtime.clock import Clock
+from robot_runtime.simulation.boards.board_line import LineError, Lines, read_fins, write_sense
+from robot_runtime.simulation.water.requests import changes
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.replay_cache import Cache
+from robot_runtime.transport.zenoh_transport import Messages
+
+log = logging.getLogger(__name__)
+
+PERIOD = 0.005
+"""s of the board's time between two answers to it; its fastest sensor is read every 10 ms."""
+TRUTH_PERIOD = 0.05
+"""s between two samples of the truth."""
+RETRY = 0.2
+"""s between two attempts to reach the board."""
+PATIENCE = 0.1
+"""s for which a silent board is waited for before looking whether to end."""
+
+
+class Process:
+    """Joins the simulator, the emulated board's socket and the other processes."""
+
+    def __init__(self, simulator: Simulator, board: Path, messages: Messages, clock: Clock) -> None:
+        self._simulator = simulator
+        self._board = board
+        cache = Cache(messages.run, clock)
+        self._outbox = Outbox(messages.publish, messages.watched, cache)
+        self._clock = clock
+        self._truth_due = clock.now()
+        self._ending = False
+        self._attached: bool | None = None
+        for name, change in changes(simulator).items():
+            messages.answer(f"simulator/{name}", change)
+        messages.answer_bytes("simulator/blocks", cache.answer)
+
+    def run(self) -> None:
+        """Swim until `end` is called, through any number of boards."""
+        while not self._ending:
+            try:
+                with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as line:
+                    line.settimeout(PATIENCE)
+                    line.connect(str(self._board))
+                    self._attend(line)
+            except (OSError, LineError) as problem:
+                if self._attached is not False:
+                    log.warning("no board at %s (%s); trying again until there is one", self._board, problem)
+                self._attached = False
+                time.sleep(RETRY)
+
+    def end(self) -> None:
+        """Let `run` return soon; may be called from a signal handler or any thread."""
+        self._ending = True
+
+    def _attend(self, line: socket.socket) -> None:
+        line.sendall(f"attach {PERIOD}\n".encode())
+        broken: frozenset[str] = frozenset()
+        for text in self._lines(line):
+            if text.startswith("error"):
+                log.warning("the board says: %s", text)
+                continue
+            if text == "ok":
+                # To a fault that it was told of.
+                continue
+            reading = self._simulator.advance(PERIOD, read_fins(text))
+            now = self._clock.now()
+            wanted = self._simulator.broken_devices
+            line.sendall((_faults(broken, wanted) + write_sense(reading)).encode())
+            broken = wanted
+            if not self._attached:
+                log.info("attached to the board at %s", self._board)
+            self._attached = True
+            self._publish_truth(now)
+
+    def _lines(self, line: socket.socket) -> Iterator[str]:
+        lines = Lines()
+        while not self._ending:
+            try:
+                data = line.recv(4096)
+            except TimeoutError:
+                continue
+            if not data:
+                raise ConnectionError("it closed the connection")
+            yield from filter(None, lines.feed(data))
+
+    def _publish_truth(self, now: float) -> None:
+        if now < self._truth_due:
+            return
+        self._truth_due += TRUTH_PERIOD
+        if self._truth_due <= now:
+            # The board was away: what nobody swam need not be told of.
+            self._truth_due = now + TRUTH_PERIOD
+        self._outbox.add_row("truth", now, self._simulator.truth().to_bytes())
+        self._outbox.flush()
+
+
+def _faults(told: frozenset[str], wanted: frozenset[str]) -> str:
+    """The lines that let the board's devices fail, or answer again; `told` are those that fail by now."""
+    absent = [f"fault {device} absent\n" for device in sorted(wanted - told)]
+    mended = [f"fault {device} none\n" for device in sorted(told - wanted)]
+    return "".join(absent + mended)

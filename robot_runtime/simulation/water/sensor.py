@@ -1,0 +1,85 @@
+"""How one sensor tells what it feels: late, noisy, offset, in steps, and sometimes wrong."""
+
+from collections import deque
+from random import Random
+
+from robot_runtime.simulation.water.faults import SOUND, Fault
+from robot_runtime.simulation.water.parameters import Quality
+
+Numbers = tuple[float, ...]
+
+WANDERING = 1.0
+"""s between two steps of an offset's random walk."""
+SAME_TIME = 1e-9
+"""s; moments closer than this are one, as times are sums of many periods."""
+
+
+class Sensor:
+    """A sensor of one or more axes.
+
+    It has random numbers of its own, from the seed and its name, and others for its faults: what happens to
+    another sensor, and what is wrong with this one, leaves its noise as it is.
+    """
+
+    def __init__(self, name: str, quality: Quality, axes: int, seed: int) -> None:
+        self._noise, self._walk, self._step = quality.noise, quality.walk, quality.step
+        self._latency = quality.latency
+        self._interval = 1 / quality.rate
+        self._gauss = Random(f"{seed} {name}").gauss
+        self._chance = Random(f"{seed} {name} fault").random
+        self._offset = [self._gauss(0, quality.bias) for _ in range(axes)]
+        self._due = 0.0
+        self._wanders = WANDERING
+        self._shown: Numbers | None = None
+        self._coming: deque[tuple[float, Numbers]] = deque()
+        self._fault = SOUND
+        self._since = 0.0
+        self.holds = False
+        """Whether its newest reading never came, so that it shows an older one."""
+
+    def break_(self, fault: Fault, time: float) -> None:
+        """Have this fault, and no other, from `time` (s) on."""
+        self._fault = fault
+        self._since = time
+        self.holds = False
+
+    def read(self, time: float, felt: Numbers) -> Numbers:
+        """What it shows at this time (s), having felt this. A first reading is there at once."""
+        if time > self._due - SAME_TIME:
+            self._due = max(self._due + self._interval, time)
+            reading = self._spoilt(time, self._noisy(time, felt))
+            self.holds = reading is None
+            if self._shown is None:
+                self._shown = reading or felt
+            elif reading is not None and self._latency == 0:
+                self._shown = reading
+            elif reading is not None:
+                self._coming.append((time + self._latency, reading))
+        coming = self._coming
+        while coming and coming[0][0] < time + SAME_TIME:
+            self._shown = coming.popleft()[1]
+        return self._shown if self._shown is not None else felt
+
+    def _noisy(self, time: float, felt: Numbers) -> Numbers:
+        gauss, noise = self._gauss, self._noise
+        while time > self._wanders - SAME_TIME:
+            self._wanders += WANDERING
+            self._offset = [offset + gauss(0, self._walk) for offset in self._offset]
+        return tuple(
+            [value + offset + gauss(0, noise) for value, offset in zip(felt, self._offset, strict=True)]
+        )
+
+    def _spoilt(self, time: float, reading: Numbers) -> Numbers | None:
+        """The reading as it comes out in steps; None where it is lost."""
+        fault = self._fault
+        if fault is not SOUND:
+            if fault.kind == "stuck" or (fault.kind == "dropout" and self._chance() < (fault.share or 0)):
+                return None
+            if fault.kind == "spike" and self._chance() < (fault.share or 0):
+                jump = (fault.size or 0) if self._chance() < 0.5 else -(fault.size or 0)
+                reading = tuple([value + jump for value in reading])
+            elif fault.kind == "drift":
+                gone = (fault.speed or 0) * (time - self._since)
+                reading = tuple([value + gone for value in reading])
+        step = self._step
+        return tuple([step * round(value / step) for value in reading]) if step else reading

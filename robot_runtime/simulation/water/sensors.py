@@ -1,0 +1,142 @@
+"""What the robot's sensors show of the simulated motion."""
+
+from math import cos, hypot, nan, pi, remainder, sin
+from typing import NamedTuple
+
+from robot_runtime.simulation.water.faults import DEVICES, SENSORS, SOUND, Fault, check_sensor
+from robot_runtime.simulation.water.fins import Four
+from robot_runtime.simulation.water.geometry import Matrix, rotation, to_body, to_world
+from robot_runtime.simulation.water.parameters import Parameters, Quality, Vector
+from robot_runtime.simulation.water.sensor import Sensor
+from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.surroundings import check_beacons
+from robot_runtime.simulation.water.world import World
+
+
+class Reading(NamedTuple):
+    """All sensors at one moment."""
+
+    pressure: float
+    """Pa, absolute."""
+    temperature: float
+    """°C."""
+    force: Vector
+    """m/s², specific force in body axes: (0, 0, -9.81) on an upright hull at rest."""
+    rate: Vector
+    """rad/s, in body axes."""
+    beacon_right: bool
+    beacon_left: bool
+    battery: float
+    """V."""
+    encoders: Four = (0.0, 0.0, 0.0, 0.0)
+    """rad by which each fin's encoder shows too much; nan where it goes on showing what it last showed."""
+
+
+class Sensors:
+    """Reads the hull's state. The same seed gives the same readings."""
+
+    def __init__(self, parameters: Parameters, world: World, seed: int) -> None:
+        self._parameters = parameters
+        self._world = world
+        self.seed = seed
+        """Of all their noise, from the next start on."""
+        self.faults = dict.fromkeys(SENSORS, SOUND)
+        self.beacons = parameters.beacons
+        self.start()
+
+    def start(self) -> None:
+        """Begin anew at time 0, with the same readings for the same motion; beacons and faults stay."""
+        self._sensors = {
+            name: Sensor(name, quality, axes, self.seed)
+            for name, (quality, axes) in _qualities(self._parameters).items()
+        }
+        for name, fault in self.faults.items():
+            self._sensors[name].break_(fault, 0.0)
+        self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
+
+    def break_(self, sensor: str, fault: Fault, time: float) -> None:
+        """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
+        check_sensor(sensor, fault)
+        self.faults[sensor] = fault
+        self._sensors[sensor].break_(fault, time)
+
+    def set_beacons(self, positions: tuple[Vector, ...]) -> None:
+        """Have light beacons here (m) and nowhere else. Raises ValueError; see `check_beacons`."""
+        check_beacons(positions)
+        self.beacons = positions
+
+    @property
+    def broken_devices(self) -> frozenset[str]:
+        """The emulated board's devices that must not answer."""
+        return frozenset(DEVICES[name] for name, fault in self.faults.items() if fault.kind == "bus")
+
+    def read(self, time: float, state: State, acceleration: Vector, battery: float) -> Reading:
+        """What they show at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
+        parameters, sensors = self._parameters, self._sensors
+        matrix = rotation(state.attitude)
+        north, east, down = acceleration
+        felt = to_body(matrix, (north, east, down - parameters.gravity))
+        pressure = sensors["pressure"].read(time, (self._pressure(time, state, matrix),))
+        fx, fy, fz = sensors["accelerometer"].read(time, felt)
+        p, q, r = sensors["gyroscope"].read(time, state.rate)
+        right, left = self._seen(state, matrix)
+        first, second, third, fourth = [_encoder_error(encoder, time) for encoder in self._encoders]
+        return Reading(
+            pressure=max(pressure[0], 0.0),
+            temperature=parameters.temperature,
+            force=(fx, fy, fz),
+            rate=(p, q, r),
+            beacon_right=sensors["beacon_right"].read(time, (right,))[0] > 0,
+            beacon_left=sensors["beacon_left"].read(time, (left,))[0] > 0,
+            battery=max(sensors["battery"].read(time, (battery,))[0], 0.0),
+            encoders=(first, second, third, fourth),
+        )
+
+    def _pressure(self, time: float, state: State, matrix: Matrix) -> float:
+        x, y, z = to_world(matrix, self._parameters.pressure_position)
+        north, east, down = state.position
+        return self._world.pressure(time, (north + x, east + y, down + z))
+
+    def _seen(self, state: State, matrix: Matrix) -> tuple[float, float]:
+        """How well the right and the left detector see: shares of range and view that are left, above 0 seen.
+
+        A detector sees a beacon that is near enough and within its view; the brightest counts.
+        """
+        parameters = self._parameters
+        best = (-1.0, -1.0)
+        edge = cos(parameters.beacon_view)
+        for beacon in self.beacons:
+            north, east, down = (a - b for a, b in zip(beacon, state.position, strict=True))
+            distance = hypot(north, east, down)
+            near = 1 - distance / parameters.beacon_range
+            if near < -1:
+                continue
+            if distance == 0:
+                return 1.0, 1.0
+            forward, right, _ = to_body(matrix, (north, east, down))
+            ahead = cos(parameters.beacon_detector) * forward / distance
+            aside = sin(parameters.beacon_detector) * right / distance
+            views = (ahead + aside - edge) / (1 - edge), (ahead - aside - edge) / (1 - edge)
+            best = max(best[0], min(near, views[0])), max(best[1], min(near, views[1]))
+        return best
+
+
+def _encoder_error(encoder: Sensor, time: float) -> float:
+    (error,) = encoder.read(time, (0.0,))
+    return nan if encoder.holds else remainder(error, 2 * pi)
+
+
+def _qualities(parameters: Parameters) -> dict[str, tuple[Quality, int]]:
+    """How well each sensor tells, and how many axes it has."""
+    return {
+        "pressure": (parameters.pressure, 1),
+        "gyroscope": (parameters.gyroscope, 3),
+        "accelerometer": (parameters.accelerometer, 3),
+        "encoder0": (parameters.encoder, 1),
+        "encoder1": (parameters.encoder, 1),
+        "encoder2": (parameters.encoder, 1),
+        "encoder3": (parameters.encoder, 1),
+        "beacon_right": (parameters.beacon_right, 1),
+        "beacon_left": (parameters.beacon_left, 1),
+        "battery": (parameters.battery, 1),
+    }

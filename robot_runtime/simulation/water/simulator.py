@@ -1,0 +1,178 @@
+"""The whole simulated robot apart from its board: fins in, sensor readings out."""
+
+import threading
+from math import ceil
+from typing import NamedTuple
+
+from robot_runtime.contract.documents import Truth
+from robot_runtime.simulation.water.body import Body
+from robot_runtime.simulation.water.faults import Fault
+from robot_runtime.simulation.water.fins import Fins, Four
+from robot_runtime.simulation.water.geometry import rotation, to_world
+from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.sensors import Reading, Sensors
+from robot_runtime.simulation.water.surroundings import (
+    FLOATING,
+    Basin,
+    Current,
+    Start,
+    Trim,
+    Waves,
+    check_start,
+)
+from robot_runtime.simulation.water.world import World
+
+STEP_MAX = 0.005
+"""s; at this step a position is off by less than 0.1 mm after 10 s of swimming."""
+DRIVE_MAX = 63
+"""The H-bridges' command at full voltage."""
+
+
+class FinMotion(NamedTuple):
+    """The fins at one moment, as the board tells of them."""
+
+    angles: Four
+    """rad."""
+    speeds: Four
+    """rad/s."""
+    drives: Four
+    """H-bridge commands, -63 to 63."""
+    powered: bool
+    """Whether the motors have power."""
+
+
+class Surroundings(NamedTuple):
+    """All that can be set about water, hull and sensors."""
+
+    basin: Basin
+    current: Current
+    waves: Waves
+    trim: Trim
+    beacons: tuple[Vector, ...]
+    faults: dict[str, Fault]
+    """By sensor."""
+
+
+class Simulator:
+    """Body, world and sensors together. Its methods may be called from any thread."""
+
+    def __init__(self, parameters: Parameters, seed: int) -> None:
+        self._parameters = parameters
+        self._world = World(parameters)
+        self._body = Body(parameters, Fins(parameters), self._world)
+        self._sensors = Sensors(parameters, self._world, seed)
+        self._battery = parameters.battery_full
+        self._angles: Four = (0.0, 0.0, 0.0, 0.0)
+        self._lock = threading.Lock()
+
+    def advance(self, period: float, fins: FinMotion) -> Reading:
+        """Let `period` (s) pass, at whose end the fins are as given, and read the sensors."""
+        with self._lock:
+            before = self._velocity()
+            steps = ceil(period / STEP_MAX)
+            duration = period / steps
+            a, b, c, d = fins.angles
+            e, f, g, h = fins.speeds
+            for step in range(steps):
+                left = period - step * duration
+                start = (a - e * left, b - f * left, c - g * left, d - h * left)
+                self._body.step(duration, start, fins.speeds)
+            self._angles = fins.angles
+            self._drain(period, fins)
+            after = self._velocity()
+            # The mean over the period, so that the blow of reaching the floor is felt.
+            acceleration = (
+                (after[0] - before[0]) / period,
+                (after[1] - before[1]) / period,
+                (after[2] - before[2]) / period,
+            )
+            return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
+
+    def reset(self, start: Start = FLOATING, seed: int | None = None) -> None:
+        """Back to the start: time 0, at rest, by default floating and looking north, with a full battery.
+
+        The sensors' noise begins anew, too, by another `seed` where one is given. Water, trim, beacons and
+        faults stay as they are. Raises ValueError where floor or walls are in the way.
+        """
+        with self._lock:
+            check_start(start, self._world.basin, self._parameters.size)
+            if seed is not None:
+                self._sensors.seed = seed
+            self._start(start)
+
+    def set_current(self, current: Current) -> None:
+        """Let the water flow so from now on."""
+        with self._lock:
+            self._world.set_current(current, self._body.time)
+
+    def set_waves(self, waves: Waves) -> None:
+        """Let this wave run. Raises ValueError where it would break in water of this depth."""
+        with self._lock:
+            self._world.set_waves(waves)
+
+    def set_trim(self, trim: Trim) -> None:
+        """Let the hull float so."""
+        with self._lock:
+            self._body.trim = trim
+
+    def set_basin(self, basin: Basin) -> None:
+        """Put floor and walls elsewhere, and go back to the start, as what was free water may now be wall.
+
+        Raises ValueError where the present waves would break there.
+        """
+        with self._lock:
+            self._world.set_basin(basin)
+            self._start()
+
+    def set_beacons(self, positions: tuple[Vector, ...]) -> None:
+        """Have light beacons here (m north, east, down) and nowhere else. Raises ValueError."""
+        with self._lock:
+            self._sensors.set_beacons(positions)
+
+    def set_fault(self, sensor: str, fault: Fault) -> None:
+        """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
+        with self._lock:
+            self._sensors.break_(sensor, fault, self._body.time)
+
+    def surroundings(self) -> Surroundings:
+        """Everything that can be set, as it is now."""
+        with self._lock:
+            world, sensors = self._world, self._sensors
+            return Surroundings(
+                world.basin,
+                world.current,
+                world.waves,
+                self._body.trim,
+                sensors.beacons,
+                dict(sensors.faults),
+            )
+
+    @property
+    def broken_devices(self) -> frozenset[str]:
+        """The emulated board's devices that must not answer: imu, pressure, encoder0 to encoder3."""
+        with self._lock:
+            return self._sensors.broken_devices
+
+    def truth(self) -> Truth:
+        """What the body really does now."""
+        with self._lock:
+            position, attitude, velocity, rate = self._body.state
+            return Truth(
+                position=position, attitude=attitude, velocity=velocity, rate=rate, fins=self._angles
+            )
+
+    def _start(self, start: Start = FLOATING) -> None:
+        self._body.start(start)
+        self._world.set_current(self._world.current)
+        self._sensors.start()
+        self._battery = self._parameters.battery_full
+
+    def _velocity(self) -> Vector:
+        state = self._body.state
+        return to_world(rotation(state.attitude), state.velocity)
+
+    def _drain(self, period: float, fins: FinMotion) -> None:
+        parameters = self._parameters
+        effort = sum(map(abs, fins.drives)) / (DRIVE_MAX * len(fins.drives)) if fins.powered else 0.0
+        loss = parameters.battery_idle + parameters.battery_motors * effort
+        self._battery = max(self._battery - loss * period, 0.0)

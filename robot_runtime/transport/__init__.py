@@ -1,0 +1,1 @@
+"""Blocks between processes: the bus inside one, Zenoh between them, the outbox and the replay cache."""

@@ -1,0 +1,81 @@
+"""Gathers samples into blocks and sends them to the other processes, so that each message carries many.
+
+All that waits goes out as one message named `STREAM`, blocks one after the other: what costs is waking
+the receiver, not bytes. Whoever wants a single topic subscribes to its own name and gets its blocks alone.
+"""
+
+import threading
+from collections import defaultdict
+from collections.abc import Callable
+
+from robot_runtime.contract.documents import Document
+from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from robot_runtime.transport.replay_cache import Cache
+
+STREAM = "stream"
+
+
+class Outbox:
+    """Rows and documents wait here, in order, until `flush` sends them. `watched` tells who listens.
+
+    What has been sent goes to `cache` too, for whom it did not reach. Every method may be called from any
+    thread.
+    """
+
+    def __init__(
+        self, send: Callable[[str, bytes], None], watched: Callable[[str], bool], cache: Cache | None = None
+    ) -> None:
+        self._send = send
+        self._watched = watched
+        self._cache = cache
+        self._lock = threading.Lock()
+        self._sending = threading.Lock()
+        self._rows: defaultdict[str, list[bytes]] = defaultdict(list)
+        self._documents: defaultdict[str, list[Document]] = defaultdict(list)
+        self._next = dict.fromkeys(BY_NAME, 0)
+
+    def add_row(self, topic: str, time: float, record: bytes) -> None:
+        """Queue one row."""
+        with self._lock:
+            self._rows[topic].append(row(time, record))
+
+    def add_picture(self, topic: str, time: float, jpeg: bytes) -> None:
+        """Queue a picture, in place of one of its topic that still waits."""
+        with self._lock:
+            self._rows[topic] = [row(time, jpeg)]
+
+    def add_document(self, topic: str, document: Document) -> None:
+        """Queue one document."""
+        with self._lock:
+            self._documents[topic].append(document)
+
+    def flush(self) -> None:
+        """Send what waits."""
+        with self._sending:
+            with self._lock:
+                rows, self._rows = self._rows, defaultdict(list)
+                papers, self._documents = self._documents, defaultdict(list)
+            blocks = {
+                name: self._block(name, len(waiting), b"".join(waiting)) for name, waiting in rows.items()
+            }
+            blocks |= {
+                name: self._block(name, len(batch), pack_documents(batch)) for name, batch in papers.items()
+            }
+            if blocks:
+                message = b"".join(blocks.values())
+                if self._cache is not None:
+                    self._cache.keep(message, self._next)
+                self._send(STREAM, message)
+            for name, block in blocks.items():
+                if self._watched(name):
+                    self._send(name, block)
+
+    def send_picture(self, topic: str, time: float, jpeg: bytes) -> None:
+        """Send a picture at once."""
+        with self._sending:
+            self._send(topic, self._block(topic, 1, row(time, jpeg)))
+
+    def _block(self, name: str, count: int, payload: bytes) -> bytes:
+        first = self._next[name]
+        self._next[name] = first + count
+        return Block.of(BY_NAME[name], count, first, payload).data

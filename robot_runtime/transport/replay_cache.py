@@ -1,0 +1,117 @@
+"""What a process has sent in the last minutes, for a server that was not there to hear it."""
+
+import json
+import threading
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from struct import Struct, error
+from typing import Self
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.topics import BY_NAME, HEADER, NUMBERS, Block, is_after, read_blocks
+
+SECONDS = 300.0
+"""As much as the page's charts show."""
+BYTES_MAX = 4_000_000
+"""Some minutes at the robot's full rate; a Raspberry Pi Zero has 512 MB for everything."""
+
+_SIZE = Struct("<I")
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The answer to a question for blocks: who sent them, the blocks, oldest first, and what comes next.
+
+    `next` are the numbers that the sender gives to the next sample of each topic (by name): what lies between
+    them and the last block that is here was never sent or is no longer kept.
+    """
+
+    run: str
+    next: Mapping[str, int]
+    blocks: list[Block]
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Self:
+        """Read an answer. Raises LayoutError where it is none."""
+        try:
+            (size,) = _SIZE.unpack_from(data)
+            head = json.loads(data[_SIZE.size : _SIZE.size + size])
+            numbers = {str(name): int(number) for name, number in head["next"].items() if name in BY_NAME}
+            return cls(str(head["run"]), numbers, read_blocks(data[_SIZE.size + size :]))
+        except LayoutError:
+            raise
+        except (error, ValueError, LookupError, TypeError, AttributeError) as problem:
+            raise LayoutError(f"kept blocks that cannot be read: {problem!r}") from problem
+
+
+class Cache:
+    """The last messages of blocks of the process that is called `run`, bounded in age and in bytes.
+
+    Every method may be called from any thread.
+    """
+
+    def __init__(self, run: str, clock: Clock) -> None:
+        self._run = run
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._messages: deque[tuple[float, bytes]] = deque()
+        self._bytes = 0
+        self._next: dict[str, int] = {}
+
+    def keep(self, message: bytes, following: Mapping[str, int]) -> None:
+        """Keep a message that is about to be sent; `following` are the topics' numbers after it."""
+        now = self._clock.now()
+        with self._lock:
+            self._messages.append((now, message))
+            self._bytes += len(message)
+            while self._messages and (self._bytes > BYTES_MAX or self._messages[0][0] < now - SECONDS):
+                self._bytes -= len(self._messages.popleft()[1])
+            self._next.update(following)
+
+    def answer(self, question: bytes) -> bytes:
+        """The blocks from the wanted numbers on: `question` is JSON, {topic: first number that is wanted}.
+
+        Topics that are not named are left out. Raises ValueError where it is no such thing.
+        """
+        wanted = _read_question(question)
+        with self._lock:
+            messages = list(self._messages)
+            following = {name: number % NUMBERS for name, number in self._next.items()}
+        head = json.dumps({"run": self._run, "next": following}).encode()
+        numbers = {BY_NAME[name].id: number for name, number in wanted.items()}
+        return b"".join([_SIZE.pack(len(head)), head, *_cut(messages, numbers)])
+
+
+def _cut(messages: Iterable[tuple[float, bytes]], numbers: Mapping[int, int]) -> Iterator[bytes]:
+    """Their blocks from these numbers on, by the topics' numbers.
+
+    There are some ten thousand blocks, and a server that comes back waits for them: only heads are read.
+    """
+    for _, message in messages:
+        at = 0
+        while at < len(message):
+            topic, _, count, first, size = HEADER.unpack_from(message, at)
+            end = at + HEADER.size + size
+            number = numbers.get(topic)
+            if number is not None and is_after(first, count, number):
+                yield message[at:end]
+            at = end
+
+
+def write_question(wanted: Mapping[str, int]) -> bytes:
+    """The question for blocks from these numbers on, by the topics' names."""
+    return json.dumps(dict(wanted)).encode()
+
+
+def _read_question(question: bytes) -> dict[str, int]:
+    wanted = json.loads(question)
+    if not isinstance(wanted, dict):
+        raise ValueError("a question for blocks must be a JSON object")
+    for name, number in wanted.items():
+        if name not in BY_NAME:
+            raise ValueError(f"there is no topic {name!r}")
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < NUMBERS:
+            raise ValueError(f"the number of {name} is {number!r}; it must be a whole number below 2^32")
+    return wanted

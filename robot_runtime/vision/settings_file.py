@@ -1,0 +1,41 @@
+"""The settings that somebody made while the robot ran, kept over its restarts."""
+
+import json
+import os
+from pathlib import Path
+
+from robot_runtime.config import ConfigError, read_value
+from robot_runtime.contract.vision_settings import VisionSettings
+
+
+class Kept:
+    """A file; whole under its name, or not there."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def read(self) -> VisionSettings | None:
+        """What was kept last; None without it. Raises ConfigError where it cannot be used."""
+        try:
+            table = json.loads(self._path.read_bytes())
+            settings: VisionSettings = read_value(VisionSettings, table, self._path.name)
+        except FileNotFoundError:
+            return None
+        except ConfigError:
+            raise
+        except (OSError, ValueError) as problem:
+            raise ConfigError(f"{self._path} cannot be read: {problem}") from problem
+        return settings
+
+    def write(self, settings: VisionSettings) -> None:
+        """Keep these. Raises OSError; then those before are kept still."""
+        part = self._path.with_name(self._path.name + ".part")
+        with part.open("w", encoding="utf-8") as file:
+            json.dump(settings.table(), file, indent=1)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(self._path)
+
+    def forget(self) -> None:
+        """Keep none. Raises OSError."""
+        self._path.unlink(missing_ok=True)

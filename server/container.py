@@ -1,0 +1,284 @@
+"""The one place where the server's parts are put together."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, suppress
+from dataclasses import asdict
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from starlette.requests import HTTPConnection
+
+from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.contract.topics import Block
+from robot_runtime.errors import Refused
+from server.features.backup.download import Downloads
+from server.features.comm_tests.board_reservation import Board, Handover
+from server.features.comm_tests.lab import Lab
+from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.shipped import import_samples
+from server.features.exports.imports import Imports
+from server.features.exports.jobs import Jobs
+from server.features.layouts.library import Layouts
+from server.features.lease.arbiter import Desk
+from server.features.lease.sync import Telling
+from server.features.parameters.changes import Changes
+from server.features.parameters.profiles import Profiles
+from server.features.scenarios.live_run import Live
+from server.features.scenarios.runs import Runs as ScenarioRuns
+from server.features.scenarios.simulated_run import Simulated
+from server.features.sessions.auto_recording import ArmingRecording
+from server.features.sessions.bookmarks import Markers
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.features.sessions.resume import Left, find_missing
+from server.features.sessions.retention import Tidying
+from server.features.sessions.session import new_row
+from server.features.tuning.lab import TuningLab
+from server.features.tuning.runs import Runs as TuningRuns
+from server.health.alarms import Alarms
+from server.health.monitor import Watch
+from server.health.watchdog import DOWN, Inspection
+from server.http.page import Page
+from server.http.sign_in.access import Access
+from server.platform.models import SessionRow
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store, StoreError
+from server.processes.pidfile import running_parts
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
+from server.stream.bridge import SENT_BY, Bridge, RuntimeSilent
+from server.stream.hub import Hub
+
+if TYPE_CHECKING:
+    from server.features.comparison.comparer import Comparer
+
+HEALTH_SECONDS = 1.0
+BEAT_SECONDS = 1.0
+
+
+class Assembly:
+    """Everything that lives as long as the server does."""
+
+    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
+        self.settings = settings
+        self._stopping: asyncio.Task[None] | None = None
+        self._ended = ended
+        """How the server before this one has ended unexpectedly, a sentence."""
+        self.clock: Clock = SteadyClock()
+        self.page = Page(settings.page)
+        self.store = Store(settings.data.database)
+        self.notices = Notices(self.clock, lambda block: self._deliver([block]))
+        self.bridge = Bridge(settings, self._deliver)
+        self.changes = Changes(self.store, self.bridge)
+        self.profiles = Profiles(self.store)
+        self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.telling = Telling(self.bridge.tell_lease)
+        self.desk = Desk(
+            self.clock,
+            self._tell_control,
+            self.bridge.drive,
+            lambda text: self.notices.tell("control", "info", text),
+        )
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
+        self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
+        self.catalogue = Catalogue(self.store, self.recorder)
+        self.markers = Markers(self.store, self.clock, self.recorder)
+        self.tidying = Tidying(self.store, settings, self.notices, self.clock)
+        self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
+        self.alarms = Alarms(self.clock, self.notices.tell, self._tell_alarms)
+        self.parts = Parts(commands, settings.data, self.clock, self._see_down)
+        self.watch = Watch(settings, self.clock, self.store, self.parts)
+        self.inspection = Inspection(settings, self.clock, self.watch, self.parts, self.store, self.alarms)
+        board = Board(settings, self.notices.tell)
+        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
+        self.jobs = Jobs(settings.data, self.store)
+        self.imports = Imports(settings.data, self.store)
+        self.layouts = Layouts(self.store)
+        self.downloads = Downloads(settings.data)
+        self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
+
+        self._live = Live(
+            settings,
+            self.store,
+            self.recorder,
+            self.bridge,
+            self.watch,
+            self.parts,
+            self.clock,
+            self.notices.tell,
+        )
+        self.scenarios = ScenarioRuns(
+            self._live, Simulated(settings, self.store, self.notices), self.hub.tell
+        )
+        self.bridge.on_stop = self.scenarios.see_stop
+        self.tuning = TuningLab(
+            TuningRuns(self.store),
+            self.bridge,
+            self.clock,
+            self.hub.tell,
+            self.notices.tell,
+            self._scenario_on,
+        )
+
+    @cached_property
+    def comparer(self) -> "Comparer":
+        """Lays sessions over each other; made when first asked for, since it needs NumPy."""
+        from server.features.comparison.comparer import Comparer
+
+        return Comparer(self.store)
+
+    @staticmethod
+    def of(connection: HTTPConnection) -> "Assembly":
+        """The assembly that serves this request."""
+        assembly = connection.app.state.assembly
+        assert isinstance(assembly, Assembly)
+        return assembly
+
+    def require_disarmed(self, why: str) -> None:
+        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
+        state = self.watch.state()
+        if state is not None and state.get("armed"):
+            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
+
+    @asynccontextmanager
+    async def run(self) -> AsyncIterator[None]:
+        """Start everything; end everything. Raises SetupError, StoreError."""
+        tasks: list[asyncio.Task[None]] = []
+        try:
+            left = await self.recorder.recover()
+            await self.imports.recover()
+            self.downloads.recover()
+            self.jobs.open()
+            await self.lab.runs.mark_interrupted()
+            await self.tuning.runs.mark_interrupted()
+            await import_samples(self.lab.runs)
+            self.access.open()
+            await self.bridge.open()
+            tasks.append(asyncio.create_task(self._beat()))
+            await self.parts.end_others()
+            await self._catch_up(left)
+            self._tell_session()
+            self._tell_alarms()
+            if self._ended:
+                self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
+            if self.settings.hil.simulator == "elsewhere":
+                for name in SIMULATION:
+                    await self.parts.pause(name, SIMULATION_ELSEWHERE)
+            self.scenarios.announce()
+            self.tuning.announce()
+            tasks += [
+                asyncio.create_task(work)
+                for work in (
+                    self.handover.start_parts(),
+                    self.recorder.run(),
+                    self._live.recover(),
+                    self.jobs.run(),
+                    self.hub.watch(),
+                    self.tidying.run(),
+                    self.desk.run(),
+                    self.telling.run(),
+                    self.inspection.run(),
+                    self.tuning.run(),
+                    self._tell_health(),
+                )
+            ]
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            await self.tuning.close()
+            await self.scenarios.close()
+            await self.lab.close()
+            await self.parts.stop()
+            await self.arming.close()
+            await self._end_session()
+            await self.bridge.close()
+            await self.access.close()
+            await asyncio.to_thread(self.store.close)
+
+    async def _catch_up(self, left: Left | None) -> None:
+        """Take in what the parts of a killed server have sent since, before anybody is served."""
+        running = set(running_parts(self.settings.data.run))
+        if "runtime" in running and self.settings.in_the_loop:
+            running.add("simulator")  # perhaps on another computer
+        kept = await self.bridge.catch_up(running)
+        if left is not None:
+            found = {name: find_missing(left, SENT_BY[name], one) for name, one in kept.items()}
+            await self.recorder.resume(left, found)
+        self.bridge.go_on(kept)
+        self.recorder.caught_up()
+
+    def _deliver(self, blocks: list[Block]) -> None:
+        self.hub.add(blocks)
+        for block in blocks:
+            self.recorder.add(block)
+            self.watch.see(block)
+            self.tuning.see(block)
+            if block.topic.name == "state":
+                self.telling.see_run(self.bridge.run)
+                if self.settings.sessions.record_at_arming:
+                    self.arming.see(block)
+
+    def _scenario_on(self) -> str | None:
+        run = self.scenarios.active
+        if run is not None and run.place == "live":
+            return f"The scenario “{run.scenario.title}” is being run. Cancel it first."
+        return None
+
+    def _board_occupied(self) -> str | None:
+        session = self.recorder.session
+        if (scenario := self._scenario_on()) is not None:
+            return scenario
+        # What arming has begun ends by itself: lending the board disarms the robot.
+        if session is None or session.origin == "arming":
+            return None
+        return f"“{session.name}” is being recorded. Stop the recording first."
+
+    async def _armed_row(self, name: str, state: str) -> SessionRow:
+        return await asyncio.to_thread(new_row, self.settings, self.clock, name, "", state, origin="arming")
+
+    def _tell_session(self) -> None:
+        session = self.recorder.session
+        self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+
+    def _dismiss(self, device: int, reason: str) -> None:
+        self.desk.dismiss(device)
+        self.hub.dismiss(device, reason)
+
+    def _tell_control(self, message: dict[str, Any]) -> None:
+        self.telling.see_epoch(message["epoch"])
+        self.hub.tell(message)
+
+    def _tell_alarms(self) -> None:
+        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})
+
+    def _see_down(self, part: str, text: str) -> None:
+        self.alarms.begin(DOWN[part], text)
+        if part == "simulator":
+            self._stopping = asyncio.create_task(self._stop_without_water())
+
+    async def _stop_without_water(self) -> None:
+        # It may be back before the sensors have frozen for long enough, with a robot that is elsewhere.
+        with suppress(Refused, RuntimeSilent):
+            await self.bridge.disarm()
+
+    async def _tell_health(self) -> None:
+        while True:
+            self.arming.tick()
+            health = self.watch.health()
+            self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
+            await asyncio.sleep(HEALTH_SECONDS)
+
+    async def _beat(self) -> None:
+        while True:
+            self.bridge.beat()
+            await asyncio.sleep(BEAT_SECONDS)
+
+    async def _end_session(self) -> None:
+        if self.recorder.session is not None:
+            # Where even its end cannot be stored, the next start marks it as interrupted.
+            with suppress(StoreError, RecordingRefused):
+                await self.recorder.stop(self.recorder.session.id)

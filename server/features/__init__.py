@@ -1,0 +1,1 @@
+"""Features of the server: each has its routes, schemas, services and shell command in one folder."""

@@ -1,0 +1,129 @@
+"""`mucat backup` and `mucat restore`: the database copied while a server records, and put back."""
+
+import argparse
+import os
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+from robot_runtime.durable_files import sync, write_whole
+from server.features.backup.backup import (
+    CHECKSUM,
+    copy_database,
+    open_database,
+    place,
+    sum_file,
+    thin_out,
+    write_checksum,
+)
+from server.platform.running_server import Claim
+from server.platform.schema import explain, read_revision, refuse_unknown
+from server.platform.settings import DataFolder, Settings, SetupError
+
+LOGS = ("-wal", "-journal")
+"""What may hold a part of a database that was being written."""
+NICENESS = 15
+"""Control and recording go first."""
+
+
+def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
+    """Do what the command line says. Raises SetupError, with a line for a person."""
+    folder = settings.data
+    if options.command == "backup":
+        os.nice(NICENESS)
+        words = back_up(folder, options.file)
+    else:
+        with claim(folder):
+            words = restore(folder, options.file)
+    print(words)  # noqa: T201 - a command line speaks
+    return 0
+
+
+def back_up(folder: DataFolder, file: Path | None) -> str:
+    """Copy the database; what became of it, in words. Raises SetupError."""
+    if not folder.database.is_file():
+        raise SetupError(f"There is no database in {folder.path} yet, and so nothing to back up.")
+    if file is not None and file.exists():
+        raise SetupError(f"{file} is there already. Name another file.")
+    try:
+        path = file or place(folder, "backup")
+        copy_database(folder.database, path)
+        checksum = write_checksum(path)
+        if file is None:
+            thin_out(folder, "backup")
+    except (sqlite3.DatabaseError, OSError) as problem:
+        where = folder.backups if file is None else file.parent
+        raise SetupError(f"No backup was made: {explain(problem, where)}") from problem
+    return f"{path}: {path.stat().st_size / 1e6:.1f} MB, {_count(path)}, SHA-256 {checksum}"
+
+
+def restore(folder: DataFolder, file: Path) -> str:
+    """Put a copy in the place of the database of a folder that is held; what was there is put aside.
+
+    Raises SetupError; then nothing has changed.
+    """
+    revision = _examine(file)
+    fresh = folder.database.with_name("restored.db")
+    try:
+        copy_database(file, fresh)
+        aside = _put_aside(folder) if folder.database.exists() else None
+        fresh.replace(folder.database)
+        sync(folder.path)
+        thin_out(folder, "replaced")
+    except (sqlite3.DatabaseError, OSError) as problem:
+        fresh.unlink(missing_ok=True)
+        raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem
+    kept = f" What was there before is {aside}." if aside else ""
+    return f"{folder.database} is what it was in {file} (revision {revision}): {_count(file)}.{kept}"
+
+
+def _examine(file: Path) -> str:
+    if not file.is_file():
+        raise SetupError(f"There is no file {file}.")
+    try:
+        listed = file.with_name(file.name + CHECKSUM)
+        if listed.is_file() and listed.read_text(encoding="utf-8").split()[:1] != [sum_file(file)]:
+            raise SetupError(f"{file} is not what was backed up: its checksum in {listed} is another one.")
+        revision = read_revision(file)
+    except (sqlite3.DatabaseError, OSError, UnicodeDecodeError) as problem:
+        raise SetupError(f"{file} cannot be restored: {problem}.") from problem
+    if revision is None:
+        raise SetupError(f"{file} cannot be restored: it holds no sessions of µ-CAT.")
+    refuse_unknown(revision, file)
+    return revision
+
+
+def _put_aside(folder: DataFolder) -> Path:
+    """Give the present database a second name, so that the copy takes its place in one step.
+
+    One that works is brought into one file first. Of a damaged one the files beside it are kept too; in their
+    place they must not stay, where SQLite would take them for the copy's.
+    """
+    aside = place(folder, "replaced")
+    logs = {path: _beside(aside, end) for end in LOGS if (path := _beside(folder.database, end)).exists()}
+    for path, kept in logs.items():
+        write_whole(kept, path.read_bytes(), 0o600)
+    try:
+        with closing(open_database(folder.database, "rw")) as database:
+            database.execute("PRAGMA journal_mode = DELETE")
+    except sqlite3.DatabaseError:
+        pass
+    else:
+        for kept in logs.values():
+            kept.unlink()
+    os.link(folder.database, aside)
+    sync(folder.backups)
+    for end in (*LOGS, "-shm"):
+        _beside(folder.database, end).unlink(missing_ok=True)
+    sync(folder.path)
+    return aside
+
+
+def _beside(database: Path, end: str) -> Path:
+    return database.with_name(database.name + end)
+
+
+def _count(database: Path) -> str:
+    with closing(open_database(database, "ro")) as connection:
+        (sessions,) = connection.execute("SELECT count(*) FROM session").fetchone()
+    return "1 session" if sessions == 1 else f"{sessions} sessions"

@@ -1,0 +1,27 @@
+"""The whole database, to be taken home."""
+
+from fastapi import APIRouter, Request
+from starlette.responses import Response
+
+from server.container import Assembly
+from server.http.problems import answers
+
+router = APIRouter(prefix="/api/backup", tags=["sessions"])
+
+
+@router.get(
+    "",
+    summary="Download a copy of the database",
+    operation_id="downloadBackup",
+    response_class=Response,
+    responses={
+        200: {
+            "content": {"application/vnd.sqlite3": {}},
+            "description": "The database at one moment; `mucat restore` puts it back",
+        },
+        **answers(_409="Another one is being copied or downloaded", _507="It cannot be copied"),
+    },
+)
+async def download_backup(request: Request) -> Response:
+    """Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile."""
+    return await Assembly.of(request).downloads.begin(request)

@@ -1,0 +1,218 @@
+"""Lends the robot's board to a communication test, and takes it back with the robot's firmware on it.
+
+While a board may hold anything but the robot's firmware, a file in the data folder says so: on the disk
+before the first upload, taken away after the firmware is back. So a server that was killed in between brings
+it back at its next start.
+"""
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
+
+from robot_runtime.clock import Clock
+from robot_runtime.durable_files import sync, write_whole
+from robot_runtime.errors import Refused
+from robot_runtime.simulation.boards.firmware import firmware_path
+from server.health.monitor import Watch
+from server.platform.settings import Settings
+from server.processes.logs import PartLog
+from server.processes.process import Process
+from server.processes.supervisor import Parts, Tell
+from server.stream.bridge import Bridge, RuntimeSilent
+
+DISARM_SECONDS = 3.0
+"""The runtime says its state at every change, and every second."""
+PORT_SECONDS = 10.0
+"""Within which the emulated board must have its port, which it makes when it starts."""
+RESTORE_SECONDS = 120.0
+"""An upload at 115200 baud takes 5 s, three attempts with a board that does not answer some 40 s."""
+LOOK_SECONDS = 0.05
+LINES_TOLD = 2
+
+
+class Board:
+    """The robot's board, whose port nobody else has open. `tell` hears what becomes of its firmware.
+
+    `problem` says why the firmware could not be brought back, and what to do; None where it is there.
+    """
+
+    def __init__(self, settings: Settings, tell: Tell) -> None:
+        self.problem: str | None = None
+        self._settings = settings
+        self._tell = tell
+        link, folder = settings.link, settings.data
+        self._port, reset = link.port, link.reset
+        if settings.emulated_board:
+            self._port, reset = str(folder.board_tty), f"board:{folder.board_socket}"
+        self._arguments = ["--port", self._port, "--reset", reset]
+
+    @property
+    def away(self) -> bool:
+        """Whether its firmware may be something else than the robot's."""
+        return self._settings.data.firmware_away.exists()
+
+    @asynccontextmanager
+    async def lend(self, name: str) -> AsyncIterator[list[str]]:
+        """While entered the board is the test's of this name; the value are the lab's arguments for it.
+
+        Raises Refused where the disk does not take the note that the firmware is away.
+        """
+        note = self._settings.data.firmware_away
+        try:
+            await asyncio.to_thread(_mark, note, name)
+        except OSError as problem:
+            raise Refused(
+                f"{note} cannot be written: {problem.strerror}. Without it nobody would bring the robot's "
+                "firmware back after a power cut. Free some space, or check the disk."
+            ) from problem
+        try:
+            yield list(self._arguments)
+        finally:
+            await self.restore()
+
+    async def restore(self) -> None:
+        """Upload the robot's firmware, and tell how it went."""
+        problem = await self._upload()
+        if problem:
+            self.problem = (
+                f"The robot's firmware is not on its board: {problem}. Check that the board is powered and "
+                "its reset line connected, then start the server again, or another test on the robot's "
+                "board; both bring it back."
+            )
+            self._tell("firmware", "alarm", self.problem)
+            return
+        await asyncio.to_thread(_unmark, self._settings.data.firmware_away)
+        self.problem = None
+        self._tell("firmware", "info", "The robot's firmware is back on its board.")
+
+    async def _upload(self) -> str:
+        """What went wrong, in words; empty where the firmware is there."""
+        output = PartLog(self._settings.data.logs / "restore.log")
+        settings = self._settings
+        firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
+        command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(firmware)]
+        command += ["--with-parent", *self._arguments]
+        try:
+            async with asyncio.timeout(PORT_SECONDS):
+                while not Path(self._port).exists():
+                    await asyncio.sleep(LOOK_SECONDS)
+        except TimeoutError:
+            return f"there is no {self._port}"
+        try:
+            with output.open() as file:
+                process = Process(command, file)
+            try:
+                async with asyncio.timeout(RESTORE_SECONDS):
+                    status = await process.wait()
+            finally:
+                process.close()
+        except TimeoutError:
+            return f"the upload took more than {RESTORE_SECONDS:g} s"
+        except OSError as problem:
+            return f"the upload could not be started: {problem.strerror}"
+        finally:
+            output.trim()
+        return "" if status == 0 else output.last(LINES_TOLD) or f"the upload ended with exit status {status}"
+
+
+class Handover:
+    """Of the board between the runtime and the lab; `occupied` says why it cannot be lent now, if so."""
+
+    def __init__(
+        self,
+        board: Board,
+        bridge: Bridge,
+        watch: Watch,
+        parts: Parts,
+        clock: Clock,
+        occupied: Callable[[], str | None],
+    ) -> None:
+        self._board = board
+        self._bridge = bridge
+        self._watch = watch
+        self._parts = parts
+        self._clock = clock
+        self._occupied = occupied
+
+    @asynccontextmanager
+    async def lend(self, name: str) -> AsyncIterator[list[str]]:
+        """As `Board.lend`, but the robot is disarmed and its runtime ends before, and comes back afterwards.
+
+        Raises Refused where that is not possible.
+        """
+        reason = self._bridge.lent or self._occupied()
+        if reason:
+            raise Refused(reason)
+        why = (
+            f"The robot's board is lent to the communication test “{name}”. To have it back, cancel the test."
+        )
+        with self._nobody_commands(why):
+            await self._disarm()
+            # A session may have been about to start when the board was asked for.
+            if reason := self._occupied():
+                raise Refused(reason)
+            async with self._without_runtime(why), self._board.lend(name) as arguments:
+                yield arguments
+
+    async def start_parts(self) -> None:
+        """Start every part; where an earlier server could not bring the firmware back, that comes first."""
+        if not self._board.away:
+            self._parts.start()
+            return
+        why = "A communication test was cut off; the robot's firmware is being uploaded to its board again."
+        with self._nobody_commands(why):
+            async with self._without_runtime(why):
+                self._parts.start()
+                await self._board.restore()
+
+    @contextmanager
+    def _nobody_commands(self, why: str) -> Iterator[None]:
+        self._bridge.lent = why
+        try:
+            yield
+        finally:
+            self._bridge.lent = None
+
+    @asynccontextmanager
+    async def _without_runtime(self, why: str) -> AsyncIterator[None]:
+        await self._parts.pause("runtime", why)
+        self._bridge.stopped = True
+        try:
+            yield
+        finally:
+            self._bridge.stopped = False
+            self._watch.firmware_away = self._board.problem
+            self._parts.resume("runtime")
+
+    async def _disarm(self) -> None:
+        asked = self._clock.now()
+        try:
+            await self._bridge.command("stop", {})
+        except RuntimeSilent as problem:
+            if not problem.waited:
+                return  # no runtime: a board that hears nothing disarms by itself within a second
+            raise Refused(f"The robot could not be disarmed before the test. {problem}") from problem
+        while self._may_be_armed(asked):
+            if self._clock.now() - asked > DISARM_SECONDS:
+                raise Refused(
+                    f"The robot was not disarmed within {DISARM_SECONDS:g} s, so its board cannot run a "
+                    "communication test. Look at the System page, and try again."
+                )
+            await asyncio.sleep(LOOK_SECONDS)
+
+    def _may_be_armed(self, since: float) -> bool:
+        """Whether the newest that the runtime has said is that it is armed, or is older than the STOP."""
+        state = self._watch.state() or {}
+        time = state.get("time")
+        return not isinstance(time, int | float) or time < since or state.get("armed") is not False
+
+
+def _mark(path: Path, name: str) -> None:
+    write_whole(path, f"{name}\n".encode())
+
+
+def _unmark(path: Path) -> None:
+    path.unlink(missing_ok=True)
+    sync(path.parent)

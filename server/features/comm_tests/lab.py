@@ -1,0 +1,293 @@
+"""Runs communication tests, one document at a time, in a process of its own.
+
+The process (`python -m robot_runtime.experiments.comm_test`) compiles, uploads and runs, and tells what it
+does in lines
+of JSON. Here they become rows of the database and progress for the pages.
+"""
+
+import asyncio
+import json
+import logging
+import sys
+import tempfile
+from collections import deque
+from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager, suppress
+from dataclasses import dataclass, field
+from signal import SIGKILL, SIGTERM
+from typing import Any
+
+from robot_runtime.clock import Clock
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, read_document
+from robot_runtime.experiments.comm_test.runner import estimate_seconds
+from server.features.comm_tests.runs import End, Runs
+from server.features.comm_tests.schemas import Cell, Phase, Place
+from server.platform.settings import Settings
+from server.platform.store import StoreError
+from server.processes.process import PipedProcess, describe_status
+
+log = logging.getLogger(__name__)
+
+LINE_BYTES_MAX = 100_000
+WORDS_KEPT = 5
+"""Lines that are no JSON are the last words of a process that fails."""
+TEST_SECONDS_MAX = 86_400.0
+"""s of the tests' own time, all cells together: a board that is lent is to come back within a day."""
+CANCEL_SECONDS = 45.0
+"""After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
+
+
+class LabError(Exception):
+    """The test cannot go on; the text says why."""
+
+
+Tell = Callable[[dict[str, Any]], None]
+Lend = Callable[[str], AbstractAsyncContextManager[list[str]]]
+"""Called with the test's name; while it is entered the robot's board is the lab's, and its value are the
+lab's arguments for it. Raises Refused where the board cannot be had."""
+
+
+@dataclass(slots=True)
+class Progress:
+    """What is being run; `weights` are the cells' test times in s, test by test."""
+
+    tests: list[CommTest]
+    place: Place
+    began: float
+    weights: list[list[float]]
+    test: int = 0
+    run: int | None = None
+    done: int = 0
+    done_weight: float = 0.0
+    phases: dict[int, Phase] = field(default_factory=dict)
+
+    def describe(self, now: float) -> dict[str, Any]:
+        """As the pages are told; `remaining` is for all tests of the document, null while unknown."""
+        elapsed = now - self.began
+        left = sum(map(sum, self.weights)) - self.done_weight
+        return {
+            "run": self.run,
+            "name": self.tests[self.test].name,
+            "place": self.place,
+            "test": self.test,
+            "tests": len(self.tests),
+            "cells": len(self.weights[self.test]),
+            "done": self.done,
+            "elapsed": elapsed,
+            "remaining": elapsed * left / self.done_weight if self.done_weight else None,
+            "phase": {str(number): phase for number, phase in self.phases.items()},
+        }
+
+
+class Lab:
+    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
+
+    def __init__(self, settings: Settings, runs: Runs, clock: Clock, tell: Tell, lend: Lend) -> None:
+        self.runs = runs
+        self._settings = settings
+        self._clock = clock
+        self._tell = tell
+        self._lend = lend
+        self._task: asyncio.Task[None] | None = None
+        self._process: PipedProcess | None = None
+        self._cancelled = False
+
+    @property
+    def busy(self) -> bool:
+        """Whether a document is being run."""
+        return self._task is not None and not self._task.done()
+
+    async def start(self, text: str, place: Place) -> int:
+        """Run a document; returns the number of its first run as soon as that has begun.
+
+        Raises DocumentError, Refused where it cannot be run now, StoreError.
+        """
+        tests = read_limited(text)
+        if self.busy:
+            raise Refused("A communication test is running. Wait for its end, or cancel it.")
+        began: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._cancelled = False
+        self._task = asyncio.create_task(self._run(tests, text, place, began))
+        return await asyncio.shield(began)
+
+    async def wait(self) -> None:
+        """Wait until nothing runs."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+
+    def cancel(self) -> None:
+        """Let what runs come to its end soon, in order; the cells that are finished are kept."""
+        self._cancelled = True
+        process = self._process
+        if process is not None:
+            process.signal(SIGTERM)
+            asyncio.get_running_loop().call_later(CANCEL_SECONDS, process.signal, SIGKILL)
+
+    async def close(self) -> None:
+        """Cancel what runs, and wait for its end."""
+        self.cancel()
+        await self.wait()
+
+    async def _run(self, tests: list[CommTest], text: str, place: Place, began: asyncio.Future[int]) -> None:
+        weights = [[estimate_seconds(test, cell) for cell in test.cells] for test in tests]
+        progress = Progress(tests, place, self._clock.now(), weights)
+        try:
+            if place == "robot":
+                async with self._lend(tests[0].name) as arguments:
+                    await self._perform(progress, text, arguments, began)
+            else:
+                await self._perform(progress, text, [], began)
+        except (Refused, StoreError, LabError, OSError) as problem:
+            log.warning("the communication test ended: %s", problem)
+            if progress.run is not None:
+                # Where even that cannot be stored, the next start marks it as interrupted.
+                with suppress(StoreError):
+                    await self.runs.end(progress.run, "failed", str(problem))
+            if not began.done():
+                told = problem if isinstance(problem, Refused | StoreError) else Refused(str(problem))
+                began.set_exception(told)
+        finally:
+            self._tell({"op": "comm_test", "active": None, "cell": None})
+            if not began.done():
+                began.set_exception(Refused("The communication test ended before it began."))
+
+    async def _perform(
+        self, progress: Progress, text: str, arguments: list[str], began: asyncio.Future[int]
+    ) -> None:
+        command = [
+            sys.executable,
+            "-m",
+            "robot_runtime.experiments.comm_test",
+            "--build",
+            str(self._settings.build),
+        ]
+        command += ["--where", progress.place, "--with-parent", *arguments]
+        output = _Lines()
+        with tempfile.TemporaryFile() as document:
+            document.write(text.encode())
+            document.seek(0)
+            if self._cancelled:
+                raise Refused("The communication test was cancelled before it began.")
+            self._process = PipedProcess(command, output.feed, document)
+        ending = asyncio.create_task(self._wait_for(self._process, output))
+        try:
+            while (line := await output.next()) is not None:
+                await self._take(progress, line, output.words, began)
+            status = await ending
+        finally:
+            ending.cancel()
+            self._process.close()
+            self._process = None
+        said = " / ".join(output.words)
+        if progress.run is not None:
+            state: End = "cancelled" if self._cancelled else "failed"
+            await self._end(progress, state, f"It broke off ({describe_status(status)}). {said}".strip())
+        elif not began.done():
+            why = "It was cancelled." if self._cancelled else said or f"It {describe_status(status)}."
+            raise LabError(f"The communication test could not begin. {why}")
+
+    async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int:
+        status = await process.wait()
+        output.end()
+        return status
+
+    async def _take(
+        self, progress: Progress, line: bytes, words: deque[str], began: asyncio.Future[int]
+    ) -> None:
+        event = _read_event(line)
+        if event is None:
+            words.append(line.decode(errors="replace").strip())
+            return
+        try:
+            cell = await self._apply(progress, event, words, began)
+        except (LookupError, TypeError, ValueError) as problem:
+            raise LabError(f"What the test told cannot be understood: {problem!r}") from problem
+        active = progress.describe(self._clock.now()) if progress.run is not None else None
+        shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
+        self._tell({"op": "comm_test", "active": active, "cell": shown})
+
+    async def _apply(
+        self, progress: Progress, event: dict[str, Any], words: deque[str], began: asyncio.Future[int]
+    ) -> Cell | None:
+        """Keep what has happened; the cell where one is finished."""
+        match event.get("event"):
+            case "started":
+                progress.test = int(event["test"])
+                progress.done, progress.phases = 0, {}
+                test, place, host = progress.tests[progress.test], progress.place, str(event["host"])
+                progress.run = await self.runs.start(
+                    test, place, str(event["firmware"]), event["tools"], host
+                )
+                if not began.done():
+                    began.set_result(progress.run)
+            case "phase":
+                progress.phases[int(event["number"])] = event["phase"]
+            case "cell" if progress.run is not None:
+                number = int(event["number"])
+                cell = await self.runs.add(progress.run, number, event["values"])
+                progress.done += 1
+                progress.done_weight += progress.weights[progress.test][number]
+                progress.phases.pop(number, None)
+                return cell
+            case "ended" if progress.run is not None:
+                await self._end(progress, event["state"], str(event["problem"]))
+            case "refused":
+                words.extend(map(str, event["problems"]))
+        return None
+
+    async def _end(self, progress: Progress, state: End, problem: str) -> None:
+        assert progress.run is not None
+        await self.runs.end(progress.run, state, problem)
+        progress.run = None
+        progress.done_weight = sum(sum(one) for one in progress.weights[: progress.test + 1])
+
+
+def read_limited(text: str) -> list[CommTest]:
+    """The tests of a document that may be run here. Raises DocumentError."""
+    tests = read_document(text)
+    seconds = sum(estimate_seconds(test, cell) for test in tests for cell in test.cells)
+    if seconds > TEST_SECONDS_MAX:
+        raise DocumentError(
+            [
+                f"the document's cells take about {seconds / 3600:.0f} hours; at most "
+                f"{TEST_SECONDS_MAX / 3600:g} can be run at once. Take fewer numbers, or shorter delays"
+            ]
+        )
+    return tests
+
+
+class _Lines:
+    """Cuts what a process prints into lines; `words` are the last that are no events, for when it fails."""
+
+    def __init__(self) -> None:
+        self.words: deque[str] = deque(maxlen=WORDS_KEPT)
+        self._lines: asyncio.Queue[bytes | None] = asyncio.Queue()
+        self._partial = b""
+
+    def feed(self, data: bytes) -> None:
+        """What it has printed."""
+        *whole, self._partial = (self._partial + data).split(b"\n")
+        self._partial = self._partial[-LINE_BYTES_MAX:]
+        for line in whole:
+            if line.strip():
+                self._lines.put_nowait(line[-LINE_BYTES_MAX:])
+
+    def end(self) -> None:
+        """It prints no more."""
+        self.feed(b"\n")
+        self._lines.put_nowait(None)
+
+    async def next(self) -> bytes | None:
+        """The next line; None after the last."""
+        return await self._lines.get()
+
+
+def _read_event(line: bytes) -> dict[str, Any] | None:
+    if not line.startswith(b"{"):
+        return None
+    try:
+        event = json.loads(line)
+    except ValueError:
+        return None
+    return event if isinstance(event, dict) else None

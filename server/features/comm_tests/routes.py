@@ -1,0 +1,172 @@
+"""Communication tests: documents, runs, the thesis's tables, downloads."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi.responses import Response
+
+from robot_runtime.experiments.comm_test.document import CommTest, DocumentError
+from robot_runtime.experiments.comm_test.runner import estimate_seconds
+from server.container import Assembly
+from server.features.comm_tests import tables
+from server.features.comm_tests.lab import read_limited
+from server.features.comm_tests.reference import TABLES, TITLES, read_table
+from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.schemas import (
+    Check,
+    CheckedTest,
+    DocumentText,
+    Run,
+    RunSummary,
+    Start,
+    Started,
+    TableCell,
+    TestDocument,
+    ThesisTable,
+)
+from server.features.comm_tests.shipped import shipped_documents
+from server.features.lease.admission import require_control
+from server.features.sessions.session import IDENTIFIER_MAX
+from server.http.problems import answers
+from server.platform.models import CommTestRun
+
+UNKNOWN = answers(_404="There is no such run")
+
+router = APIRouter(prefix="/api/comm-tests", tags=["communication tests"])
+
+Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+
+
+@router.get(
+    "/documents", summary="The documents that come with the program", operation_id="listTestDocuments"
+)
+def get_documents() -> list[TestDocument]:
+    """The thesis's own example (Figure 10) first."""
+    return shipped_documents()
+
+
+@router.post("/check", summary="What is wrong with a document", operation_id="checkTestDocument")
+def check(document: DocumentText) -> Check:
+    """Its problems, field by field; or its tests, with about how long they take."""
+    try:
+        return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
+    except DocumentError as problem:
+        return Check(problems=problem.problems, tests=[])
+
+
+@router.post(
+    "/runs",
+    status_code=201,
+    summary="Run a document",
+    operation_id="startTestRun",
+    responses=answers(
+        _409="Refused now",
+        _422="The document cannot be run",
+        _423="On the robot's board: control is with somebody else",
+        _503="The database does not work",
+    ),
+)
+async def start(request: Request, wanted: Start) -> Started:
+    """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
+    if wanted.place == "robot":
+        require_control(request)
+    Assembly.of(request).require_disarmed("A communication test builds and uploads programs.")
+    try:
+        return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
+    except DocumentError as problem:
+        raise HTTPException(422, "\n".join(problem.problems)) from problem
+
+
+@router.post("/cancel", status_code=204, summary="Cancel what runs", operation_id="cancelTestRun")
+async def cancel(request: Request) -> None:
+    """The cells that are finished are kept. Its end is told on the live socket."""
+    Assembly.of(request).lab.cancel()
+
+
+@router.get("/runs", summary="All runs, newest first", operation_id="listTestRuns")
+def get_runs(request: Request) -> list[RunSummary]:
+    """One's own and those that come with the program."""
+    return list(_runs(request).summaries())
+
+
+@router.get("/runs/{run}", summary="One run", operation_id="getTestRun", responses=UNKNOWN)
+def get_run(request: Request, run: Identifier) -> Run:
+    """With its configuration and its cells."""
+    return _runs(request).whole(_find(request, run))
+
+
+@router.get(
+    "/runs/{run}/csv",
+    summary="Download a run's cells",
+    operation_id="downloadTestRunCsv",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}, "description": "A line for each cell"}, **UNKNOWN},
+)
+def get_csv(request: Request, run: Identifier) -> Response:
+    """A line for each cell."""
+    found = _find(request, run)
+    return _file(tables.write_csv(found, _runs(request).cells(run)), "text/csv", f"comm_test_{run}.csv")
+
+
+@router.get(
+    "/runs/{run}/json",
+    summary="Download a run",
+    operation_id="downloadTestRunJson",
+    response_class=Response,
+    responses={
+        200: {"content": {"application/json": {}}, "description": "Everything known of it"},
+        **UNKNOWN,
+    },
+)
+def get_json(request: Request, run: Identifier) -> Response:
+    """Everything that is known of it, and its cells."""
+    found = _find(request, run)
+    text = tables.write_json(found, _runs(request).cells(run))
+    return _file(text, "application/json", f"comm_test_{run}.json")
+
+
+@router.get("/tables", summary="The thesis's own results", operation_id="listTestTables")
+def get_tables() -> list[ThesisTable]:
+    """Table 5 (plain numbers) and Table 6 (packets)."""
+    return [
+        ThesisTable(
+            name=name,
+            title=TITLES[name],
+            framing="plain" if name == "table5" else "thesis",
+            cells=[
+                TableCell(baud=baud, arduino_delay=arduino_delay, pi_delay=pi_delay, rate=rate)
+                for (baud, arduino_delay, pi_delay), rate in read_table(name).items()
+            ],
+        )
+        for name in TABLES
+    ]
+
+
+def _describe(test: CommTest) -> CheckedTest:
+    return CheckedTest(
+        id=test.id,
+        name=test.name,
+        framing=test.framing,
+        direction=test.direction,
+        cells=len(test.cells),
+        bauds=list(test.baud_rate),
+        arduino_delays=list(test.arduinodelay),
+        pi_delays=list(test.delay),
+        seconds=sum(estimate_seconds(test, cell) for cell in test.cells),
+    )
+
+
+def _runs(request: Request) -> Runs:
+    return Assembly.of(request).lab.runs
+
+
+def _find(request: Request, run: int) -> CommTestRun:
+    found = _runs(request).find(run)
+    if found is None:
+        raise HTTPException(404, f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")
+    return found
+
+
+def _file(text: str, media_type: str, name: str) -> Response:
+    headers = {"content-disposition": f'attachment; filename="{name}"'}
+    return Response(text, media_type=media_type, headers=headers)

@@ -1,0 +1,153 @@
+"""Runs of the communication test in the database."""
+
+import json
+import platform
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from datetime import UTC, datetime
+from typing import Any, Literal
+
+from sqlalchemy import Connection, insert, update
+from sqlmodel import col, desc, func, select
+
+from robot_runtime.experiments.comm_test.document import CommTest
+from server import VERSION
+from server.features.comm_tests.schemas import Cell, Place, Run, RunSummary
+from server.platform.models import CommTestCell, CommTestRun
+from server.platform.store import Reader, Store
+
+End = Literal["complete", "cancelled", "failed"]
+
+
+class KeptRuns:
+    """The runs of a database, to be looked at. All methods raise StoreError."""
+
+    def __init__(self, store: Reader) -> None:
+        self._reader = store
+
+    def list(self) -> Sequence[CommTestRun]:
+        """All runs, newest first."""
+        with self._reader.read() as database:
+            return database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+
+    def find(self, run: int) -> CommTestRun | None:
+        """A run; None where there is none of this number."""
+        with self._reader.read() as database:
+            return database.get(CommTestRun, run)
+
+    def cells(self, run: int) -> Sequence[CommTestCell]:
+        """The cells of a run, in the order in which they were run."""
+        with self._reader.read() as database:
+            wanted = select(CommTestCell).where(col(CommTestCell.run_id) == run)
+            return database.exec(wanted.order_by(col(CommTestCell.number))).all()
+
+    def summaries(self) -> Sequence[RunSummary]:
+        """All runs with their figures, newest first."""
+        figures = select(
+            col(CommTestCell.run_id),
+            func.count(),
+            func.avg(col(CommTestCell.rate)),
+            func.min(col(CommTestCell.rate)),
+        ).group_by(col(CommTestCell.run_id))
+        with self._reader.read() as database:
+            known = {run: (count, mean, low) for run, count, mean, low in database.exec(figures)}
+            runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
+            return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
+
+    def whole(self, run: CommTestRun) -> Run:
+        """A run with everything that is known of it."""
+        cells = [_cell(cell) for cell in self.cells(run.id or 0)]
+        rates = [cell.rate for cell in cells]
+        mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
+        return Run(
+            **_summary(run, len(cells), mean, low),
+            document=json.loads(run.document),
+            firmware=run.firmware,
+            tools=json.loads(run.tools),
+            host=run.host,
+            results=cells,
+        )
+
+
+class Runs(KeptRuns):
+    """The same, to be added to. What is awaited is on the disk when it returns."""
+
+    def __init__(self, store: Store) -> None:
+        super().__init__(store)
+        self._store = store
+
+    async def start(
+        self, test: CommTest, place: Place, firmware: str, tools: Mapping[str, str], host: str
+    ) -> int:
+        """A run that begins now; its number."""
+        values = {
+            "name": test.name,
+            "document": json.dumps(asdict(test), ensure_ascii=False),
+            "framing": test.framing,
+            "direction": test.direction,
+            "cells": len(test.cells),
+            "firmware": firmware,
+            "tools": json.dumps(
+                {**tools, "mucat": VERSION, "python": platform.python_version()}, ensure_ascii=False
+            ),
+            "host": host,
+            "started": time.time(),
+            "state": "running",
+            "problem": "",
+            "place": place,
+            "sample": "",
+        }
+        return await self._store.write(lambda connection: _insert_run(connection, values))
+
+    async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
+        """One cell that has been run, as the lab tells of it. Raises ValueError where it is none."""
+        cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
+        row = cell.model_dump(exclude={"id"})
+        await self._store.write(lambda connection: connection.execute(insert(CommTestCell).values(row)))
+        return _cell(cell)
+
+    async def end(self, run: int, state: End, problem: str = "") -> None:
+        """The run is over."""
+        changes = {"ended": time.time(), "state": state, "problem": problem}
+        change = update(CommTestRun).where(col(CommTestRun.id) == run).values(changes)
+        await self._store.write(lambda connection: connection.execute(change))
+
+    async def mark_interrupted(self) -> None:
+        """Runs that still say that they run were left by a program that was killed."""
+        changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
+        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(changes)
+        await self._store.write(lambda connection: connection.execute(change))
+
+    async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:
+        """A run that comes with the program, with its cells, all or nothing; columns by name."""
+
+        def change(connection: Connection) -> None:
+            number = _insert_run(connection, dict(run))
+            for cell in cells:
+                connection.execute(insert(CommTestCell).values({**cell, "run_id": number}))
+
+        await self._store.write(change)
+
+
+def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None) -> dict[str, Any]:
+    values = run.model_dump(include=set(RunSummary.model_fields) - {"started", "ended"})
+    return {
+        **values,
+        "started": datetime.fromtimestamp(run.started, UTC),
+        "ended": None if run.ended is None else datetime.fromtimestamp(run.ended, UTC),
+        "cells_done": done,
+        "rate_mean": mean,
+        "rate_min": low,
+    }
+
+
+def _cell(cell: CommTestCell) -> Cell:
+    values = cell.model_dump(include=set(Cell.model_fields) - {"causes"})
+    return Cell(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
+
+
+def _insert_run(connection: Connection, values: dict[str, Any]) -> int:
+    key = connection.execute(insert(CommTestRun).values(values)).inserted_primary_key
+    assert key is not None
+    return int(key[0])

@@ -1,0 +1,136 @@
+"""Communication tests as the interface shows them."""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robot_runtime.experiments.comm_test.results import Direction
+from server.features.comm_tests.reference import TableName
+
+Place = Literal["emulated", "robot"]
+State = Literal["running", "complete", "cancelled", "failed", "interrupted"]
+Phase = Literal["compile", "upload", "run"]
+Rate = Annotated[float, Field(ge=0, le=1, description="share of the numbers that arrived right")]
+
+TEXT_MAX = 60_000
+"""Characters of a test document; the server takes no longer requests."""
+
+
+class TestDocument(BaseModel):
+    """A test document that came with the program."""
+
+    name: str
+    title: str
+    text: str
+
+
+class DocumentText(BaseModel):
+    """A test document as it was written."""
+
+    model_config = ConfigDict(extra="forbid")
+    text: Annotated[str, Field(max_length=TEXT_MAX)]
+
+
+class Start(DocumentText):
+    """A document to run, and where."""
+
+    place: Place
+
+
+class Started(BaseModel):
+    """The first run of the document."""
+
+    run: int
+
+
+class CheckedTest(BaseModel):
+    """A test of a document that can be run; `seconds` is about how long its cells take in the test's time."""
+
+    id: int
+    name: str
+    framing: str
+    direction: Direction
+    cells: int
+    bauds: list[int] = Field(description="bit/s")
+    arduino_delays: list[float] = Field(description="s")
+    pi_delays: list[float] = Field(description="s")
+    seconds: float
+
+
+class Check(BaseModel):
+    """What is wrong with a document, field by field; or its tests."""
+
+    problems: list[str]
+    tests: list[CheckedTest]
+
+
+class RunSummary(BaseModel):
+    """A run; `sample` names one that came with the program, and is empty for one's own."""
+
+    id: int
+    name: str
+    framing: str
+    direction: Direction
+    place: Place
+    sample: str
+    state: State
+    problem: str
+    started: datetime = Field(description="UTC")
+    ended: datetime | None = Field(description="UTC; null while it runs")
+    cells: int = Field(description="as the document has them")
+    cells_done: int
+    rate_mean: Rate | None = Field(description="null as long as there is no cell")
+    rate_min: Rate | None
+
+
+class Cell(BaseModel):
+    """One cell; delays and `seconds` (the test's time) in s, the counts of both ends together."""
+
+    number: int
+    baud: int
+    arduino_delay: float
+    pi_delay: float
+    rate: Rate
+    answered: bool
+    right: int
+    out_of_sequence: int
+    checksum_errors: int
+    framing_errors: int
+    ring_full: int
+    bytes_read: int
+    bytes_lost: int
+    line_errors: int
+    uart_overruns: int
+    repeated: int
+    seconds: float
+    causes: list[str]
+    explanation: str
+
+
+class Run(RunSummary):
+    """A run with its configuration and its cells."""
+
+    document: dict[str, Any]
+    firmware: str = Field(description="hash of the sketch, the core and the compiler's flags")
+    tools: dict[str, str]
+    host: str
+    results: list[Cell]
+
+
+class TableCell(BaseModel):
+    """One entry of the thesis's tables."""
+
+    baud: int
+    arduino_delay: float
+    pi_delay: float
+    rate: Rate
+
+
+class ThesisTable(BaseModel):
+    """One of the thesis's tables."""
+
+    name: TableName
+    title: str
+    framing: str
+    cells: list[TableCell]

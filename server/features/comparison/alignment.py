@@ -1,0 +1,51 @@
+"""Where sessions are laid over each other: the moment of each that becomes 0 s."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.features.comparison.moments import History, Moment
+
+
+class Align(BaseModel):
+    """The moment that becomes 0 s in every session."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    by: Literal["start", "armed", "set_point", "marker"] = "start"
+    number: Annotated[int, Field(ge=1, le=1000, description="which of the set point's steps")] = 1
+    marker: Annotated[str, Field(max_length=500, description="its text; the first of this text counts")] = ""
+
+
+class NoMomentError(Exception):
+    """A session lacks the moment; the text says so to a person."""
+
+
+def find_moment(
+    align: Align, history: History, steps: list[tuple[float, float]], markers: list[Moment]
+) -> float:
+    """The moment, s since the session's start. Raises NoMomentError where the session has none."""
+    if align.by == "armed":
+        if not history.armed:
+            raise NoMomentError("The robot was never armed in this session.")
+        if history.armed_at_start:
+            raise NoMomentError("The robot was armed already when this recording began.")
+        return history.armed[0].start
+    if align.by == "set_point":
+        if len(steps) < align.number:
+            raise NoMomentError(_too_few(align.number, len(steps)))
+        return steps[align.number - 1][0]
+    if align.by == "marker":
+        wanted = align.marker.strip().casefold()
+        for marker in markers:
+            if marker.text.strip().casefold() == wanted:
+                return marker.time
+        raise NoMomentError(f"This session has no marker “{align.marker}”.")
+    return 0.0
+
+
+def _too_few(wanted: int, there: int) -> str:
+    if there == 0:
+        return "The set point never changed while the robot was armed."
+    times = "once" if there == 1 else f"{there} times"
+    return f"The set point changed only {times} while the robot was armed, so there is no step {wanted}."

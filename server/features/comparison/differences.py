@@ -1,0 +1,138 @@
+"""What was different about the sessions: configuration, gains in force, versions, scenario."""
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+from server.features.comparison.moments import History, Span
+from server.platform.models import SessionRow
+
+_ROW: Mapping[str, str] = {
+    "scenario_name": "Scenario",
+    "seed": "Seed",
+    "origin": "Started by",
+    "robot": "Robot",
+    "version": "Version of the software",
+    "software": "Hash of the software",
+    "firmware": "Hash of the firmware",
+    "definitions": "Hash of the packets",
+}
+_STATE: Mapping[str, str] = {
+    "set_point_default": "Set point, m",
+    "set_point_detected": "Set point while the colour is seen, m",
+    "control_rate": "Control rate, Hz",
+    "vision_rate": "Vision rate, Hz",
+    "steering": "Course",
+    "vision_colour": "Colour looked for",
+    "camera": "Camera",
+    "baud": "Serial line, baud",
+}
+CHANGED = "changed while armed: "
+
+
+class Difference(BaseModel):
+    """Something that is not the same in all sessions."""
+
+    group: str = Field(description="In force, Parameters, Session, robot.toml or Scenario")
+    name: str
+    values: list[str] = Field(description="one for each session; empty where it has no such thing")
+
+
+def find_differences(sessions: Sequence[tuple[SessionRow, History]]) -> list[Difference]:
+    """What differs; for a single session everything but its files."""
+    alone = len(sessions) == 1
+    groups = [
+        ("In force", [dict(_in_force(history)) for _, history in sessions]),
+        ("Parameters", [dict(_parameters(history)) for _, history in sessions]),
+        ("Session", [_of_row(row) for row, _ in sessions]),
+    ]
+    if not alone:
+        groups += [
+            ("robot.toml", [dict(flatten(row.configuration)) for row, _ in sessions]),
+            ("Scenario", [dict(flatten(row.scenario)) for row, _ in sessions]),
+        ]
+    found: list[Difference] = []
+    for group, columns in groups:
+        for name in dict.fromkeys(name for column in columns for name in column):
+            values = [column.get(name, "") for column in columns]
+            if len(set(values)) > 1 or (alone and values[0]):
+                found.append(Difference(group=group, name=name, values=values))
+    return found
+
+
+def flatten(text: str) -> Iterator[tuple[str, str]]:
+    """The entries of a TOML text, with dotted names; all of it as one where it cannot be read."""
+    try:
+        yield from _entries("", tomllib.loads(text))
+    except tomllib.TOMLDecodeError as problem:
+        yield "text", f"cannot be read: {problem}"
+
+
+def _entries(prefix: str, value: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _entries(f"{prefix}.{key}" if prefix else key, inner)
+    elif isinstance(value, list) and value and all(isinstance(one, dict) for one in value):
+        for place, inner in enumerate(value, 1):
+            yield from _entries(f"{prefix} {place}", inner)
+    else:
+        yield prefix, _words(value)
+
+
+def _in_force(history: History) -> Iterator[tuple[str, str]]:
+    for key, title in _STATE.items():
+        if key in history.state:
+            yield title, _words(history.state[key])
+    times = [one.time for one in history.controls]
+    used = [one for one in history.controls if _rules(one.time, times, history.armed)]
+    controllers = list(dict.fromkeys(one.controller for one in used))
+    if controllers:
+        yield "Controller", _sequence(controllers)
+    gains: dict[str, list[str]] = {}
+    for one in used:
+        for name, value in one.gains.items():
+            gains.setdefault(f"{one.controller}: {name}", []).append(_words(value))
+    for name, values in gains.items():
+        yield name, _sequence(list(dict.fromkeys(values)))
+
+
+def _parameters(history: History) -> Iterator[tuple[str, str]]:
+    """Every parameter with the values that it had while armed, in the order of time."""
+    times = [one.time for one in history.parameters]
+    values: dict[str, list[str]] = {}
+    for one in history.parameters:
+        if _rules(one.time, times, history.armed):
+            for name, value in one.values.items():
+                values.setdefault(name, []).append(_words(value))
+    for name, seen in values.items():
+        yield name, _sequence(list(dict.fromkeys(seen)))
+
+
+def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
+    """Whether what is chosen at `time`, one of `times`, is in force at any time while armed."""
+    if not armed:
+        return time == times[0]
+    in_force = Span(time, min((one for one in times if one > time), default=float("inf")))
+    return any(span.start < in_force.end and in_force.start < span.end for span in armed)
+
+
+def _sequence(values: Sequence[str]) -> str:
+    return values[0] if len(values) == 1 else CHANGED + ", ".join(values)
+
+
+def _of_row(row: SessionRow) -> dict[str, str]:
+    return {title: _words(getattr(row, key)) for key, title in _ROW.items()}
+
+
+def _words(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        return ", ".join(_words(one) for one in value)
+    return str(value)

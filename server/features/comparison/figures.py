@@ -1,0 +1,243 @@
+"""Figures of one session over a range of its time."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from server.features.comparison.definitions import FIGURES, Figure, FigureMark
+from server.features.comparison.history import read_gaps, set_point_steps
+from server.features.comparison.limit_cycle import LimitCycle, find_limit_cycle
+from server.features.comparison.moments import History, Span
+from server.features.comparison.samples import Samples, Series, read_topic
+from server.features.comparison.step_response import StepResponse, measure_step
+from server.features.comparison.strokes import count_strokes
+from server.features.comparison.tracking import effort, rms
+from server.features.sessions.recording import Recording
+from server.platform.store import Reader
+
+MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"
+HEIGHT_LEAST = 0.05
+"""m; less is no step to be judged by."""
+LATE_MOST = 0.5
+"""s by which a recording may begin after the step that it is judged by, as one that begins at arming does."""
+_FINS = tuple(f"angle_{fin}" for fin in range(4))
+_LINK = {
+    "frames_lost": "frames_missed",
+    "frames_repeated": "frames_repeated",
+    "frames_invalid": "frames_invalid",
+}
+NOTHING_THERE = "The recording has no depth and set point in this range."
+NEVER_ARMED = "The robot was never armed in this session."
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """The time over which figures are taken.
+
+    `anchor` is the moment (s) of the step that is meant; the first one in the range without.
+    """
+
+    spans: tuple[Span, ...]
+    anchor: float | None = None
+
+    def mask(self, times: np.ndarray) -> np.ndarray:
+        """Which of these times (s) lie in it."""
+        inside = np.zeros(times.size, bool)
+        for span in self.spans:
+            first, last = np.searchsorted(times, [span.start, span.end], "left")
+            inside[first:last] = True
+        return inside
+
+
+def measure(
+    recording: Recording, samples: Samples, history: History, wanted: Range, band: float | None = None
+) -> dict[str, Figure]:
+    """Those of FIGURES that follow from depth, set point and command; `band` is that of the settling time, m.
+
+    Raises StoreError, RecordingError.
+    """
+    found: dict[str, Figure] = {}
+    if wanted.spans:
+        series = samples.read(recording, [MEASURED, SET_POINT, OUTPUT])
+        depth, set_point = series.get(MEASURED), series.get(SET_POINT)
+        if depth is not None and set_point is not None:
+            found |= _depth_figures(depth, set_point, history, wanted, band)
+        if (output := series.get(OUTPUT)) is not None:
+            found["effort"] = _effort(output, wanted)
+    return found
+
+
+def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
+    """Those of FIGURES that are counted: strokes, losses, gaps; over the whole session without `spans`.
+
+    Raises StoreError, RecordingError.
+    """
+    found = {"fin_strokes": _strokes(recording, spans)} if spans else {}
+    whole = spans or (Span(0.0, recording.row.duration),)
+    return found | _link(recording, whole) | {"gaps": _gaps(store, recording, whole)}
+
+
+def complete(found: Mapping[str, Figure], why: str) -> dict[str, Figure]:
+    """All of FIGURES in their order; `why` says why those that were not found are missing."""
+    missing = Figure(value=None, words=why)
+    return {meaning.name: found.get(meaning.name, missing) for meaning in FIGURES}
+
+
+def _depth_figures(
+    depth: Series, set_point: Series, history: History, wanted: Range, band: float | None
+) -> dict[str, Figure]:
+    response = _step(depth, set_point, history, wanted, band)
+    found = _step_figures(response)
+    steady = (
+        Span((response.begin + response.end) / 2, response.end) if response is not None else wanted.spans[0]
+    )
+    # At its very end the next set point may be in force.
+    part = depth.within(steady.start, float(np.nextafter(steady.end, steady.start)))
+    if part.times.size:
+        errors = _held(set_point, part.times) - part.values
+        mean = float(errors.mean())
+        level = float(part.values.mean())
+        mark = FigureMark(
+            start=steady.start, end=steady.end, low=min(level, level + mean), high=max(level, level + mean)
+        )
+        found["steady_error"] = Figure(value=mean, mark=mark)
+        found |= _cycle_figures(find_limit_cycle(Series(part.times, errors)), steady, part)
+    inside = wanted.mask(depth.times)
+    if inside.any():
+        errors = _held(set_point, depth.times[inside]) - depth.values[inside]
+        found["rmse"] = Figure(
+            value=rms(errors), mark=FigureMark(start=wanted.spans[0].start, end=wanted.spans[-1].end)
+        )
+    return found
+
+
+def _step(
+    depth: Series, set_point: Series, history: History, wanted: Range, band: float | None
+) -> StepResponse | None:
+    """The response to the first step in the range that is high enough, or to the one that is meant."""
+    changes = [time for time, _ in set_point_steps(set_point, history.armed)]
+    armings = [span.start for span in history.armed]
+    for span in wanted.spans:
+        for begin in sorted({*armings, *changes}):
+            meant = wanted.anchor is None or abs(begin - wanted.anchor) < 1e-6
+            recorded = begin >= depth.times[0] - LATE_MOST
+            if not (meant and recorded and span.start <= begin < span.end):
+                continue
+            ends = [span.end, *(one for one in (*changes, *_ends(history)) if one > begin)]
+            response = measure_step(depth, begin, min(ends), _value_at(set_point, begin), band)
+            if response is not None and abs(response.final_value - response.start_value) >= HEIGHT_LEAST:
+                return response
+    return None
+
+
+def _ends(history: History) -> Iterable[float]:
+    return (span.end for span in history.armed)
+
+
+def _value_at(set_point: Series, time: float) -> float:
+    """What is held from `time` on: the first tick at it or after it."""
+    at = min(int(np.searchsorted(set_point.times, time, "left")), set_point.times.size - 1)
+    return float(set_point.values[at])
+
+
+def _held(set_point: Series, times: np.ndarray) -> np.ndarray:
+    """The set point at these times: each value holds until the next."""
+    at = np.searchsorted(set_point.times, times, "right") - 1
+    return set_point.values[np.maximum(at, 0)]
+
+
+def _step_figures(response: StepResponse | None) -> dict[str, Figure]:
+    if response is None:
+        none = Figure(value=None, words="There is no step of the set point by 5 cm or more in this range.")
+        return dict.fromkeys(("rise_time", "settling_time", "overshoot"), none)
+    begin, final, band = response.begin, response.final_value, response.band
+    height = final - response.start_value
+    words = f"Step from {response.start_value:.2f} m to {final:.2f} m."
+    rise = Figure(value=None, words=f"{words} The depth never came to 90 % of it.")
+    if response.rise_start is not None and response.rise_end is not None:
+        levels = sorted(response.start_value + share * height for share in (0.1, 0.9))
+        mark = FigureMark(start=response.rise_start, end=response.rise_end, low=levels[0], high=levels[1])
+        rise = Figure(value=response.rise_time, words=words, mark=mark)
+    settling = Figure(
+        value=response.settling_time,
+        words=f"{words} Band: {band * 100:.1f} cm either way."
+        if response.settled is not None
+        else f"{words} The depth did not stay within {band * 100:.1f} cm until the next step.",
+        mark=FigureMark(
+            start=begin, end=response.settled or response.end, low=final - band, high=final + band
+        ),
+    )
+    over = Figure(value=100 * response.overshoot, words=words)
+    if response.peak is not None and response.peak_time is not None:
+        low, high = sorted((final, response.peak))
+        over.mark = FigureMark(start=begin, end=response.peak_time, low=low, high=high)
+    return {"rise_time": rise, "settling_time": settling, "overshoot": over}
+
+
+def _cycle_figures(cycle: LimitCycle | None, steady: Span, part: Series) -> dict[str, Figure]:
+    if cycle is None:
+        none = Figure(value=None, words="The depth does not oscillate lastingly.")
+        return {"cycle_amplitude": none, "cycle_period": none}
+    middle = float(np.median([part.values.min(), part.values.max()]))
+    low, high = middle - cycle.amplitude / 2, middle + cycle.amplitude / 2
+    height = FigureMark(start=steady.start, end=steady.end, low=low, high=high)
+    period = FigureMark(start=steady.start, end=steady.start + cycle.period, low=low, high=high)
+    return {
+        "cycle_amplitude": Figure(value=cycle.amplitude, mark=height),
+        "cycle_period": Figure(value=cycle.period, mark=period),
+    }
+
+
+def _effort(output: Series, wanted: Range) -> Figure:
+    inside = wanted.mask(output.times)
+    if not inside.any():
+        return Figure(value=None, words="There is no command in this range.")
+    return Figure(value=100 * effort(output.values[inside]))
+
+
+def _strokes(recording: Recording, spans: Sequence[Span]) -> Figure:
+    origin = recording.row.started_steady
+    strokes, seen = 0.0, False
+    for span in spans:
+        if "motor" not in recording.topics:
+            break
+        _, angles = recording.columns("motor", _FINS, span.start + origin, span.end + origin)
+        seen = seen or bool(angles[_FINS[0]].size)
+        strokes += sum(count_strokes(angle) for angle in angles.values())
+    if not seen:
+        return Figure(value=None, words="The recording has no fin angles in this range.")
+    return Figure(value=strokes)
+
+
+def _link(recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
+    columns = read_topic(recording, "link", _LINK.values())
+    found: dict[str, Figure] = {}
+    for name, column in _LINK.items():
+        if column not in columns:
+            found[name] = Figure(value=None, words="The recording has no statistics of the link.")
+            continue
+        series = columns[column]
+        counted = 0.0
+        for span in spans:
+            # The count just before the range is what it begins with; a port opened anew counts from 0.
+            first = max(int(np.searchsorted(series.times, span.start, "right")) - 1, 0)
+            last = int(np.searchsorted(series.times, span.end, "right"))
+            steps = np.diff(series.values[first:last])
+            counted += float(np.where(steps >= 0, steps, series.values[first:last][1:]).sum())
+        found[name] = Figure(value=counted)
+    return found
+
+
+def _gaps(store: Reader, recording: Recording, spans: Sequence[Span]) -> Figure:
+    origin = recording.row.started_steady
+    gaps = [
+        gap
+        for gap in read_gaps(store, recording)
+        if any(span.start <= gap.time - origin <= span.end for span in spans)
+    ]
+    missed: dict[str, int] = {}
+    for gap in gaps:
+        missed[gap.topic] = missed.get(gap.topic, 0) + gap.missed
+    words = ", ".join(f"{count} of {topic}" for topic, count in missed.items())
+    return Figure(value=len(gaps), words=f"Samples that are missing: {words}." if gaps else "")

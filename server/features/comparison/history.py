@@ -1,0 +1,130 @@
+"""What a session's state documents, events and markers tell: when it was armed, and what was in force."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from sqlmodel import col, select
+
+from server.features.comparison.moments import Control, History, Moment, Span, Tuned
+from server.features.comparison.samples import Samples, Series
+from server.features.sessions.recording import Recording
+from server.platform.models import Gap, Marker
+from server.platform.store import Reader
+
+ARMED_FLAG = 1
+"""In status.flags, see robot_runtime.contract.packets.StatusFlag."""
+EVENTS_MAX = 500
+STEP_LEAST = 0.001
+"""m by which a set point changes; less is rounding."""
+
+
+def read_history(recording: Recording, samples: Samples) -> History:
+    """The history, from the state documents; armed spans else from the board's flags.
+
+    Raises StoreError, RecordingError.
+    """
+    origin, end = recording.row.started_steady, recording.row.duration
+    changes = list(recording.changes("state")) if "state" in recording.topics else []
+    if not changes:
+        flags = samples.read(recording, ["status.flags"]).get("status.flags")
+        armed = _spans_of_flags(flags) if flags is not None else ()
+        return History(armed, bool(armed) and _began_armed(armed, flags), (), {})
+    armed = tuple(_spans_of_states(changes, origin, end))
+    before = [one for one in changes if not armed or one["time"] - origin <= armed[0].start]
+    return History(
+        armed=armed,
+        armed_at_start=bool(changes[0].get("armed")) and changes[0].get("armed_since") is None,
+        controls=tuple(_controls(changes, origin)),
+        state=(before or changes[:1])[-1],
+        parameters=tuple(_tuned(recording, origin)),
+    )
+
+
+def set_point_steps(set_point: Series, armed: tuple[Span, ...]) -> list[tuple[float, float]]:
+    """Time and new value of each change of the set point (m) while armed."""
+    values, times = set_point.values, set_point.times
+    at = np.flatnonzero(np.abs(np.diff(values)) > STEP_LEAST) + 1
+    return [
+        (float(times[one]), float(values[one]))
+        for one in at
+        if any(span.start < times[one] <= span.end for span in armed)
+    ]
+
+
+def read_markers(store: Reader, recording: Recording) -> list[Moment]:
+    """The session's markers in the order of time. Raises StoreError."""
+    row = recording.row
+    query = select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time))
+    with store.read() as database:
+        return [
+            Moment(one.time - row.started_steady, "marker", "info", one.text) for one in database.exec(query)
+        ]
+
+
+def read_events(recording: Recording) -> list[Moment]:
+    """What runtime and server told, in the order of time; the first few hundred. Raises StoreError."""
+    origin = recording.row.started_steady
+    found: list[Moment] = []
+    for topic in ("event", "notice"):
+        if topic not in recording.topics:
+            continue
+        for document in recording.documents(topic):
+            words = (str(document.get(key, "")) for key in ("kind", "severity", "text"))
+            found.append(Moment(document["time"] - origin, *words))
+            if len(found) >= EVENTS_MAX:
+                break
+    return sorted(found, key=lambda one: one.time)[:EVENTS_MAX]
+
+
+def read_gaps(store: Reader, recording: Recording) -> list[Gap]:
+    """The gaps that the recorder noted. Raises StoreError."""
+    query = select(Gap).where(Gap.session_id == recording.row.id).order_by(col(Gap.time))
+    with store.read() as database:
+        return list(database.exec(query))
+
+
+def _spans_of_states(changes: list[dict[str, Any]], origin: float, end: float) -> Iterator[Span]:
+    since: float | None = None
+    for document in changes:
+        now = document["time"] - origin
+        if document.get("armed") and since is None:
+            told = document.get("armed_since")
+            since = (told if isinstance(told, int | float) else document["time"]) - origin
+        elif not document.get("armed") and since is not None:
+            yield Span(since, now)
+            since = None
+    if since is not None:
+        yield Span(since, max(end, since))
+
+
+def _spans_of_flags(flags: Series) -> tuple[Span, ...]:
+    on = (flags.values.astype(np.int64) & ARMED_FLAG).astype(np.int8)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], on, [0]])))
+    last = flags.times.size - 1
+    return tuple(
+        Span(float(flags.times[first]), float(flags.times[min(after, last)]))
+        for first, after in edges.reshape(-1, 2)
+    )
+
+
+def _began_armed(armed: tuple[Span, ...], flags: Series | None) -> bool:
+    return flags is not None and armed[0].start == flags.times[0]
+
+
+def _tuned(recording: Recording, origin: float) -> Iterator[Tuned]:
+    if "parameters" in recording.topics:
+        for document in recording.changes("parameters"):
+            values = {one["name"]: one["value"] for one in document["parameters"]}
+            yield Tuned(document["time"] - origin, values)
+
+
+def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[Control]:
+    before: tuple[str, dict[str, float]] | None = None
+    for document in changes:
+        name = str(document.get("controller", ""))
+        chosen = next((one for one in document.get("controllers", []) if one.get("name") == name), None)
+        gains = {gain["name"]: float(gain["value"]) for gain in chosen["gains"]} if chosen else {}
+        if (name, gains) != before:
+            before = name, gains
+            yield Control(document["time"] - origin, name, gains)

@@ -1,0 +1,300 @@
+"""A comparison as one HTML file that needs nothing else: charts (Plotly), figures, differences, markers.
+
+Dark on white, for printing. The file carries Plotly itself, about 5 MB.
+"""
+
+from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
+from html import escape
+from itertools import chain
+from typing import Any
+
+import plotly.graph_objects as go
+from plotly.io import to_html
+
+from server import VERSION
+from server.features.comparison.definitions import FigureMeaning
+from server.features.comparison.schemas import Compared, Comparison, Line, TimeRange
+from server.features.comparison.signals import Signal
+
+COLOURS = ("#0072b2", "#c25200", "#a3427d", "#00795a", "#7d6a00", "#5b3fa0", "#4a5a66")
+"""After Okabe and Ito, darkened for white paper."""
+DEPTHS = frozenset(
+    (
+        "depth.depth",
+        "control.set_point",
+        "control.depth",
+        "state.set_point",
+        "state.set_point_default",
+        "state.set_point_detected",
+        "truth.position_2",
+    )
+)
+TOLD = frozenset({"armed", "disarmed", "controller"})
+"""Kinds of events that have a sign above the charts, as what is no mere information has."""
+HIGH_FIRST, HIGH, GAP, EDGE, ROW = 300, 180, 46, 60, 22
+FONT = "Inter, Helvetica, Arial, sans-serif"
+ALIGNED = {"start": "the start of the recording", "armed": "arming"}
+WANTED = ("set_point", "wanted")
+
+
+def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
+    """The report as HTML; `view` is the part of the time (s) that its charts show at first."""
+    names = ", ".join(one.name for one in comparison.sessions)
+    parts = [
+        f"<h1>{escape(names)}</h1>",
+        f"<p>Time 0 is {escape(_moment(comparison))}. µ-CAT {VERSION}, {_utc(datetime.now(UTC))}.</p>",
+        _session_table(comparison),
+        _charts(comparison, view),
+        "<h2>Figures</h2>",
+        _figure_table(comparison),
+        "<h2>What differs</h2>" if len(comparison.sessions) > 1 else "<h2>What it ran with</h2>",
+        _difference_table(comparison),
+        _marker_table(comparison),
+    ]
+    return PAGE.format(title=escape(f"µ-CAT: {names}"), body="\n".join(parts))
+
+
+def _moment(comparison: Comparison) -> str:
+    align = comparison.align
+    if align.by == "set_point":
+        return f"step {align.number} of the set point"
+    return ALIGNED.get(align.by) or f"the marker “{align.marker}”"
+
+
+def _charts(comparison: Comparison, view: TimeRange | None) -> str:
+    charts = _group(comparison.signals)
+    laid = [(place, one) for place, one in enumerate(comparison.sessions) if one.offset is not None]
+    if not charts or not laid:
+        return "<p>There is nothing to draw: no signal, or no session that has this moment.</p>"
+    heights = [HIGH_FIRST, *[HIGH] * (len(charts) - 1)]
+    signs = ROW * len(laid)
+    inside = signs + sum(heights) + GAP * len(heights)
+    figure = go.Figure()
+    for number, (title, signals) in enumerate(charts, 1):
+        top = signs + sum(heights[: number - 1]) + GAP * number
+        axis: dict[str, Any] = {
+            "domain": [1 - (top + heights[number - 1]) / inside, 1 - top / inside],
+            "gridcolor": "#d9e0e5",
+            "zeroline": False,
+            "ticksuffix": f" {signals[0].unit}" if signals[0].unit else "",
+        }
+        if signals[0].name in DEPTHS:
+            axis["autorange"] = "reversed"
+        figure.update_layout({f"yaxis{number if number > 1 else ''}": axis})
+        figure.add_annotation(
+            text=f"<b>{escape(title)}</b>{_kinds(signals)}",
+            xref="paper",
+            yref="paper",
+            x=0,
+            y=1 - top / inside,
+            xanchor="left",
+            yanchor="bottom",
+            showarrow=False,
+        )
+        for place, session in laid:
+            for signal in signals:
+                if signal.name in session.series:
+                    figure.add_trace(_trace(session, signal, _colour(place), number, len(signals)))
+    axis_of_signs = len(charts) + 1
+    shown = {"domain": [1 - signs / inside, 1], "range": [len(laid) - 0.5, -0.5], "visible": False}
+    figure.update_layout({f"yaxis{axis_of_signs}": shown})
+    for row, (place, session) in enumerate(laid):
+        figure.add_trace(_signs(session, row, _colour(place), axis_of_signs))
+        for marker in session.markers:
+            figure.add_vline(marker.time - (session.offset or 0), line_dash="dot", line_color=_colour(place))
+    figure.update_layout(
+        height=inside + EDGE + 20,
+        margin={"l": 64, "r": 12, "t": 8, "b": EDGE},
+        paper_bgcolor="white",
+        plot_bgcolor="white",
+        font={"family": FONT, "size": 12, "color": "#0d1a22"},
+        hovermode="x unified",
+        showlegend=False,
+        xaxis={
+            "title": f"s since {_moment(comparison)}",
+            "gridcolor": "#d9e0e5",
+            "anchor": f"y{len(charts)}" if len(charts) > 1 else "y",
+            "range": [view.start, view.end] if view else None,
+        },
+    )
+    return str(
+        to_html(
+            figure,
+            include_plotlyjs=True,
+            full_html=False,
+            div_id="charts",
+            config={"displaylogo": False, "responsive": True},
+        )
+    )
+
+
+def _group(signals: Sequence[Signal]) -> list[tuple[str, list[Signal]]]:
+    """The charts, by their titles: depths together, a fin's wanted angle with its measured one."""
+    charts: dict[str, list[Signal]] = {}
+    for signal in signals:
+        if signal.name in DEPTHS:
+            title = "Depth"
+        elif signal.topic == "motor" and signal.column.startswith(("wanted_", "angle_")):
+            title = f"motor, angle {signal.column[-1]}"
+        else:
+            title = f"{signal.topic}, {signal.column.replace('_', ' ')}"
+        charts.setdefault(title, []).append(signal)
+    return list(charts.items())
+
+
+def _kinds(signals: Sequence[Signal]) -> str:
+    """How the lines of a chart with several signals are told apart."""
+    if len(signals) < 2:
+        return ""
+    kinds = (
+        f"{'dashed' if one.column.startswith(WANTED) else 'solid'}: {one.column.replace('_', ' ')}"
+        for one in signals
+    )
+    return f"   {', '.join(dict.fromkeys(kinds))}"
+
+
+def _trace(session: Compared, signal: Signal, colour: str, number: int, together: int) -> go.Scatter:
+    wanted = signal.column.startswith(WANTED)
+    times, values = _points(session.series[signal.name], session.offset or 0.0)
+    name = f"{session.name}, {signal.column.replace('_', ' ')}" if together > 1 else session.name
+    return go.Scatter(
+        x=times,
+        y=values,
+        yaxis=f"y{number if number > 1 else ''}",
+        name=name,
+        mode="lines",
+        line={"color": colour, "width": 1.5, "dash": "dash" if wanted else "solid"},
+        line_shape="hv" if wanted else "linear",
+        hovertemplate=f"%{{y:.4~g}} {signal.unit}",
+    )
+
+
+def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
+    """What happened: a stroke for what was to be expected, a triangle for a caution or an alarm."""
+    told = [one for one in session.events if one.kind in TOLD or one.severity != "info"]
+    happened = [(one, "line-ns" if one.severity == "info" else "triangle-down") for one in told]
+    happened += [(one, "diamond") for one in session.markers]
+    return go.Scatter(
+        x=[one.time - (session.offset or 0.0) for one, _ in happened],
+        y=[row] * len(happened),
+        yaxis=f"y{axis}",
+        name=session.name,
+        mode="markers",
+        text=[escape(one.text) for one, _ in happened],
+        hovertemplate="%{text}",
+        marker={
+            "symbol": [symbol for _, symbol in happened],
+            "size": 9,
+            "color": colour,
+            "line": {"width": 2, "color": colour},
+        },
+    )
+
+
+def _points(line: Line, offset: float) -> tuple[list[float], list[float | None]]:
+    """Each column's least and most one after the other."""
+    pairs = [
+        (round(time - offset, 4), value)
+        for time, low, high in zip(line.time, line.low, line.high, strict=True)
+        for value in ((low,) if low == high else (low, high))
+    ]
+    return [time for time, _ in pairs], [value for _, value in pairs]
+
+
+def _colour(place: int) -> str:
+    return COLOURS[place % len(COLOURS)]
+
+
+def _session_table(comparison: Comparison) -> str:
+    rows = (
+        (
+            f'<span class="stroke" style="background:{_colour(place)}"></span>{escape(one.name)}',
+            _utc(datetime.fromtimestamp(one.started, UTC)),
+            f"{one.duration:.1f} s",
+            escape(one.state),
+            escape(one.problem),
+        )
+        for place, one in enumerate(comparison.sessions)
+    )
+    return _table(("Session", "Started", "Duration", "State", ""), rows)
+
+
+def _figure_table(comparison: Comparison) -> str:
+    head = ("Figure", *(escape(one.name) for one in comparison.sessions), "What it is")
+    rows = (
+        (
+            escape(f"{meaning.title}, {meaning.unit}" if meaning.unit else meaning.title),
+            *(_value(one, meaning) for one in comparison.sessions),
+            escape(meaning.meaning),
+        )
+        for meaning in comparison.figures
+    )
+    return _table(head, rows)
+
+
+def _value(session: Compared, meaning: FigureMeaning) -> str:
+    figure = session.figures[meaning.name]
+    text = "none" if figure.value is None else f"{figure.value:.{meaning.decimals}f}".replace("-", "−")
+    return f"{text}<small>{escape(figure.words)}</small>" if figure.words else text
+
+
+def _difference_table(comparison: Comparison) -> str:
+    if not comparison.differences:
+        return (
+            "<p>Configuration, gains, versions, scenario and seed are the same in all of these sessions.</p>"
+        )
+    rows = (
+        (escape(f"{one.group}: {one.name}"), *(escape(value) or "–" for value in one.values))
+        for one in comparison.differences
+    )
+    return _table(("", *(escape(one.name) for one in comparison.sessions)), rows)
+
+
+def _marker_table(comparison: Comparison) -> str:
+    rows = [
+        (f"{marker.time - (session.offset or 0):.2f} s", escape(session.name), escape(marker.text))
+        for session in comparison.sessions
+        for marker in session.markers
+    ]
+    return "<h2>Markers</h2>" + _table(("Time", "Session", "Marker"), rows) if rows else ""
+
+
+def _table(head: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
+    lines = chain(
+        ["<table><thead><tr>", *(f"<th>{cell}</th>" for cell in head), "</tr></thead><tbody>"],
+        (f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows),
+        ["</tbody></table>"],
+    )
+    return "".join(lines)
+
+
+def _utc(moment: datetime) -> str:
+    return f"{moment:%Y-%m-%d %H:%M:%S} UTC"
+
+
+PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+body {{ max-width: 1200px; margin: 0 auto; padding: 24px 16px; background: #fff; color: #0d1a22;
+  font: 14px/1.45 Inter, Helvetica, Arial, sans-serif; font-variant-numeric: tabular-nums; }}
+h1 {{ margin: 0 0 4px; font-size: 22px; }}
+h2 {{ margin: 28px 0 6px; font-size: 16px; }}
+table {{ width: 100%; border-collapse: collapse; }}
+th, td {{ padding: 5px 10px 5px 0; border-bottom: 1px solid #d9e0e5; text-align: left; vertical-align: top; }}
+th {{ color: #3f515c; font-size: 12px; font-weight: 500; }}
+small {{ display: block; color: #3f515c; font-size: 11px; }}
+.stroke {{ display: inline-block; width: 14px; height: 4px; margin-right: 8px; border-radius: 2px;
+  vertical-align: middle; print-color-adjust: exact; -webkit-print-color-adjust: exact; }}
+tr {{ break-inside: avoid; }}
+</style>
+</head>
+<body>
+{body}
+</body>
+</html>
+"""

@@ -1,0 +1,102 @@
+"""Sessions laid over each other."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, Response
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from server.container import Assembly
+from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
+from server.features.comparison.signals import Signal
+from server.features.sessions.session import IDENTIFIER_MAX
+from server.http.problems import answers
+
+REPORT_POINTS = 2000
+UNKNOWN = answers(_404="There is no such session", _503="The database does not work")
+
+router = APIRouter(prefix="/api", tags=["comparison"])
+
+Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+
+
+class ReportQuery(BaseModel):
+    """A comparison as a query: lists with commas, moments in s on the common time axis."""
+
+    model_config = ConfigDict(extra="forbid")
+    sessions: Annotated[str, Field(pattern=r"^\d+(,\d+)*$", max_length=200)]
+    signals: Annotated[str, Field(max_length=2500)] = "depth.depth,control.set_point"
+    by: str = "start"
+    number: int = 1
+    marker: str = ""
+    start: float | None = Field(default=None, description="what the figures are taken over")
+    end: float | None = None
+    view_start: float | None = Field(default=None, description="what the charts show at first")
+    view_end: float | None = None
+
+    def wanted(self) -> WantedComparison:
+        """What is compared. Raises ValidationError."""
+        return WantedComparison.model_validate(
+            {
+                "sessions": self.sessions.split(","),
+                "signals": [name for name in self.signals.split(",") if name],
+                "align": {"by": self.by, "number": self.number, "marker": self.marker},
+                "points": REPORT_POINTS,
+                "range": _range(self.start, self.end),
+            }
+        )
+
+
+def _range(start: float | None, end: float | None) -> TimeRange | None:
+    return None if start is None or end is None else TimeRange(start=start, end=end)
+
+
+@router.get(
+    "/compare/report",
+    summary="A comparison as one HTML file",
+    operation_id="getComparisonReport",
+    response_class=Response,
+    responses={200: {"content": {"text/html": {}}, "description": "The file"}, **UNKNOWN},
+)
+def get_report(request: Request, query: Annotated[ReportQuery, Query()]) -> HTMLResponse:
+    """Charts, figures and differences, with all that they need: it opens without any network."""
+    from server.features.comparison.report import write_report  # Plotly is not needed before
+
+    try:
+        wanted = query.wanted()
+    except ValidationError as problem:
+        raise RequestValidationError(problem.errors()) from problem
+    comparison = Assembly.of(request).comparer.compare(wanted)
+    name = "_".join(str(one.id) for one in comparison.sessions)
+    return HTMLResponse(
+        write_report(comparison, _range(query.view_start, query.view_end)),
+        headers={"content-disposition": f'attachment; filename="comparison_{name}.html"'},
+    )
+
+
+@router.get(
+    "/sessions/{session}/signals",
+    summary="What of a session can be drawn over time",
+    operation_id="listSignals",
+    responses=UNKNOWN,
+)
+def get_signals(request: Request, session: Identifier) -> list[Signal]:
+    """The columns of its topics that have samples, and numbers of its documents."""
+    return Assembly.of(request).comparer.signals(session)
+
+
+@router.post(
+    "/compare", summary="Lay sessions over each other", operation_id="compareSessions", responses=UNKNOWN
+)
+def compare(request: Request, wanted: WantedComparison) -> Comparison:
+    """Lines, figures and what was different about the sessions."""
+    return Assembly.of(request).comparer.compare(wanted)
+
+
+@router.post(
+    "/compare/lines", summary="Lines for a part of the time", operation_id="compareLines", responses=UNKNOWN
+)
+def lines(request: Request, wanted: WantedLines) -> Lines:
+    """What is fetched when somebody looks closer."""
+    return Assembly.of(request).comparer.lines(wanted)

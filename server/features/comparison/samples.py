@@ -1,0 +1,136 @@
+"""Reads signals, and keeps those of complete sessions for a while: whoever compares asks again and again."""
+
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from server.features.comparison.signals import DOCUMENT_COLUMNS, split
+from server.features.sessions.recording import Recording
+
+Floats = NDArray[np.float64]
+
+KEPT_BYTES = 32_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A signal's samples in the order of time: s since the session's start, and the unit of the signal."""
+
+    times: Floats
+    values: Floats
+
+    def within(self, start: float, end: float) -> "Series":
+        """The samples between these times."""
+        first = int(np.searchsorted(self.times, start, "left"))
+        last = int(np.searchsorted(self.times, end, "right"))
+        return Series(self.times[first:last], self.values[first:last])
+
+    @property
+    def bytes(self) -> int:
+        """Memory that it takes."""
+        return self.times.nbytes + self.values.nbytes
+
+
+class Samples:
+    """The signals of sessions; may be asked from several threads."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[tuple[str, str], Series] = OrderedDict()
+        self._bytes = 0
+        self._lock = Lock()
+
+    def read(self, recording: Recording, names: Iterable[str]) -> dict[str, Series]:
+        """These signals, as far as the session has them.
+
+        Raises ValueError on what is no signal's name, StoreError, RecordingError.
+        """
+        wanted = {name: split(name) for name in names}
+        found = {name: series for name in wanted if (series := self._recall(recording, name))}
+        missing: dict[str, list[str]] = {}
+        for name, (topic, column) in wanted.items():
+            if name not in found:
+                missing.setdefault(topic, []).append(column)
+        for topic, columns in missing.items():
+            for column, series in read_topic(recording, topic, columns).items():
+                found[f"{topic}.{column}"] = series
+                self._keep(recording, f"{topic}.{column}", series)
+        return found
+
+    def _recall(self, recording: Recording, name: str) -> Series | None:
+        key = recording.row.identifier, name
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+            return self._kept.get(key)
+
+    def _keep(self, recording: Recording, name: str, series: Series) -> None:
+        if recording.row.state == "recording" or series.bytes > KEPT_BYTES:
+            return
+        with self._lock:
+            self._bytes += series.bytes
+            replaced = self._kept.pop((recording.row.identifier, name), None)
+            self._bytes -= replaced.bytes if replaced else 0
+            self._kept[recording.row.identifier, name] = series
+            while self._bytes > KEPT_BYTES:
+                _, oldest = self._kept.popitem(last=False)
+                self._bytes -= oldest.bytes
+
+
+def read_topic(recording: Recording, topic: str, columns: Iterable[str]) -> dict[str, Series]:
+    """These columns of a topic, as far as the session has them. Raises StoreError, RecordingError."""
+    described = recording.topics.get(topic)
+    if described is None:
+        return {}
+    if described["kind"] == "rows":
+        return _read_rows(recording, topic, _columns_there(described, columns))
+    return _read_documents(recording, topic, columns)
+
+
+def _columns_there(described: dict[str, Any], columns: Iterable[str]) -> list[str]:
+    there = {
+        f"{field['name']}_{place}" if field["count"] > 1 else field["name"]
+        for field in described["fields"]
+        for place in range(field["count"])
+    }
+    return [column for column in columns if column in there]
+
+
+def _read_rows(recording: Recording, topic: str, columns: list[str]) -> dict[str, Series]:
+    if not columns:
+        return {}
+    times, values = recording.columns(topic, columns)
+    return {column: _ordered(recording, times, values[column]) for column in columns if times.size}
+
+
+def _read_documents(recording: Recording, topic: str, columns: Iterable[str]) -> dict[str, Series]:
+    known = DOCUMENT_COLUMNS.get(topic, {})
+    wanted = {column: known[column].read for column in columns if column in known}
+    if not wanted:
+        return {}
+    times: list[float] = []
+    values: dict[str, list[float]] = {column: [] for column in wanted}
+    for document in recording.documents(topic):
+        try:
+            row = {column: read(document) for column, read in wanted.items()}
+        except (KeyError, TypeError, ValueError):
+            continue  # of a version that had no such number
+        times.append(document["time"])
+        for column, value in row.items():
+            values[column].append(value)
+    return {
+        column: _ordered(recording, np.array(times), np.array(values[column])) for column in wanted if times
+    }
+
+
+def _ordered(recording: Recording, times: Floats, values: Floats) -> Series:
+    """What was fetched again after a break may stand behind what is newer."""
+    since = times - recording.row.started_steady
+    if np.all(since[1:] >= since[:-1]):
+        return Series(since, values)
+    order = np.argsort(since, kind="stable")
+    return Series(since[order], values[order])

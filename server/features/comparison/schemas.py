@@ -1,0 +1,106 @@
+"""What is asked, and what is answered, about sessions laid over each other."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.features.comparison.alignment import Align
+from server.features.comparison.definitions import Figure, FigureMeaning
+from server.features.comparison.differences import Difference
+from server.features.comparison.signals import Signal
+from server.features.sessions.session import IDENTIFIER_MAX
+
+SESSIONS_MAX = 12
+SIGNALS_MAX = 24
+DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
+"""What the thesis's Figures 14 to 16 show."""
+
+Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
+SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
+
+
+class NoSessionError(Exception):
+    """A session that is asked for does not exist; the text says so to a person."""
+
+
+class TimeRange(BaseModel):
+    """From one moment to another, s on the common time axis, where the aligned moment is 0."""
+
+    model_config = ConfigDict(extra="forbid")
+    start: Annotated[float, Field(allow_inf_nan=False)]
+    end: Annotated[float, Field(allow_inf_nan=False)]
+
+
+class WantedLines(BaseModel):
+    """Sessions, signals of them, and how they are laid over each other."""
+
+    model_config = ConfigDict(extra="forbid")
+    sessions: Annotated[list[Identifier], Field(min_length=1, max_length=SESSIONS_MAX)]
+    signals: Annotated[list[SignalName], Field(max_length=SIGNALS_MAX)]
+    align: Align = Align()
+    points: Annotated[int, Field(ge=10, le=10_000, description="columns of each line")] = 1000
+    view: TimeRange | None = Field(default=None, description="what is drawn; everything without")
+
+
+class WantedComparison(WantedLines):
+    """The same, with what the figures are taken over."""
+
+    range: TimeRange | None = Field(default=None, description="for the figures; the time armed without")
+    band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
+
+
+class Line(BaseModel):
+    """A signal over time, thinned out to least and most of each column; null breaks the line."""
+
+    time: list[float] = Field(description="s since the session's start")
+    low: list[float | None]
+    high: list[float | None]
+
+
+class Told(BaseModel):
+    """An event or a marker; `time` in s since the session's start."""
+
+    time: float
+    kind: str
+    severity: str
+    text: str
+
+
+class Drawn(BaseModel):
+    """One session's lines."""
+
+    id: int
+    offset: float | None = Field(description="s since its start of what is 0 s; null where it lacks that")
+    problem: str = Field(description="why it cannot be laid over the others; empty where it can")
+    series: dict[str, Line] = Field(description="by signal; without those that it does not have")
+
+
+class Compared(Drawn):
+    """One session, with all that is compared."""
+
+    name: str
+    started: float = Field(description="UTC, s since 1970")
+    duration: float = Field(description="s")
+    state: str
+    armed: list[tuple[float, float]] = Field(description="from and to, s since its start")
+    set_point_steps: int = Field(description="how often the set point changed while armed")
+    events: list[Told]
+    markers: list[Told]
+    range: list[tuple[float, float]] = Field(description="what the figures are taken over")
+    figures: dict[str, Figure]
+
+
+class Lines(BaseModel):
+    """The lines of a part of the time."""
+
+    sessions: list[Drawn]
+
+
+class Comparison(BaseModel):
+    """Sessions laid over each other, in the order that was asked for."""
+
+    align: Align
+    signals: list[Signal] = Field(description="the wanted ones that at least one session has")
+    sessions: list[Compared]
+    figures: list[FigureMeaning]
+    differences: list[Difference]

@@ -1,0 +1,95 @@
+"""The archive: a session without loss, for µ-CAT on another machine.
+
+A zip file whose members are stored as they are: `session.json`; for each topic `chunks/<topic>`, its chunks
+one after the other as they lie in the database, each behind HEAD; and last `checksums.json`, the SHA-256 of
+every other member. Times stay on the session's own steady clock.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from struct import Struct
+from typing import Any, BinaryIO
+
+from sqlmodel import SQLModel, col, select
+
+from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.zip_stream import Packing
+from server.platform.models import Gap, Marker, SessionTag
+from server.platform.store import Reader
+
+FORMAT = "mucat-session"
+VERSION = 1
+HEAD = Struct("<IddqII16s")
+"""Number, first and last time (s), number of the first sample, samples, bytes, encoding (padded with 0)."""
+SESSION, CHECKSUMS, CHUNKS = "session.json", "checksums.json", "chunks/"
+
+
+def write_archive(store: Reader, source: Source, output: BinaryIO) -> None:
+    """The archive of a whole session. Raises ExportRefused while it is being recorded, StoreError."""
+    if source.row.state == "recording":
+        raise ExportRefused("The session is still being recorded. Stop the recording, then make the archive.")
+    members = _Members(output)
+    with members.member(SESSION) as write:
+        write(json.dumps(_describe(store, source), indent=1, ensure_ascii=False).encode())
+    for name in source.names:
+        with members.member(CHUNKS + name) as write:
+            for chunk in source.chunks(name):
+                encoding = chunk.encoding.encode().ljust(16, b"\0")
+                write(
+                    HEAD.pack(
+                        chunk.number,
+                        chunk.first_time,
+                        chunk.last_time,
+                        chunk.first,
+                        chunk.count,
+                        len(chunk.data),
+                        encoding,
+                    )
+                    + chunk.data
+                )
+    members.close()
+
+
+class _Members:
+    """Members of the zip file, and their checksums."""
+
+    def __init__(self, output: BinaryIO) -> None:
+        self._packing = Packing(output, packed=False)
+        self._sums: dict[str, str] = {}
+
+    @contextmanager
+    def member(self, name: str) -> Iterator[Any]:
+        checksum = hashlib.sha256()
+        with self._packing.member(name) as file:
+
+            def write(data: bytes) -> None:
+                checksum.update(data)
+                file.write(data)
+
+            yield write
+        self._sums[name] = checksum.hexdigest()
+
+    def close(self) -> None:
+        self._packing.text(CHECKSUMS, json.dumps(self._sums, indent=1))
+        self._packing.close()
+
+
+def _describe(store: Reader, source: Source) -> dict[str, Any]:
+    row = source.row
+    session = row.model_dump(exclude={"id", "deleted", "kept"})
+    session |= {"robot_state": json.loads(row.robot_state), "topics": json.loads(row.topics)}
+    with store.read() as database:
+
+        def rows(table: type[SQLModel], order: str) -> list[dict[str, Any]]:
+            query = select(table).where(getattr(table, "session_id") == row.id)  # noqa: B009
+            found = database.exec(query.order_by(col(getattr(table, order))))
+            return [one.model_dump(exclude={"id", "session_id"}) for one in found]
+
+        parts = {
+            "tags": [one["tag"] for one in rows(SessionTag, "tag")],
+            "markers": rows(Marker, "time"),
+            "gaps": rows(Gap, "id"),
+        }
+    return {"format": FORMAT, "version": VERSION, "session": session, **parts}

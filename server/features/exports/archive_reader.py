@@ -1,0 +1,332 @@
+"""Reads archives that may come from anywhere: damaged, foreign, cut off, or made to do harm.
+
+Nothing of an archive is believed before it has been looked at: members have the names that they may have and
+no others, none is unpacked to more than it may be, the checksums hold, and every chunk decodes to the samples
+that it says it has.
+"""
+
+import hashlib
+import json
+import re
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from math import isfinite
+from pathlib import Path
+from typing import IO, Annotated, Any, Literal, NamedTuple
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from robot_runtime.contract.topics import TIME
+from server.features.exports.archive import CHECKSUMS, CHUNKS, FORMAT, HEAD, SESSION, VERSION
+from server.features.sessions.chunks import (
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_pictures,
+)
+
+SESSION_BYTES_MAX = 32_000_000
+CHUNK_BYTES_MAX = 16_000_000
+"""Of one chunk, packed or unpacked."""
+UNPACKED_RATIO_MAX = 1100
+"""zlib cannot pack tighter than 1032 to 1."""
+STEP_BYTES = 1 << 20
+MEMBER = re.compile(r"session\.json|checksums\.json|chunks/[a-z][a-z0-9_]{0,49}")
+CODES = "bBhHiIqQfd?"
+ENCODINGS = {"rows": ROWS_ENCODING, "documents": DOCUMENTS_ENCODING, "picture": PICTURES_ENCODING}
+
+Text = Annotated[str, Field(max_length=1_000_000)]
+Words = Annotated[str, Field(max_length=10_000)]
+Time = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=0, lt=1 << 62)]
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
+
+
+class ArchiveRefused(Exception):  # noqa: N818 - it says what happened
+    """This is no archive that can be imported; the text says what is wrong with it."""
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
+
+
+class TopicField(_Strict):
+    """A field of a topic, as `chunks.describe_topics` has it; of documents only the name."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,99}$")]
+    code: Annotated[str, Field(min_length=1, max_length=1)] | None = None
+    count: Annotated[int, Field(ge=1, le=1000)] = 1
+    scale: float = 1
+    unit: Annotated[str, Field(max_length=50)] = ""
+    meaning: Words = ""
+
+
+class Topic(_Strict):
+    """A topic, as `chunks.describe_topics` has it."""
+
+    meaning: Words
+    kind: Literal["rows", "documents", "picture"]
+    row_bytes: int = 0
+    fields: Annotated[list[TopicField], Field(max_length=1000)]
+
+    @model_validator(mode="after")
+    def _agrees(self) -> "Topic":
+        if self.kind == "rows":
+            if any(field.code is None or field.code not in CODES for field in self.fields):
+                raise ValueError("its fields have no types that are known")
+            codes = "<" + "".join(f"{field.count}{field.code}" for field in self.fields)
+            if self.row_bytes != TIME.size + struct.calcsize(codes):
+                raise ValueError("its rows are not as long as its fields")
+        return self
+
+
+class ArchivedSession(_Strict):
+    """The session's columns (see `SessionRow`)."""
+
+    identifier: Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
+    name: Annotated[str, Field(min_length=1, max_length=1000)]
+    note: Words
+    state: Literal["complete", "interrupted"]
+    robot: Words
+    version: Words
+    definitions: Words
+    started: Annotated[float, Field(ge=0, le=253e9)]
+    started_steady: Time
+    ended: Annotated[float, Field(ge=0, le=253e9)] | None
+    duration: Annotated[float, Field(ge=0, le=1e12)]
+    configuration: Text
+    robot_state: dict[str, Any] | None
+    topics: dict[Name, Topic]
+    boot: Words = ""
+    scenario: Text = ""
+    scenario_name: Words = ""
+    seed: Annotated[int, Field(ge=-(1 << 62), lt=1 << 62)] | None = None
+    firmware: Words = ""
+    software: Words = ""
+
+
+class ArchivedMarker(_Strict):
+    """See `Marker`."""
+
+    time: Time
+    text: Words
+    made: Time
+
+
+class ArchivedGap(_Strict):
+    """See `Gap`."""
+
+    topic: Words
+    kind: Words
+    time: Time
+    missed: Count
+
+
+class Archived(_Strict):
+    """What `session.json` holds."""
+
+    session: ArchivedSession
+    tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
+    markers: Annotated[list[ArchivedMarker], Field(max_length=100_000)]
+    gaps: Annotated[list[ArchivedGap], Field(max_length=1_000_000)]
+
+
+class ArchivedChunk(NamedTuple):
+    """See `Chunk`."""
+
+    topic: str
+    number: int
+    first_time: float
+    last_time: float
+    first: int
+    samples: int
+    encoding: str
+    data: bytes
+
+
+class Archive:
+    """An open archive, whose members have the right names and whose `session.json` is understood."""
+
+    def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
+        self._zipped = zipped
+        self._names = self._look_at_members(size)
+        self.sums = self._checksums()
+        self.content, self._topics = self._session()
+        self.topics = [name.removeprefix(CHUNKS) for name in self._names if name.startswith(CHUNKS)]
+        strange = [name for name in self.topics if name not in self.content.session.topics]
+        if strange:
+            raise ArchiveRefused(
+                f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know."
+            )
+
+    @property
+    def described_topics(self) -> dict[str, Any]:
+        """The topics as they were described, word for word."""
+        return self._topics
+
+    def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
+        """The chunks of a topic, with plausible numbers; their data has not been looked at."""
+        number = -1
+        with self._zipped.open(CHUNKS + topic) as file:
+            while head := file.read(HEAD.size):
+                if len(head) < HEAD.size:
+                    raise ArchiveRefused(f"The chunks of {topic} are cut off after number {number}.")
+                chunk_number, first_time, last_time, first, count, size, encoding = HEAD.unpack(head)
+                if size > CHUNK_BYTES_MAX or count == 0:
+                    raise ArchiveRefused(
+                        f"A chunk of {topic} says that it has {count} samples in {size} bytes."
+                    )
+                if chunk_number <= number:
+                    raise ArchiveRefused(f"Chunk {chunk_number} of {topic} comes after number {number}.")
+                if not (isfinite(first_time) and isfinite(last_time)) or first < 0:
+                    raise ArchiveRefused(
+                        f"Chunk {chunk_number} of {topic} has a time or a number that is none."
+                    )
+                number = chunk_number
+                data = file.read(size)
+                if len(data) < size:
+                    raise ArchiveRefused(f"Chunk {number} of {topic} is cut off.")
+                name = encoding.rstrip(b"\0").decode("ascii", "replace")
+                yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
+
+    def verify(self, tell: Callable[[float], None]) -> None:
+        """Look at everything: checksums, and every chunk's samples. Raises ArchiveRefused."""
+        total = sum(info.file_size for info in self._zipped.infolist())
+        done = 0
+        for name in self._names:
+            checksum = hashlib.sha256()
+            with self._zipped.open(name) as file:
+                while piece := file.read(STEP_BYTES):
+                    checksum.update(piece)
+                    done += len(piece)
+                    tell(0.5 * done / total)
+            if self.sums.get(name) != checksum.hexdigest():
+                raise ArchiveRefused(
+                    f"{name} is damaged: its checksum is not the one that {CHECKSUMS} tells."
+                )
+        for place, topic in enumerate(self.topics):
+            for chunk in self.chunks(topic):
+                self._decode(chunk)
+            tell(0.5 + 0.5 * (place + 1) / len(self.topics))
+
+    def _look_at_members(self, size: int) -> list[str]:
+        infos = self._zipped.infolist()
+        names = [info.filename for info in infos]
+        strange = [name for name in names if not MEMBER.fullmatch(name)]
+        if strange:
+            raise ArchiveRefused(f"It holds {strange[0][:100]!r}, which no archive of a session does.")
+        if len(set(names)) < len(names):
+            raise ArchiveRefused("It holds two members of the same name.")
+        if SESSION not in names or CHECKSUMS not in names:
+            raise ArchiveRefused(
+                f"It holds no {SESSION} or no {CHECKSUMS}, so it is no archive of a session."
+            )
+        if any(info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1 for info in infos):
+            raise ArchiveRefused(
+                "Its members are packed or encrypted; those of an archive are stored as they are."
+            )
+        if sum(info.file_size for info in infos) > size:
+            raise ArchiveRefused("Its members are together larger than the file, which cannot be.")
+        return [name for name in names if name != CHECKSUMS]
+
+    def _read_json(self, name: str) -> Any:
+        with self._zipped.open(name) as file:
+            text = file.read(SESSION_BYTES_MAX + 1)
+        if len(text) > SESSION_BYTES_MAX:
+            raise ArchiveRefused(f"{name} is longer than {SESSION_BYTES_MAX} bytes.")
+        try:
+            return json.loads(text)
+        except (ValueError, RecursionError) as problem:
+            raise ArchiveRefused(f"{name} is not JSON: {problem}") from problem
+
+    def _checksums(self) -> dict[str, str]:
+        sums = self._read_json(CHECKSUMS)
+        if not isinstance(sums, dict):
+            raise ArchiveRefused(f"{CHECKSUMS} is not an object.")
+        return sums
+
+    def _session(self) -> tuple[Archived, dict[str, Any]]:
+        told = self._read_json(SESSION)
+        if not isinstance(told, dict) or told.get("format") != FORMAT:
+            raise ArchiveRefused(
+                f"Its {SESSION} does not say that it is an archive; export the format archive."
+            )
+        version = told.get("version")
+        if version != VERSION:
+            raise ArchiveRefused(
+                f"It is of format {version!r}, and this version of µ-CAT reads format {VERSION}. "
+                "Install the version of µ-CAT that wrote it, or a newer one."
+            )
+        try:
+            return Archived.model_validate(told), told["session"]["topics"]
+        except ValidationError as problem:
+            first = problem.errors()[0]
+            where = ".".join(str(place) for place in first["loc"])
+            raise ArchiveRefused(f"Its {SESSION} is not valid: {where}: {first['msg']}") from problem
+
+    def _decode(self, chunk: ArchivedChunk) -> None:
+        topic = self.content.session.topics[chunk.topic]
+        where = f"Chunk {chunk.number} of {chunk.topic}"
+        expected = ENCODINGS[topic.kind]
+        if chunk.encoding != expected:
+            raise ArchiveRefused(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
+        if topic.kind == "picture":
+            _look_at_pictures(chunk, where)
+            return
+        limit = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
+        data = _unpack(chunk.data, limit, where)
+        if topic.kind == "rows":
+            if len(data) != limit:
+                raise ArchiveRefused(f"{where} has {len(data)} bytes, which are not {chunk.samples} samples.")
+            return
+        try:
+            documents = [json.loads(line) for line in data.splitlines()]
+            times = [float(document["time"]) for document in documents]
+        except (ValueError, TypeError, KeyError, RecursionError) as problem:
+            raise ArchiveRefused(f"{where} does not hold documents with a time: {problem}") from problem
+        if len(times) != chunk.samples or not all(map(isfinite, times)):
+            raise ArchiveRefused(f"{where} does not hold {chunk.samples} documents with a time.")
+
+
+def examine(path: Path, tell: Callable[[float], None] = lambda _: None) -> None:
+    """Look at a whole archive. Raises ArchiveRefused."""
+    with open_archive(path) as archive:
+        archive.verify(tell)
+
+
+@contextmanager
+def open_archive(path: Path) -> Iterator[Archive]:
+    """An archive to read from. Raises ArchiveRefused, also on what shows only while it is read."""
+    try:
+        file: IO[bytes]
+        with path.open("rb") as file, zipfile.ZipFile(file) as zipped:
+            yield Archive(zipped, path.stat().st_size)
+    except zipfile.BadZipFile as problem:
+        raise ArchiveRefused(
+            f"It is no zip file, cut off or damaged ({problem}). Fetch it again, and compare its checksum."
+        ) from problem
+    except (NotImplementedError, EOFError, OSError, UnicodeError) as problem:
+        raise ArchiveRefused(f"It cannot be read: {problem}") from problem
+
+
+def _look_at_pictures(chunk: ArchivedChunk, where: str) -> None:
+    try:
+        times = [time for time, _ in decode_pictures(chunk.data)]
+    except ValueError as problem:
+        raise ArchiveRefused(f"{where} is damaged: {problem}") from problem
+    if len(times) != chunk.samples or not all(map(isfinite, times)):
+        raise ArchiveRefused(f"{where} does not hold {chunk.samples} pictures with a time.")
+
+
+def _unpack(data: bytes, limit: int, where: str) -> bytes:
+    unpacker = zlib.decompressobj()
+    try:
+        unpacked = unpacker.decompress(data, min(limit, len(data) * UNPACKED_RATIO_MAX) + 1)
+    except zlib.error as problem:
+        raise ArchiveRefused(f"{where} is damaged: {problem}") from problem
+    if len(unpacked) > limit or not unpacker.eof or unpacker.unused_data:
+        raise ArchiveRefused(f"{where} does not unpack to what it says that it holds.")
+    return unpacked

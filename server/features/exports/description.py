@@ -1,0 +1,61 @@
+"""`session.json`: everything about a session but its samples, and the name of its files."""
+
+import json
+import re
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlmodel import col, select
+
+from server.features.sessions.recording import Recording
+from server.platform.models import Gap, Marker, SessionTag
+from server.platform.store import Reader
+
+
+def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
+    """As a JSON object; times of markers and gaps in s since the session's start. Raises StoreError."""
+    row = recording.row
+    with store.read() as database:
+        gaps = database.exec(select(Gap).where(Gap.session_id == row.id).order_by(col(Gap.id))).all()
+        markers = database.exec(select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time)))
+        tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == row.id))
+        marks = [
+            {"time": marker.time - row.started_steady, "text": marker.text, "made": _iso(marker.made)}
+            for marker in markers
+        ]
+        words = sorted(tags)
+    plain = row.model_dump(exclude={"started", "ended", "deleted", "kept", "robot_state", "topics"})
+    return {
+        **plain,
+        "started": _iso(row.started),
+        "ended": None if row.ended is None else _iso(row.ended),
+        "tags": words,
+        "marks": marks,
+        "gaps": [
+            {
+                "topic": gap.topic,
+                "kind": gap.kind,
+                "time": gap.time - row.started_steady,
+                "missed": gap.missed,
+            }
+            for gap in gaps
+        ],
+        "robot_state": json.loads(row.robot_state),
+        "topics": recording.topics,
+    }
+
+
+def as_text(described: dict[str, Any]) -> str:
+    """Such an object as JSON for people."""
+    return json.dumps(described, indent=2, ensure_ascii=False) + "\n"
+
+
+def file_name(recording: Recording, ending: str) -> str:
+    """When it began and what it is called, in characters that every file system takes."""
+    started = datetime.fromtimestamp(recording.row.started, UTC)
+    words = re.sub(r"[^A-Za-z0-9]+", "-", recording.row.name).strip("-")[:50].strip("-")
+    return f"{started:%Y-%m-%d_%H-%M-%S}_{words or recording.row.id}{ending}"
+
+
+def _iso(time: float) -> str:
+    return datetime.fromtimestamp(time, UTC).isoformat().replace("+00:00", "Z")

@@ -1,0 +1,89 @@
+"""A file that is there whole or not at all, and its checksum."""
+
+import errno
+import hashlib
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import BinaryIO, NamedTuple, cast
+
+from robot_runtime.durable_files import sync
+
+BUFFER_BYTES = 1 << 18
+
+
+class Written(NamedTuple):
+    """A file's size in bytes and its SHA-256 in hexadecimal."""
+
+    bytes: int
+    sha256: str
+
+
+class FileFailed(Exception):  # noqa: N818 - it says what happened
+    """The file cannot be written; the text says why, and what to do."""
+
+
+def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
+    """Write a file and have it on the disk. Where anything fails it is gone again.
+
+    Raises FileFailed, and whatever `write` does.
+    """
+    try:
+        with path.open("wb", buffering=BUFFER_BYTES) as file:
+            summed = _Summed(file)
+            write(cast("BinaryIO", summed))
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as problem:
+        path.unlink(missing_ok=True)
+        raise FileFailed(explain(problem, path)) from problem
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
+    return Written(summed.tell(), summed.sha256)
+
+
+def put_in_place(part: Path, path: Path) -> None:
+    """Give a finished file its name, for good. Raises FileFailed."""
+    try:
+        part.replace(path)
+        sync(path.parent)
+    except OSError as problem:
+        raise FileFailed(explain(problem, path)) from problem
+
+
+def explain(problem: OSError, path: Path) -> str:
+    """What is wrong with writing to `path`, in words."""
+    if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        return f"The disk that holds {path.parent} is full. Free some space, and try again."
+    return f"{path.parent} cannot be written: {problem.strerror or problem}."
+
+
+class _Summed:
+    """A file that counts and sums what is written to it."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._sum = hashlib.sha256()
+        self._count = 0
+
+    @property
+    def sha256(self) -> str:
+        return self._sum.hexdigest()
+
+    def write(self, data: bytes) -> int:
+        self._sum.update(data)
+        self._file.write(data)
+        size = memoryview(data).nbytes
+        self._count += size
+        return size
+
+    def writelines(self, pieces: Iterable[bytes]) -> None:
+        for piece in pieces:
+            self.write(piece)
+
+    def tell(self) -> int:
+        return self._count
+
+    def flush(self) -> None:
+        self._file.flush()

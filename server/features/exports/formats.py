@@ -1,0 +1,55 @@
+"""The formats by name: how each is written, and what its files are called."""
+
+from collections.abc import Callable
+from typing import BinaryIO, NamedTuple
+
+from server.features.exports.archive import write_archive
+from server.features.exports.grid import write_grid
+from server.features.exports.json_lines import write_lines
+from server.features.exports.mcap_file import check_mcap, write_mcap
+from server.features.exports.parquet import check_parquet, write_parquet
+from server.features.exports.report import write_session_report
+from server.features.exports.schemas import Format, Wanted
+from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.tables import write_tables
+from server.platform.store import Reader
+
+Write = Callable[[Reader, Source, BinaryIO], None]
+
+
+class Kind(NamedTuple):
+    """A format: how it is written, the ending of its files' names, and their media type."""
+
+    write: Write
+    ending: str
+    media_type: str
+    check: Callable[[], None] = lambda: None
+    """Raises ExportRefused where it cannot be written here."""
+
+
+ZIP = "application/zip"
+KINDS: dict[Format, Kind] = {
+    "csv": Kind(write_tables, ".csv.zip", ZIP),
+    "csv-grid": Kind(write_grid, ".grid.zip", ZIP),
+    "jsonl": Kind(write_lines, ".jsonl", "application/jsonl"),
+    "parquet": Kind(write_parquet, ".parquet.zip", ZIP, check_parquet),
+    "mcap": Kind(write_mcap, ".mcap", "application/octet-stream", check_mcap),
+    "archive": Kind(write_archive, ".mucat.zip", ZIP),
+    "report": Kind(write_session_report, ".html", "text/html"),
+}
+
+WHOLE_ONLY = ("archive", "report")
+
+
+def check(wanted: Wanted) -> Kind:
+    """The format of what is wanted. Raises ExportRefused where choices do not go together."""
+    if wanted.columns is not None and wanted.format != "csv-grid":
+        raise ExportRefused("Columns are chosen for csv-grid alone; the other formats take topics.")
+    if wanted.topics is not None and wanted.format in ("csv-grid", *WHOLE_ONLY):
+        choose = "columns" if wanted.format == "csv-grid" else "nothing: it holds the whole session"
+        raise ExportRefused(f"For {wanted.format} choose {choose}, not topics.")
+    if wanted.format in WHOLE_ONLY and (wanted.start is not None or wanted.end is not None):
+        raise ExportRefused(f"The {wanted.format} holds the whole session; leave start and end out.")
+    kind = KINDS[wanted.format]
+    kind.check()
+    return kind

@@ -1,0 +1,137 @@
+"""One table of columns of several topics on a common grid of times."""
+
+import statistics
+from itertools import pairwise
+from math import floor
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from server.features.exports.description import as_text, describe_session
+from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.tables import csv_text
+from server.features.exports.zip_stream import Packing
+from server.features.sessions.chunks import row_layout
+from server.platform.store import Reader
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+WINDOW_LINES = 20_000
+"""Lines made at once: what is in memory."""
+LINES_MAX = 10_000_000
+GAPS = 2.0
+"""How many of its topic's usual gaps old a value may be."""
+
+README = """grid.csv: {name}
+One line every {period:g} s, from {first:g} s to {last:g} s after the session's start.
+`time [s]` counts from the session's start; `utc` is the same moment by the clock of the recording computer.
+A cell holds the newest value at that moment. It is empty where that value is older than {gaps:g} times the
+usual time between two samples of its topic:
+{limits}
+session.json holds everything else about the session.
+"""
+
+
+def write_grid(store: Reader, source: Source, output: BinaryIO) -> None:
+    """A zip file of `grid.csv`, `README.txt` and `session.json`.
+
+    Raises ExportRefused on columns that are not there or too many lines, StoreError, RecordingError.
+    """
+    chosen = _choose(source)
+    period = source.wanted.period
+    first, last = _range(source)
+    count = floor((last - first) / period + 1e-9) + 1
+    if count > LINES_MAX:
+        raise ExportRefused(
+            f"This would be {count} lines; the most are {LINES_MAX}. Choose a longer period or shorter range."
+        )
+    limits = {topic: GAPS * _usual_gap(source, topic) for topic in chosen}
+    packing = Packing(output)
+    told = "\n".join(f"  {topic}: {limit:.4g} s" for topic, limit in limits.items())
+    readme = README.format(
+        name=source.row.name, period=period, first=first, last=last, gaps=GAPS, limits=told
+    )
+    packing.text("README.txt", readme)
+    packing.text("session.json", as_text(describe_session(store, source)))
+    with packing.member("grid.csv") as file:
+        titles = [title for columns in chosen.values() for title in columns.values()]
+        file.write(csv_text([["time [s]", "utc", *titles]]).encode())
+        for line in range(0, count, WINDOW_LINES):
+            here = range(line, min(count, line + WINDOW_LINES))
+            file.write(_window(source, chosen, limits, [first + one * period for one in here]).encode())
+    packing.close()
+
+
+def _choose(source: Source) -> dict[str, dict[str, str]]:
+    """By topic, in the order wanted: the column's name and its title, such as "depth.depth [m]"."""
+    there = {
+        name: {column.partition(" [")[0]: f"{name}.{column}" for column in row_layout(topic).columns}
+        for name, topic in source.topics.items()
+        if topic["kind"] == "rows" and name in source.names
+    }
+    if source.wanted.columns is None:
+        if not there:
+            raise ExportRefused("No topic has numbers in this range; there is no table to make.")
+        return there
+    chosen: dict[str, dict[str, str]] = {}
+    for wanted in source.wanted.columns:
+        topic, _, column = wanted.partition(".")
+        if topic in source.topics and topic not in there:
+            raise ExportRefused(f"{topic} has no numbers in this range; leave {wanted} out.")
+        if column not in there.get(topic, {}):
+            known = ", ".join(f"{topic}.{one}" for one in there.get(topic, {})) or ", ".join(there)
+            raise ExportRefused(f"There is no column {wanted}; there are {known}.")
+        chosen.setdefault(topic, {})[column] = there[topic][column]
+    return chosen
+
+
+def _range(source: Source) -> tuple[float, float]:
+    """The first and the last moment, in s since the start."""
+    wanted = source.wanted
+    first = 0.0 if wanted.start is None else wanted.start
+    last = source.row.duration if wanted.end is None else wanted.end
+    if last < first:
+        raise ExportRefused("The range lies outside of the session. Choose another.")
+    return first, last
+
+
+def _usual_gap(source: Source, topic: str) -> float:
+    """s between two samples: the median over the chunks."""
+    spans = source.spans(topic)
+    within = [(last - first) / (count - 1) for first, last, count in spans if count > 1]
+    between = [later[0] - earlier[1] for earlier, later in pairwise(spans)]
+    gaps = within or between
+    return statistics.median(gaps) if gaps else source.wanted.period
+
+
+def _window(
+    source: Source, chosen: dict[str, dict[str, str]], limits: dict[str, float], times: list[float]
+) -> str:
+    import numpy as np  # only where somebody exports: it costs a small computer memory
+
+    grid = np.array(times) + source.row.started_steady
+    parts: list[list[str]] = []
+    for topic, titles in chosen.items():
+        limit = limits[topic]
+        seen, columns = source.columns(topic, list(titles), grid[0] - limit, grid[-1])
+        newest = np.searchsorted(seen, grid, side="right") - 1
+        fresh = newest >= 0
+        fresh[fresh] = grid[fresh] - seen[newest[fresh]] <= limit
+        digits = _digits(source.topics[topic])
+        parts += [_cells(columns[column][newest[fresh]], fresh, digits[column]) for column in titles]
+    utc = map(source.utc, grid.tolist())
+    lines = zip((f"{time:.6f}" for time in times), utc, *parts, strict=True)
+    return "".join(",".join(line) + "\n" for line in lines)
+
+
+def _cells(values: "Floats", fresh: "NDArray[np.bool_]", digits: str) -> list[str]:
+    found = iter(values.tolist())
+    return [digits % next(found) if there else "" for there in fresh.tolist()]
+
+
+def _digits(topic: dict[str, Any]) -> dict[str, str]:
+    layout = row_layout(topic)
+    names = [column.partition(" [")[0] for column in layout.columns]
+    return dict(zip(names, layout.line.split(","), strict=True))

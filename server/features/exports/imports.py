@@ -1,0 +1,196 @@
+"""Sessions brought from other machines: an archive is received, examined, and stored under a new number.
+
+It is stored piece by piece, so that what is being recorded meanwhile is not held up, and is seen by nobody
+before its last piece is there. What does not become whole is marked, and removed by `tidying`.
+"""
+
+import asyncio
+import json
+import shutil
+from collections.abc import AsyncIterable, Iterator
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from secrets import token_hex
+from typing import Any
+
+from sqlalchemy import Connection, Update, insert, update
+from sqlmodel import SQLModel, col, select
+
+from robot_runtime.durable_files import PART
+from robot_runtime.errors import Refused
+from server.features.exports.archive_reader import Archive, ArchiveRefused, open_archive
+from server.features.exports.export_process import Child, ChildFailed
+from server.features.exports.files import FileFailed, explain
+from server.features.sessions.session import IMPORTING, REMOVING
+from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.settings import DataFolder
+from server.platform.store import Store
+
+BATCH_BYTES = 500_000
+"""Stored in one transaction."""
+ROWS_AT_ONCE = 2_000
+PIECE_BYTES = 1 << 20
+SPARE_BYTES = 50_000_000
+"""Of the disk, left free for what is recorded."""
+COPIES = 2
+"""While it is imported, a session lies on the disk as the archive and in the database."""
+
+
+class Imports:
+    """Imports of a server, one at a time."""
+
+    def __init__(self, folder: DataFolder, store: Store) -> None:
+        self._folder = folder.imports
+        self._data = folder.path
+        self._store = store
+        self._busy = asyncio.Lock()
+
+    async def recover(self) -> None:
+        """Let go of what a killed server has not finished. Raises StoreError."""
+        if self._folder.is_dir():
+            for left in self._folder.iterdir():
+                left.unlink(missing_ok=True)
+        unfinished = col(SessionRow.state) == IMPORTING
+        await self._store.write(
+            partial(_execute, update(SessionRow).where(unfinished).values(state=REMOVING))
+        )
+
+    async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
+        """Import the archive that comes in pieces, of `size` bytes where that is known: its new number.
+
+        Raises Refused where that cannot be now, ArchiveRefused, FileFailed where the disk fails, StoreError.
+        """
+        if self._busy.locked():
+            raise Refused("Another archive is being imported. Wait for its end.")
+        async with self._busy:
+            self._check_room(COPIES * (size or 0))
+            path = self._folder / (token_hex(8) + PART)
+            try:
+                await self._save(pieces, path)
+                return await self._take(path)
+            finally:
+                await asyncio.to_thread(path.unlink, missing_ok=True)
+
+    async def take(self, path: Path) -> int:
+        """Import an archive that lies there. Raises as `receive`."""
+        async with self._busy:
+            self._check_room(path.stat().st_size)
+            return await self._take(path)
+
+    def _check_room(self, size: int) -> None:
+        free = shutil.disk_usage(self._data).free
+        if free < size + SPARE_BYTES:
+            raise FileFailed(
+                f"The disk that holds {self._data} has {free / 1e6:.0f} MB free; this needs "
+                f"{(size + SPARE_BYTES) / 1e6:.0f} MB. Free some space, and try again."
+            )
+
+    async def _save(self, pieces: AsyncIterable[bytes], path: Path) -> None:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("wb") as file:
+                waiting = bytearray()
+                async for piece in pieces:
+                    waiting += piece
+                    if len(waiting) >= PIECE_BYTES:
+                        await asyncio.to_thread(file.write, bytes(waiting))
+                        waiting.clear()
+                        self._check_room(file.tell())
+                await asyncio.to_thread(file.write, bytes(waiting))
+        except OSError as problem:
+            raise FileFailed(explain(problem, path)) from problem
+
+    async def _take(self, path: Path) -> int:
+        try:
+            await Child(["examine", str(path)], lambda _: None).run()
+        except ChildFailed as problem:
+            raise ArchiveRefused(f"The archive cannot be imported. {problem}") from problem
+        with open_archive(path) as archive:
+            self._refuse_known(archive)
+            values = _session_values(archive)
+            number = await self._store.write(lambda connection: _insert_session(connection, values))
+            try:
+                await self._fill(number, archive)
+            except BaseException:
+                await asyncio.shield(self._give_up(number))
+                raise
+        return number
+
+    def _refuse_known(self, archive: Archive) -> None:
+        identifier = archive.content.session.identifier
+        with self._store.read() as database:
+            row = database.exec(select(SessionRow).where(SessionRow.identifier == identifier)).first()
+        if row is None:
+            return
+        if row.state == REMOVING:
+            raise Refused("This session was here and is being removed. Try again in a few minutes.")
+        binned = " It is in the bin; restore it there." if row.deleted is not None else ""
+        raise Refused(f"This session is here already, as number {row.id}: “{row.name}”.{binned}")
+
+    async def _fill(self, number: int, archive: Archive) -> None:
+        content = archive.content
+        session = {"session_id": number}
+        small: list[tuple[type[SQLModel], list[dict[str, Any]]]] = [
+            (SessionTag, [session | {"tag": tag} for tag in dict.fromkeys(content.tags)]),
+            (Marker, [session | marker.model_dump() for marker in content.markers]),
+            (Gap, [session | gap.model_dump() for gap in content.gaps]),
+        ]
+        for table, rows in small:
+            for at in range(0, len(rows), ROWS_AT_ONCE):
+                await self._insert(table, rows[at : at + ROWS_AT_ONCE])
+        batches = _batches(archive, number)
+        samples = size = 0
+        while batch := await asyncio.to_thread(next, batches, None):
+            await self._insert(Chunk, batch)
+            samples += sum(row["count"] for row in batch)
+            size += sum(len(row["data"]) for row in batch)
+        done = {"state": content.session.state, "samples": samples, "bytes": size}
+        change = update(SessionRow).where(col(SessionRow.id) == number).values(done)
+        await self._store.write(partial(_execute, change))
+
+    async def _insert(self, table: type[SQLModel], rows: list[dict[str, Any]]) -> None:
+        await self._store.write(lambda connection: connection.execute(insert(table), rows))
+
+    async def _give_up(self, number: int) -> None:
+        """Leave the rest to `tidying`, which removes sessions."""
+        unwanted = update(SessionRow).where(col(SessionRow.id) == number).values(state=REMOVING)
+        await self._store.write(partial(_execute, unwanted))
+
+
+def _session_values(archive: Archive) -> dict[str, Any]:
+    session = archive.content.session
+    values = session.model_dump(exclude={"topics", "robot_state", "state"})
+    return values | {
+        "topics": json.dumps(archive.described_topics, ensure_ascii=False),
+        "robot_state": json.dumps(session.robot_state, ensure_ascii=False),
+        "state": IMPORTING,
+        "origin": "import",
+        "samples": 0,
+        "bytes": 0,
+        "kept": False,
+    }
+
+
+def _insert_session(connection: Connection, values: dict[str, Any]) -> int:
+    key = connection.execute(insert(SessionRow).values(values)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
+
+
+def _batches(archive: Archive, number: int) -> Iterator[list[dict[str, Any]]]:
+    batch: list[dict[str, Any]] = []
+    size = 0
+    for chunk in chain.from_iterable(archive.chunks(topic) for topic in archive.topics):
+        values = chunk._asdict()
+        batch.append({**values, "count": values.pop("samples"), "session_id": number})
+        size += len(chunk.data)
+        if size >= BATCH_BYTES:
+            yield batch
+            batch, size = [], 0
+    if batch:
+        yield batch
+
+
+def _execute(change: Update, connection: Connection) -> None:
+    connection.execute(change)

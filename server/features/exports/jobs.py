@@ -1,0 +1,181 @@
+"""Files that are made one after the other, each in a process of its own, and kept for some days.
+
+In the folder lie, for each file, `<id>` and `<id>.json`, its description. The description is written first,
+and the file gets its name last: a server that is killed leaves no half file under that name, and what it
+leaves is cleared away at the next start.
+"""
+
+import asyncio
+import logging
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from secrets import token_hex
+
+from pydantic import ValidationError
+
+from robot_runtime.durable_files import PART, make_folder, write_whole
+from robot_runtime.errors import Refused
+from server.features.exports.description import file_name
+from server.features.exports.export_process import Child, ChildFailed
+from server.features.exports.files import FileFailed, explain, put_in_place
+from server.features.exports.formats import check
+from server.features.exports.schemas import Job, NewExport, Wanted
+from server.features.exports.selection import Source
+from server.platform.models import SessionRow
+from server.platform.settings import DataFolder
+from server.platform.store import Reader
+
+log = logging.getLogger(__name__)
+
+KEPT_DAYS = 7
+JOBS_MAX = 200
+"""Waiting, running and kept."""
+CLEAN_SECONDS = 3600.0
+DESCRIBED = ".json"
+
+
+class Jobs:
+    """All exports of a server. Methods that touch the disk block for moments only."""
+
+    def __init__(self, folder: DataFolder, store: Reader) -> None:
+        self._folder = folder.exports
+        self._database = folder.database
+        self._store = store
+        self._jobs: dict[str, Job] = {}
+        self._wake = asyncio.Event()
+        self._running: tuple[str, Child] | None = None
+
+    def open(self) -> None:
+        """Find what earlier servers have made, and clear away what they did not finish."""
+        try:
+            make_folder(self._folder)
+            for path in self._folder.iterdir():
+                if path.suffix == DESCRIBED:
+                    self._find(path)
+            for path in self._folder.iterdir():
+                if path.name.removesuffix(DESCRIBED) not in self._jobs:
+                    path.unlink()
+        except OSError as problem:
+            log.warning("the exports in %s cannot be read: %s", self._folder, problem)
+
+    def list(self) -> list[Job]:
+        """All, newest first."""
+        return sorted(self._jobs.values(), key=lambda job: job.made, reverse=True)
+
+    def find(self, job: str) -> Job | None:
+        """One; None where there is none of this name."""
+        return self._jobs.get(job)
+
+    def path(self, job: Job) -> Path:
+        """Where the file of a job is, or will be."""
+        return self._folder / job.id
+
+    def add(self, row: SessionRow, wanted: NewExport) -> Job:
+        """Have a file made. Raises ExportRefused where it cannot be, Refused where too many are kept."""
+        if len(self._jobs) >= JOBS_MAX:
+            raise Refused(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
+        plain = Wanted.model_validate(wanted.model_dump(exclude={"session"}))
+        kind = check(plain)
+        source = Source(self._store, row, plain)
+        job = Job(
+            id=token_hex(8),
+            session=wanted.session,
+            session_name=row.name,
+            wanted=plain,
+            state="waiting",
+            progress=0.0,
+            made=datetime.now(UTC),
+            file=file_name(source, kind.ending),
+        )
+        self._jobs[job.id] = job
+        self._wake.set()
+        return job
+
+    def remove(self, job: Job) -> None:
+        """Cancel a job, or delete its file. Raises Refused where that fails."""
+        if self._running is not None and self._running[0] == job.id:
+            self._running[1].cancel()
+        try:
+            self._unlink(job)
+        except OSError as problem:
+            raise Refused(f"It cannot be deleted. {explain(problem, self.path(job))}") from problem
+        del self._jobs[job.id]
+
+    async def run(self) -> None:
+        """Make what is wanted, one after the other, for ever; delete what is too old."""
+        while True:
+            self._delete_old()
+            waiting = [job for job in self._jobs.values() if job.state == "waiting"]
+            if waiting:
+                await self._make(waiting[0].id)
+                continue
+            self._wake.clear()
+            try:
+                async with asyncio.timeout(CLEAN_SECONDS):
+                    await self._wake.wait()
+            except TimeoutError:
+                continue
+
+    async def _make(self, job: str) -> None:
+        wanted = self._jobs[job]
+        part = self._folder / (job + PART)
+        arguments = [
+            "write",
+            str(self._database),
+            str(wanted.session),
+            wanted.wanted.model_dump_json(),
+            str(part),
+        ]
+        child = Child(arguments, lambda share: self._change(job, progress=share))
+        self._running = job, child
+        self._change(job, state="running")
+        try:
+            written = await child.run()
+            done = wanted.model_copy(update={"state": "done", "progress": 1.0, **written})
+            await asyncio.to_thread(self._keep, done, part)
+            if job in self._jobs:
+                self._jobs[job] = done
+            else:
+                self._unlink(done)
+        except (ChildFailed, FileFailed) as problem:
+            self._change(job, state="failed", problem=str(problem))
+        finally:
+            self._running = None
+            await asyncio.to_thread(part.unlink, missing_ok=True)
+
+    def _keep(self, done: Job, part: Path) -> None:
+        described = self._description(done)
+        try:
+            write_whole(described, done.model_dump_json().encode())
+        except OSError as problem:
+            raise FileFailed(explain(problem, described)) from problem
+        put_in_place(part, self.path(done))
+
+    def _unlink(self, job: Job) -> None:
+        self.path(job).unlink(missing_ok=True)
+        self._description(job).unlink(missing_ok=True)
+
+    def _change(self, job: str, **changes: object) -> None:
+        if job in self._jobs:
+            self._jobs[job] = self._jobs[job].model_copy(update=changes)
+
+    def _find(self, described: Path) -> None:
+        try:
+            job = Job.model_validate_json(described.read_bytes())
+        except (ValidationError, OSError):
+            return
+        if job.state == "done" and job.id == described.stem and self.path(job).is_file():
+            self._jobs[job.id] = job
+
+    def _delete_old(self) -> None:
+        limit = datetime.now(UTC) - timedelta(days=KEPT_DAYS)
+        for job in [
+            job for job in self._jobs.values() if job.made < limit and job.state in ("done", "failed")
+        ]:
+            try:
+                self.remove(job)
+            except Refused as problem:
+                log.warning("%s", problem)
+
+    def _description(self, job: Job) -> Path:
+        return self._folder / (job.id + DESCRIBED)

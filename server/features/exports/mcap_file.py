@@ -1,0 +1,201 @@
+"""MCAP for Foxglove and Lichtblick: our topics in JSON, and beside them what their panels know by name.
+
+Without compression, which needs packages that a Raspberry Pi Zero has none of. Message times are UTC.
+"""
+
+import base64
+import heapq
+import json
+from collections.abc import Iterator
+from itertools import repeat
+from typing import Any, BinaryIO
+
+from sqlmodel import col, select
+
+from server.features.exports.description import as_text, describe_session
+from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
+from server.features.exports.pose import Pose, level, stamp
+from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.values import Rows
+from server.platform.models import Marker
+from server.platform.store import Reader
+
+LIBRARY = "mucat"
+LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/camera"
+IMAGE = "foxglove.CompressedImage"
+LOGGED = ("debug", "event", "notice")
+SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
+INFO = 2
+ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
+DEBUG_LEVEL_OFFSET = 1
+"""From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
+
+
+_Sample = tuple[int, int, bytes, dict[str, Any] | None]
+"""Time (ns, UTC); the topic's place, so that equal times stay in one order; the message; and what is to be
+said in the log, None where nothing is."""
+
+
+def check_mcap() -> None:
+    """Raises ExportRefused where MCAP cannot be written here."""
+    try:
+        import mcap.writer  # noqa: F401
+    except ImportError as problem:
+        raise ExportRefused(
+            "MCAP needs the package mcap, which is not installed. Install it where µ-CAT is installed, with "
+            "`pip install --no-deps mcap`, or choose another format."
+        ) from problem
+
+
+def write_mcap(store: Reader, source: Source, output: BinaryIO) -> None:
+    """A channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
+
+    Raises ExportRefused, StoreError, RecordingError.
+    """
+    check_mcap()
+    from mcap.writer import CompressionType, Writer
+
+    writer = Writer(output, compression=CompressionType.NONE)
+    writer.start(profile="", library=LIBRARY)
+    _write_about(store, source, writer)
+    channels = _Channels(writer)
+    first = source.utc_ns(source.row.started_steady)
+    pose = Pose(source)
+    if pose.known:
+        channels.add(FRAMES, "foxglove.FrameTransform", first, level(first))
+    own = [channels.of(name, source.topics[name]) for name in source.names]
+    posing = {source.names.index(name) for name in pose.topics}
+    for time, place, data, told in heapq.merge(*_samples(store, source)):
+        if place < len(own):
+            writer.add_message(own[place], time, data, time)
+        if place in posing:
+            seen = pose.see(source.names[place], data, time)
+            if seen:
+                channels.add(TRANSFORMS, "foxglove.FrameTransform", time, seen[0])
+                channels.add(POSE, "foxglove.PoseInFrame", time, seen[1])
+        elif told is not None:
+            channels.add(LOG, "foxglove.Log", time, _log(told, time))
+    writer.finish()  # type: ignore[no-untyped-call]
+
+
+class _Channels:
+    """The well-known topics, opened when they are first used."""
+
+    def __init__(self, writer: Any) -> None:
+        self._writer = writer
+        self._numbers: dict[str, int] = {}
+
+    def of(self, name: str, described: dict[str, Any]) -> int:
+        if described["kind"] == "picture":
+            return self.open(CAMERA, IMAGE, WELL_KNOWN[IMAGE])
+        return self.open(f"/{name}", f"mucat.{name}", topic_schema(name, described))
+
+    def open(self, topic: str, name: str, schema: dict[str, Any]) -> int:
+        number = self._writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+        return int(self._writer.register_channel(topic, "json", number))
+
+    def add(self, topic: str, name: str, time: int, data: bytes) -> None:
+        if topic not in self._numbers:
+            self._numbers[topic] = self.open(topic, name, WELL_KNOWN[name])
+        self._writer.add_message(self._numbers[topic], time, data, time)
+
+
+def _write_about(store: Reader, source: Source, writer: Any) -> None:
+    row = source.row
+    described = describe_session(store, source)
+    about = (
+        "identifier",
+        "name",
+        "robot",
+        "version",
+        "definitions",
+        "firmware",
+        "software",
+        "scenario_name",
+        "seed",
+    )
+    writer.add_metadata("session", {name: str(described[name] or "") for name in about})
+    writer.add_metadata("configuration", {"robot.toml": row.configuration, "scenario": row.scenario})
+    writer.add_metadata("gains", _gains(described["robot_state"]))
+    first = source.utc_ns(row.started_steady)
+    writer.add_attachment(first, first, "session.json", "application/json", as_text(described).encode())
+
+
+def _gains(state: dict[str, Any] | None) -> dict[str, str]:
+    """In force when the session began: "pid.kp" and so on, and which controller was chosen."""
+    state = state or {}
+    gains = {
+        f"{controller['name']}.{gain['name']}": str(gain["value"])
+        for controller in state.get("controllers", [])
+        for gain in controller.get("gains", [])
+    }
+    return {"controller": str(state.get("controller", "")), **gains}
+
+
+def _samples(store: Reader, source: Source) -> list[Iterator[_Sample]]:
+    readers = {"rows": _rows, "documents": _documents, "picture": _pictures}
+    found = [
+        readers[source.topics[name]["kind"]](source, name, place) for place, name in enumerate(source.names)
+    ]
+    return [*found, _markers(store, source)]
+
+
+def _rows(source: Source, name: str, place: int) -> Iterator[_Sample]:
+    rows = Rows(source, name)
+    for times, columns in rows.batches():
+        since = [source.since_start(time) for time in times]
+        lines = rows.lines('"time":%.6f', [since], columns)
+        yield from zip(map(source.utc_ns, times), repeat(place), lines, repeat(None))
+
+
+def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:
+    for document in source.documents(name, source.start, source.end):
+        time = source.utc_ns(document["time"])
+        data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
+        yield (time, place, data, {**document, "topic": name} if name in LOGGED else None)
+
+
+def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
+    for moment, jpeg in source.pictures(name, source.start, source.end):
+        time = source.utc_ns(moment)
+        image = {
+            "timestamp": stamp(time),
+            "frame_id": "camera",
+            "data": base64.b64encode(jpeg).decode(),
+            "format": "jpeg",
+        }
+        yield (time, place, _dump(image), None)
+
+
+def _markers(store: Reader, source: Source) -> Iterator[_Sample]:
+    query = select(Marker).where(Marker.session_id == source.row.id).order_by(col(Marker.time))
+    with store.read() as database:
+        markers = database.exec(query).all()
+    for marker in markers:
+        if source.start <= marker.time <= source.end:
+            yield (
+                source.utc_ns(marker.time),
+                len(source.names),
+                b"",
+                {"topic": "marker", "text": marker.text},
+            )
+
+
+def _log(told: dict[str, Any], time: int) -> bytes:
+    if told["topic"] == "debug":
+        level = told["level"] + DEBUG_LEVEL_OFFSET
+    else:
+        level = SEVERITIES.get(told.get("severity", ""), INFO)
+    message = {
+        "timestamp": stamp(time),
+        "level": level,
+        "message": told["text"],
+        "name": told.get("kind", told["topic"]),
+        "file": told["topic"],
+        "line": 0,
+    }
+    return _dump(message)
+
+
+def _dump(message: dict[str, Any]) -> bytes:
+    return ENCODE(message).encode()

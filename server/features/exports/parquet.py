@@ -1,0 +1,126 @@
+"""Parquet: a file for each topic, with the types of the numbers as they were recorded."""
+
+import json
+from collections.abc import Iterator
+from typing import Any, BinaryIO
+
+from server.features.exports.description import as_text, describe_session
+from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.values import Rows
+from server.features.exports.zip_stream import Packing
+from server.platform.store import Reader
+
+INTEGERS = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int32", "I": "uint32", "q": "int64"}
+GROUP_ROWS = 50_000
+"""Rows written at once: what is in memory."""
+
+
+def check_parquet() -> None:
+    """Raises ExportRefused where Parquet cannot be written here."""
+    try:
+        import pyarrow.parquet  # noqa: F401
+    except ImportError as problem:
+        raise ExportRefused(
+            "Parquet needs the package pyarrow, which is not installed. Install it where µ-CAT is installed, "
+            "with `pip install mucat[parquet]`, or choose another format."
+        ) from problem
+
+
+def write_parquet(store: Reader, source: Source, output: BinaryIO) -> None:
+    """A zip file of `session.json` and a Parquet file for each topic.
+
+    Columns are `time` (s since the session's start), `utc` and the fields in SI units; what is no number in
+    documents is text, lists and objects as JSON. Raises ExportRefused, StoreError, RecordingError.
+    """
+    check_parquet()
+    packing = Packing(output, packed=False)
+    packing.text("session.json", as_text(describe_session(store, source)))
+    for name in source.names:
+        with packing.member(f"{name}.parquet") as file:
+            _write_topic(source, name, file)
+    packing.close()
+
+
+def _write_topic(source: Source, name: str, file: Any) -> None:
+    import pyarrow as pa
+    from pyarrow.parquet import ParquetWriter
+
+    schema, batches = _READERS[source.topics[name]["kind"]](source, name)
+    with ParquetWriter(pa.PythonFile(file, "w"), schema) as writer:
+        waiting: list[Any] = []
+        count = 0
+        for times, columns in batches:
+            moments = pa.array([source.utc_ns(time) // 1000 for time in times], pa.timestamp("us", "UTC"))
+            arrays = [pa.array([source.since_start(time) for time in times]), moments]
+            arrays += [
+                pa.array(column, field.type) for column, field in zip(columns, list(schema)[2:], strict=True)
+            ]
+            waiting.append(pa.record_batch(arrays, schema=schema))
+            count += len(times)
+            if count >= GROUP_ROWS:
+                writer.write_table(pa.Table.from_batches(waiting))
+                waiting, count = [], 0
+        if waiting:
+            writer.write_table(pa.Table.from_batches(waiting))
+
+
+def _rows(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+    import pyarrow as pa
+
+    rows = Rows(source, name)
+    fields = [
+        pa.field(
+            column, _type(field.code, field.scale), metadata={"unit": field.unit, "meaning": field.meaning}
+        )
+        for field in rows.fields
+        for column in field.columns
+    ]
+    return pa.schema(_head() + fields), rows.batches()
+
+
+def _documents(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+    import pyarrow as pa
+
+    names = [field["name"] for field in source.topics[name]["fields"] if field["name"] != "time"]
+
+    def batches() -> Iterator[tuple[Any, Any]]:
+        for document in source.documents(name, source.start, source.end):
+            yield [document["time"]], [[_text(document.get(one))] for one in names]
+
+    return pa.schema(_head() + [pa.field(one, pa.string()) for one in names]), batches()
+
+
+def _pictures(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+    import pyarrow as pa
+
+    pictures = source.pictures(name, source.start, source.end)
+    return (
+        pa.schema([*_head(), pa.field("jpeg", pa.binary())]),
+        (([time], [[jpeg]]) for time, jpeg in pictures),
+    )
+
+
+_READERS = {"rows": _rows, "documents": _documents, "picture": _pictures}
+
+
+def _head() -> list[Any]:
+    import pyarrow as pa
+
+    return [
+        pa.field("time", pa.float64(), metadata={"unit": "s", "meaning": "since the session's start"}),
+        pa.field("utc", pa.timestamp("us", "UTC")),
+    ]
+
+
+def _type(code: str, scale: float) -> Any:
+    import pyarrow as pa
+
+    if code == "f" and scale == 1:
+        return pa.float32()
+    return pa.type_for_alias(INTEGERS[code]) if scale == 1 and code in INTEGERS else pa.float64()
+
+
+def _text(value: object) -> str | None:
+    if value is None or isinstance(value, str):
+        return value
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,20 @@
+"""The report: a session's figures and charts as one HTML file, as the page's comparison shows them."""
+
+from typing import BinaryIO
+
+from server.features.comparison.schemas import DEFAULT_SIGNALS, WantedComparison
+from server.features.exports.selection import Source
+from server.platform.store import Reader
+
+POINTS = 2000
+"""Columns of a chart; each has its least and its most value."""
+
+
+def write_session_report(store: Reader, source: Source, output: BinaryIO) -> None:
+    """The report of a whole session. Raises StoreError, RecordingError."""
+    from server.features.comparison.comparer import Comparer  # NumPy and Plotly, only for this format
+    from server.features.comparison.report import write_report
+
+    assert source.row.id is not None
+    wanted = WantedComparison(sessions=[source.row.id], signals=list(DEFAULT_SIGNALS), points=POINTS)
+    output.write(write_report(Comparer(store).compare(wanted)).encode())

@@ -1,0 +1,143 @@
+"""Exports: have a file made, look how far it is, download it; imports of archives."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi.concurrency import run_in_threadpool
+from starlette.responses import FileResponse
+
+from server.container import Assembly
+from server.features.exports.archive_reader import ArchiveRefused
+from server.features.exports.files import FileFailed
+from server.features.exports.formats import KINDS
+from server.features.exports.imports import Imports
+from server.features.exports.jobs import Jobs
+from server.features.exports.schemas import Job, NewExport
+from server.features.exports.selection import ExportRefused
+from server.features.sessions.session import Session, find_row, from_row
+from server.http.problems import answers
+
+UNKNOWN = answers(_404="There is no such export")
+
+router = APIRouter(prefix="/api", tags=["exports"])
+
+Identifier = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
+
+
+@router.get("/exports", summary="All exports, newest first", operation_id="listExports")
+async def get_exports(request: Request) -> list[Job]:
+    """Those that are kept, and those that are being made."""
+    return _jobs(request).list()
+
+
+@router.post(
+    "/exports",
+    status_code=201,
+    summary="Have a session made into a file",
+    operation_id="startExport",
+    responses=answers(_404="There is no such session", _409="Refused now", _422="It cannot be made"),
+)
+async def start_export(request: Request, wanted: NewExport) -> Job:
+    """Files are made one after the other, apart from the server; GET tells how far it is."""
+    assembly = Assembly.of(request)
+    row = await run_in_threadpool(find_row, assembly.store, wanted.session)
+    if row is None:
+        raise HTTPException(
+            404, f"There is no session {wanted.session}; GET /api/sessions lists those there are."
+        )
+    try:
+        return assembly.jobs.add(row, wanted)
+    except ExportRefused as problem:
+        raise HTTPException(422, str(problem)) from problem
+
+
+@router.get("/exports/{export}", summary="One export", operation_id="getExport", responses=UNKNOWN)
+async def get_export(request: Request, export: Identifier) -> Job:
+    """How far it is; its size and checksum when it is there."""
+    return _find(request, export)
+
+
+@router.delete(
+    "/exports/{export}",
+    status_code=204,
+    summary="Cancel or delete an export",
+    operation_id="deleteExport",
+    responses={**UNKNOWN, **answers(_409="It cannot be deleted")},
+)
+async def delete_export(request: Request, export: Identifier) -> None:
+    """The file is gone then."""
+    _jobs(request).remove(_find(request, export))
+
+
+@router.get(
+    "/exports/{export}/file",
+    summary="Download an export",
+    operation_id="downloadExport",
+    response_class=FileResponse,
+    responses={
+        200: {
+            "content": {"application/octet-stream": {}},
+            "description": "The file; its ETag is its SHA-256",
+        },
+        206: {"description": "The part that was asked for with Range"},
+        **UNKNOWN,
+        **answers(_409="It is not finished"),
+    },
+)
+async def get_file(request: Request, export: Identifier) -> FileResponse:
+    """A download that was cut goes on where it was: ask with Range, and with If-Range its ETag."""
+    job = _find(request, export)
+    if job.state != "done":
+        raise HTTPException(409, job.problem or "The file is not finished yet. Wait until its state is done.")
+    return FileResponse(
+        _jobs(request).path(job),
+        filename=job.file,
+        media_type=KINDS[job.wanted.format].media_type,
+        headers={"etag": f'"{job.sha256}"'},
+    )
+
+
+@router.post(
+    "/imports",
+    status_code=201,
+    summary="Import the archive of a session",
+    operation_id="importSession",
+    openapi_extra={
+        "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}}
+    },
+    responses=answers(
+        _409="It is here already, another is being imported, or the robot is armed",
+        _422="It is no archive that can be imported",
+        _503="The database does not work",
+        _507="The disk is full",
+    ),
+)
+async def import_session(request: Request) -> Session:
+    """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
+    assembly = Assembly.of(request)
+    assembly.require_disarmed("An upload takes time and disk from what is recorded.")
+    length = request.headers.get("content-length")
+    try:
+        number = await _imports(request).receive(request.stream(), int(length) if length else None)
+    except ArchiveRefused as problem:
+        raise HTTPException(422, str(problem)) from problem
+    except FileFailed as problem:
+        raise HTTPException(507, str(problem)) from problem
+    row = await run_in_threadpool(find_row, assembly.store, number)
+    assert row is not None
+    return from_row(row)
+
+
+def _jobs(request: Request) -> Jobs:
+    return Assembly.of(request).jobs
+
+
+def _imports(request: Request) -> Imports:
+    return Assembly.of(request).imports
+
+
+def _find(request: Request, export: str) -> Job:
+    found = _jobs(request).find(export)
+    if found is None:
+        raise HTTPException(404, f"There is no export {export}; GET /api/exports lists those there are.")
+    return found

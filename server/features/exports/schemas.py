@@ -1,0 +1,61 @@
+"""Exports as the interface shows them."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.features.sessions.session import IDENTIFIER_MAX
+
+Format = Literal["csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report"]
+State = Literal["waiting", "running", "done", "failed"]
+
+PERIOD_MIN, PERIOD_MAX = 0.001, 3600.0
+SECONDS_MAX = 1e9
+
+Name = Annotated[str, Field(min_length=1, max_length=100)]
+Seconds = Annotated[float, Field(ge=-SECONDS_MAX, le=SECONDS_MAX)]
+
+
+class Wanted(BaseModel):
+    """What of a session is to be in the file, and as what."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    format: Format
+    topics: Annotated[list[Name], Field(min_length=1, max_length=100)] | None = Field(
+        default=None, description="names of topics; null for all. Not for csv-grid, archive and report"
+    )
+    columns: Annotated[list[Name], Field(min_length=1, max_length=1000)] | None = Field(
+        default=None, description="such as depth.depth or motor.angle_0; null for all. For csv-grid alone"
+    )
+    start: Seconds | None = Field(
+        default=None, description="s since the session's start; null for its beginning"
+    )
+    end: Seconds | None = Field(default=None, description="s since the session's start; null for its end")
+    period: Annotated[float, Field(ge=PERIOD_MIN, le=PERIOD_MAX)] = Field(
+        default=0.1, description="s between the lines of csv-grid"
+    )
+
+
+class NewExport(Wanted):
+    """A file that is wanted."""
+
+    session: Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
+
+
+class Job(BaseModel):
+    """One file, made or to be made. It is kept for some days."""
+
+    id: str
+    session: int
+    session_name: str
+    wanted: Wanted
+    state: State
+    progress: float = Field(description="0 to 1")
+    made: datetime = Field(description="UTC, when it was asked for")
+    bytes: int | None = Field(default=None, description="the file's size; null until it is there")
+    file: str = Field(description="the file's name")
+    sha256: str | None = Field(
+        default=None, description="the file's checksum, hexadecimal; null until it is there"
+    )
+    problem: str = Field(default="", description="why it failed")

@@ -1,0 +1,99 @@
+"""What all formats read: a session's chosen topics within a range, in batches, with progress."""
+
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from math import inf
+
+from robot_runtime.contract.topics import TIME
+from server.features.exports.schemas import Wanted
+from server.features.sessions.recording import Recording
+from server.platform.models import Chunk, SessionRow
+from server.platform.store import Reader
+
+BATCH_BYTES = 64_000
+"""Rows are handed on in pieces of about this size: larger ones are no faster, and cost memory."""
+
+Tell = Callable[[float], None]
+"""Called with the share that is done, from 0 to 1."""
+
+
+class ExportRefused(Exception):  # noqa: N818 - it says what happened
+    """The session cannot be exported like this; the text says why, and what to do."""
+
+
+class Source(Recording):
+    """The chosen part of a session. `start` and `end` are on the session's steady clock (s).
+
+    Raises ExportRefused on a topic that the session does not have, or a range that is none.
+    """
+
+    def __init__(self, store: Reader, row: SessionRow, wanted: Wanted, tell: Tell = lambda _: None) -> None:
+        super().__init__(store, row)
+        self.wanted = wanted
+        self.start = -inf if wanted.start is None else row.started_steady + wanted.start
+        self.end = inf if wanted.end is None else row.started_steady + wanted.end
+        if self.start >= self.end:
+            raise ExportRefused("The range ends before it starts. Choose an end after the start.")
+        there = self.counts(self.start, self.end)
+        unknown = [name for name in wanted.topics or () if name not in self.topics]
+        if unknown:
+            raise ExportRefused(
+                f"This session has no topic {', '.join(unknown)}; it has {', '.join(self.topics)}."
+            )
+        self.names = [
+            name for name in self.topics if name in there and (not wanted.topics or name in wanted.topics)
+        ]
+        """Chosen topics that have samples."""
+        # Reading a column of a row costs more than the sums below, which are made for every sample.
+        self._steady, self._started = row.started_steady, row.started
+        self._started_ns = round(row.started * 1e9)
+        self._tell = tell
+        self._total = sum(there[name] for name in self.names)
+        self._seen = 0
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the range is the whole session."""
+        return self.start == -inf and self.end == inf
+
+    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
+        """The chunks of a topic; reading them is the progress."""
+        for chunk in super().chunks(topic, start, end):
+            yield chunk
+            self._seen += chunk.count
+            self._tell(min(1.0, self._seen / max(1, self._total)))
+
+    def batches(self, topic: str) -> Iterator[bytes]:
+        """The topic's rows in the range, some hundreds at once."""
+        size = self.topics[topic]["row_bytes"]
+        pending: list[bytes] = []
+        waiting = 0
+        for rows in self.rows(topic, self.start, self.end):
+            within = rows if self.is_whole else self._cut(rows, size)
+            pending.append(within)
+            waiting += len(within)
+            if waiting >= BATCH_BYTES:
+                yield b"".join(pending)
+                pending, waiting = [], 0
+        if waiting:
+            yield b"".join(pending)
+
+    def since_start(self, time: float) -> float:
+        """s since the session's start."""
+        return time - self._steady
+
+    def utc(self, time: float) -> str:
+        """A time of the steady clock as ISO 8601, to the millisecond."""
+        moment = datetime.fromtimestamp(self._started + time - self._steady, UTC)
+        return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+    def utc_ns(self, time: float) -> int:
+        """A time of the steady clock in ns since 1970."""
+        return self._started_ns + round((time - self._steady) * 1e9)
+
+    def _cut(self, rows: bytes, size: int) -> bytes:
+        return b"".join(
+            rows[at : at + size]
+            for at in range(0, len(rows), size)
+            if self.start <= TIME.unpack_from(rows, at)[0] <= self.end
+        )

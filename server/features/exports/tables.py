@@ -1,0 +1,102 @@
+"""CSV, a table for each topic: units in the header, and numbers that read back as the very stored ones."""
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
+from typing import Any, BinaryIO, cast
+
+from server.features.exports.description import as_text, describe_session
+from server.features.exports.selection import Source
+from server.features.exports.zip_stream import Packing
+from server.features.sessions.chunks import row_layout
+from server.platform.store import Reader
+
+
+def stream_tables(store: Reader, source: Source) -> Iterator[bytes]:
+    """A zip file of `session.json`, a CSV file for each topic and JPEG files, piece by piece.
+
+    Raises StoreError, RecordingError.
+    """
+    sink = _Sink()
+    packing = Packing(cast("BinaryIO", sink))
+    packing.text("session.json", as_text(describe_session(store, source)))
+    for name in source.names:
+        if source.topics[name]["kind"] == "picture":
+            for time, jpeg in source.pictures(name, source.start, source.end):
+                with packing.member(f"{name}/{source.since_start(time):010.3f}.jpg") as file:
+                    file.write(jpeg)
+                yield from sink.take()
+            continue
+        with packing.member(f"{name}.csv") as file:
+            for lines in _lines(source, name):
+                file.write(lines.encode())
+                yield from sink.take()
+    packing.close()
+    yield from sink.take()
+
+
+def write_tables(store: Reader, source: Source, output: BinaryIO) -> None:
+    """The same, into a file."""
+    output.writelines(stream_tables(store, source))
+
+
+def csv_text(lines: Iterable[Iterable[str]]) -> str:
+    """Lines of cells as CSV."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(lines)
+    return text.getvalue()
+
+
+class _Sink:
+    """Keeps what is written until it is taken."""
+
+    def __init__(self) -> None:
+        self._pieces: list[bytes] = []
+
+    def write(self, data: bytes) -> None:
+        self._pieces.append(bytes(data))
+
+    def take(self) -> Iterator[bytes]:
+        pieces, self._pieces = self._pieces, []
+        if pieces:
+            yield b"".join(pieces)
+
+
+def _lines(source: Source, name: str) -> Iterator[str]:
+    topic = source.topics[name]
+    if topic["kind"] == "rows":
+        columns, write = _row_writer(source, topic)
+        yield csv_text([["time [s]", "utc", *columns]])
+        for rows in source.batches(name):
+            yield write(rows)
+    else:
+        header = [field["name"] for field in topic["fields"] if field["name"] != "time"]
+        yield csv_text([["time [s]", "utc", *header]])
+        for document in source.documents(name, source.start, source.end):
+            time = document["time"]
+            cells = (_cell(document.get(column)) for column in header)
+            yield csv_text([[f"{source.since_start(time):.6f}", source.utc(time), *cells]])
+
+
+def _row_writer(source: Source, topic: dict[str, Any]) -> tuple[tuple[str, ...], Callable[[bytes], str]]:
+    layout = row_layout(topic)
+    line = f"%.6f,%s,{layout.line}\n"
+
+    def write(rows: bytes) -> str:
+        times, *counts = zip(*layout.row.iter_unpack(rows), strict=True)
+        values = (
+            column if scale == 1 else [count * scale for count in column]
+            for column, scale in zip(counts, layout.scales, strict=True)
+        )
+        cells = zip(map(source.since_start, times), map(source.utc, times), *values, strict=True)
+        return line * len(times) % tuple(chain.from_iterable(cells))
+
+    return layout.columns, write
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,93 @@
+"""The layouts that people have kept, in the database. All methods raise StoreError."""
+
+import json
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from pydantic import BaseModel
+from sqlalchemy import Connection, delete, func, insert, update
+from sqlmodel import col, select
+
+from robot_runtime.errors import Refused
+from server.features.layouts.document import LayoutDocument
+from server.platform.models import LayoutRow
+from server.platform.store import Store
+
+LAYOUTS_MOST = 200
+
+
+class UnknownLayout(LookupError):  # noqa: N818 - it says what happened
+    """There is no such layout."""
+
+
+class KeptLayout(BaseModel):
+    """A layout by its name."""
+
+    id: int
+    name: str
+    saved: datetime
+
+
+class WholeLayout(KeptLayout):
+    """The same with its document, which may be of another version of the program."""
+
+    document: dict[str, Any]
+
+
+class Layouts:
+    """The layouts of a database."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def list(self) -> Sequence[KeptLayout]:
+        """All of them, by name."""
+        columns = (col(LayoutRow.id), col(LayoutRow.name), col(LayoutRow.saved))
+        with self._store.read() as database:
+            found = database.exec(select(*columns).order_by(func.lower(LayoutRow.name))).all()
+        return [KeptLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
+
+    def get(self, layout: int) -> WholeLayout:
+        """One of them. Raises UnknownLayout."""
+        with self._store.read() as database:
+            row = database.get(LayoutRow, layout)
+            if row is None:
+                raise UnknownLayout(f"There is no layout {layout}. Somebody may have deleted it.")
+            return WholeLayout(
+                id=layout, name=row.name, saved=_utc(row.saved), document=json.loads(row.document)
+            )
+
+    async def save(self, name: str, document: LayoutDocument) -> KeptLayout:
+        """Keep it under its name, over one of that name. Raises Refused where there are too many."""
+        text, now = document.model_dump_json(exclude_none=True), time.time()
+
+        def write(connection: Connection) -> int:
+            found = connection.execute(select(LayoutRow.id).where(LayoutRow.name == name)).scalar()
+            if found is not None:
+                change = update(LayoutRow).where(col(LayoutRow.id) == found)
+                connection.execute(change.values(document=text, saved=now))
+                return int(found)
+            kept = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
+            if kept >= LAYOUTS_MOST:
+                raise Refused(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
+            row = {"name": name, "document": text, "saved": now}
+            key = connection.execute(insert(LayoutRow).values(row)).inserted_primary_key
+            assert key is not None
+            return int(key[0])
+
+        return KeptLayout(id=await self._store.write(write), name=name, saved=_utc(now))
+
+    async def delete(self, layout: int) -> None:
+        """Delete one for good. Raises UnknownLayout."""
+
+        def write(connection: Connection) -> None:
+            if connection.execute(delete(LayoutRow).where(col(LayoutRow.id) == layout)).rowcount == 0:
+                raise UnknownLayout(f"There is no layout {layout}. Somebody may have deleted it.")
+
+        await self._store.write(write)
+
+
+def _utc(seconds: float) -> datetime:
+    return datetime.fromtimestamp(seconds, UTC)

@@ -1,0 +1,42 @@
+"""Panels of one's own: which there are, their scripts, and the frame in which the page runs them."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Request
+from fastapi.responses import HTMLResponse
+
+from server.container import Assembly
+from server.features.panels import frame
+from server.features.panels.scripts import OwnPanel, OwnPanelScript, list_panels, read_panel
+from server.http.problems import answers
+
+router = APIRouter(prefix="/api/panels", tags=["panels"])
+
+
+@router.get("", summary="One's own panels", operation_id="listPanels")
+def get_panels(request: Request) -> Sequence[OwnPanel]:
+    """Those in the folder `panels` of the data folder, by name."""
+    return list_panels(Assembly.of(request).settings.data.panels)
+
+
+@router.get(
+    "/frame",
+    summary="Where one's own panels run",
+    operation_id="getPanelFrame",
+    response_class=HTMLResponse,
+)
+def get_frame() -> HTMLResponse:
+    """A page with an origin of its own, which hears samples and can ask nobody for anything."""
+    return frame.respond()
+
+
+@router.get(
+    "/own/{panel}",
+    summary="A panel's script",
+    operation_id="getPanel",
+    responses=answers(_404="There is no such panel, or it cannot be read"),
+)
+def get_panel(request: Request, panel: Annotated[str, Path(max_length=60)]) -> OwnPanelScript:
+    """As text, which the page hands to a frame."""
+    return read_panel(Assembly.of(request).settings.data.panels, panel)

@@ -1,0 +1,145 @@
+"""Profiles: parameters kept under a name, in the database and as files."""
+
+import json
+import re
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from time import time
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from sqlalchemy import Connection, delete, insert
+from sqlmodel import col, select
+
+from robot_runtime.errors import Refused
+from server import VERSION
+from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
+from server.platform.models import ProfileRow
+from server.platform.store import Store
+
+FORMAT = 1
+"""Of profiles' files; a file of another one is refused."""
+PROFILES_MAX = 500
+
+
+class UnknownProfile(LookupError):  # noqa: N818 - it says what happened
+    """There is no such profile."""
+
+
+class ProfileError(ValueError):
+    """A file that is no profile; the text says why, for a person."""
+
+
+class ProfileFile(BaseModel):
+    """What a profile's file holds; `version` is that of the software that wrote it."""
+
+    model_config = ConfigDict(extra="ignore")
+    name: ProfileName
+    note: ProfileNote = ""
+    version: str = ""
+    parameters: Values
+
+
+class Profiles:
+    """Every profile. Every method raises StoreError, and UnknownProfile where there is no such one."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def list(self) -> list[Profile]:
+        """In alphabetical order. Blocks."""
+        with self._store.read() as database:
+            rows = database.exec(select(ProfileRow)).all()
+        return sorted((_show(row) for row in rows), key=lambda one: one.name.casefold())
+
+    def find(self, profile: int) -> Profile:
+        """One of them. Blocks."""
+        with self._store.read() as database:
+            row = database.get(ProfileRow, profile)
+        if row is None:
+            raise UnknownProfile("There is no such profile; somebody may have deleted it.")
+        return _show(row)
+
+    async def save(self, name: str, note: str, values: Mapping[str, Value]) -> Profile:
+        """Keep these values. Raises Refused where the name is taken, or where there are too many."""
+        row = ProfileRow(name=name, note=note, saved=time(), parameters=json.dumps(dict(values)))
+
+        def write(connection: Connection) -> Profile:
+            names = connection.execute(select(ProfileRow.name)).scalars().all()
+            if name in names:
+                raise Refused(
+                    f"There is a profile “{name}” already. Delete it first, or choose another name."
+                )
+            if len(names) >= PROFILES_MAX:
+                raise Refused(f"There are {PROFILES_MAX} profiles already. Delete some first.")
+            key = connection.execute(
+                insert(ProfileRow).values(row.model_dump(exclude={"id"}))
+            ).inserted_primary_key
+            assert key is not None
+            row.id = int(key[0])
+            return _show(row)
+
+        return await self._store.write(write)
+
+    async def delete(self, profile: int) -> None:
+        """Remove it for good."""
+
+        def write(connection: Connection) -> None:
+            found = connection.execute(delete(ProfileRow).where(col(ProfileRow.id) == profile))
+            if found.rowcount == 0:
+                raise UnknownProfile("There is no such profile; somebody may have deleted it.")
+
+        await self._store.write(write)
+
+
+def write_file(profile: Profile) -> str:
+    """The file of a profile, which `read_file` reads."""
+    content = {
+        "format": FORMAT,
+        "name": profile.name,
+        "note": profile.note,
+        "saved": profile.saved.isoformat(),
+        "version": VERSION,
+        "parameters": profile.values,
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def file_name(profile: Profile) -> str:
+    """What the file is called, in characters that every file system takes."""
+    words = re.sub(r"[^A-Za-z0-9]+", "-", profile.name).strip("-")[:50].strip("-")
+    return f"profile-{words or profile.id}.json"
+
+
+def read_file(text: str) -> ProfileFile:
+    """The profile in a file. Raises ProfileError."""
+    try:
+        content: Any = json.loads(text)
+    except (ValueError, RecursionError) as problem:
+        raise ProfileError(f"The file is no profile: it is not JSON ({problem}).") from problem
+    if not isinstance(content, dict) or "format" not in content:
+        raise ProfileError("The file is no profile: it does not say its format. Save one here to see one.")
+    if content["format"] != FORMAT:
+        raise ProfileError(
+            f"The file is a profile of format {content['format']!r}, written by version "
+            f"{content.get('version')!r}; this version reads format {FORMAT} alone. Open it with the version "
+            "that wrote it."
+        )
+    try:
+        return ProfileFile.model_validate(content)
+    except ValidationError as problem:
+        words = "; ".join(
+            f"{'.'.join(str(place) for place in error['loc'][:2])}: {error['msg']}"
+            for error in problem.errors()[:5]
+        )
+        raise ProfileError(f"The profile in the file cannot be used. {words}.") from problem
+
+
+def _show(row: ProfileRow) -> Profile:
+    return Profile(
+        id=row.id or 0,
+        name=row.name,
+        note=row.note,
+        saved=datetime.fromtimestamp(row.saved, UTC),
+        values=json.loads(row.parameters),
+    )

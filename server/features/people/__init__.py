@@ -1,0 +1,1 @@
+"""People and devices: pairing, roles, tokens."""

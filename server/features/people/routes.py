@@ -1,0 +1,167 @@
+"""Who is there, and who may be: pairing, roles, tokens, revocation."""
+
+import time
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Path, Request, Response
+
+from server.container import Assembly
+from server.features.people.pairing_links import pairing_link, qr_svg
+from server.features.people.schemas import (
+    DeviceChanges,
+    DeviceShape,
+    Known,
+    MadeCode,
+    MadeToken,
+    Me,
+    NewCode,
+    NewToken,
+    Pairing,
+)
+from server.features.sessions.session import IDENTIFIER_MAX
+from server.http.problems import answers
+from server.http.sign_in.access import Access
+from server.http.sign_in.devices import Device
+from server.http.sign_in.identity import IDENTITY, Identity
+from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTries, WrongCode
+from server.http.sign_in.policy import OPERATIONS, Need
+
+COOKIE_SECONDS = 400 * 86400
+"""As long as browsers keep any. Access ends by signing out and by revocation; a Raspberry Pi without a
+battery has no clock that could tell when it is too old."""
+
+STORING = answers(_409="Refused now", _503="The database does not work")
+UNKNOWN = answers(_404="There is no such device")
+
+router = APIRouter(prefix="/api/access", tags=["access"])
+
+Number = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+
+
+@router.get("/me", summary="Who asks", operation_id="getMe")
+async def get_me(request: Request) -> Me:
+    """Answered to everybody."""
+    return _me(request, request.scope[IDENTITY])
+
+
+@router.post(
+    "/pair",
+    summary="Sign this browser in with a code",
+    operation_id="pairBrowser",
+    responses=answers(_403="The code is not valid", _429="Too many wrong codes; Retry-After says how long")
+    | STORING,
+)
+async def pair(request: Request, response: Response, wanted: Pairing) -> Me:
+    """Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more."""
+    access = Access.of(request)
+    try:
+        identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
+    except WrongCode as problem:
+        raise HTTPException(403, str(problem)) from problem
+    except TooManyTries as problem:
+        raise HTTPException(429, str(problem), {"retry-after": str(problem.seconds)}) from problem
+    if secret is not None:
+        response.set_cookie(
+            access.cookie,
+            secret,
+            max_age=COOKIE_SECONDS,
+            httponly=True,
+            samesite="strict",
+            secure=request.url.scheme == "https",
+        )
+    return _me(request, identity)
+
+
+@router.post(
+    "/sign-out", status_code=204, summary="Sign this browser out", operation_id="signOut", responses=STORING
+)
+async def sign_out(request: Request, response: Response) -> None:
+    """It has to be paired anew afterwards. For a program: its token is void."""
+    access = Access.of(request)
+    await access.sign_out(Identity.of(request))
+    response.delete_cookie(access.cookie, httponly=True, samesite="strict")
+
+
+@router.post("/codes", status_code=201, summary="Make a pairing code", operation_id="makeCode")
+async def make_code(request: Request, wanted: NewCode) -> MadeCode:
+    """For one browser, within ten minutes."""
+    code = Access.of(request).codes.make(wanted.role)
+    link = pairing_link(Assembly.of(request).settings.base_url(_called(request)), code)
+    expires = time.time() + CODE_SECONDS
+    return MadeCode(code=code, link=link, role=wanted.role, expires=expires, qr_svg=qr_svg(link))
+
+
+@router.get("/devices", summary="Who may come in", operation_id="listDevices")
+async def get_devices(request: Request) -> list[DeviceShape]:
+    """Browsers and programs, in the order in which they came."""
+    return [_describe(request, device) for device in Access.of(request).devices.all()]
+
+
+@router.patch(
+    "/devices/{device}",
+    summary="Rename, promote or demote",
+    operation_id="changeDevice",
+    responses=UNKNOWN | STORING,
+)
+async def change(request: Request, device: Number, said: DeviceChanges) -> DeviceShape:
+    """A new role closes its live sockets, which come back in that role."""
+    access = Access.of(request)
+    if said.role is not None:
+        await access.set_role(device, said.role, Identity.of(request))
+    if said.name is not None:
+        await access.rename(device, said.name)
+    return _describe(request, access.devices.get(device))
+
+
+@router.delete(
+    "/devices/{device}",
+    status_code=204,
+    summary="Revoke access",
+    operation_id="revokeDevice",
+    responses=UNKNOWN | STORING,
+)
+async def revoke(request: Request, device: Number) -> None:
+    """At once, also on live sockets, which are closed."""
+    await Access.of(request).revoke(device, Identity.of(request))
+
+
+@router.post(
+    "/tokens",
+    status_code=201,
+    summary="Let a program in",
+    operation_id="makeToken",
+    responses=STORING,
+)
+async def make_token(request: Request, wanted: NewToken) -> MadeToken:
+    """The token is shown this once; the program sends it as `Authorization: Bearer`."""
+    device, token = await Access.of(request).make_program(wanted.name, wanted.role, Identity.of(request))
+    return MadeToken(token=token, device=_describe(request, device))
+
+
+def _called(request: Request) -> str:
+    return request.headers["host"].rsplit(":", 1)[0].lower()
+
+
+def _me(request: Request, identity: Identity | None) -> Me:
+    known = None
+    if identity is not None:
+        known = Known(device=identity.device, name=identity.name, role=identity.role, kind=identity.kind)
+    return Me(
+        signed_in=identity is not None,
+        robot=Assembly.of(request).settings.robot,
+        identity=known,
+        pairing_open=Access.of(request).codes.any_valid,
+        operators_only=[name for name, need in OPERATIONS.items() if known and need >= Need.OPERATOR],
+    )
+
+
+def _describe(request: Request, device: Device) -> DeviceShape:
+    return DeviceShape(
+        id=device.id,
+        name=device.name,
+        role=device.role,
+        kind=device.kind,
+        paired=device.paired,
+        seen=device.seen,
+        you=Identity.of(request).device == device.id,
+    )

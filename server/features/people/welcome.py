@@ -1,0 +1,52 @@
+"""What the server says when it has started: where the page is, who can reach it, and how to get in."""
+
+from typing import TextIO
+from urllib.parse import urlsplit
+
+from server import VERSION
+from server.features.people.pairing_links import pairing_link, qr_text
+from server.http.certificate import Certificate
+from server.http.sign_in.access import Access
+from server.platform.settings import Settings, is_loopback
+
+
+def welcome(
+    settings: Settings, access: Access, certificate: Certificate | None, *, picture: bool
+) -> list[str]:
+    """Lines for the terminal; `picture` says whether it can show one.
+
+    Who holds the terminal of a server that only this computer reaches is its operator anyway, so each start
+    gives a link, and nobody has to type a code. A server that others reach gives one only while there is no
+    operator: its output may be kept in a log, and its reader is not always at the robot.
+    """
+    base = settings.base_url()
+    lines = [f"µ-CAT {VERSION} ({settings.mode}): {base}/ (data in {settings.data.path})", _reach(settings)]
+    if certificate is not None:
+        lines += [
+            "Browsers will not know its certificate. Compare the SHA-256 fingerprint before you trust it:",
+            f"  {certificate.fingerprint}",
+        ]
+    if settings.only_here or not access.devices.operators:
+        lines += invitation(pairing_link(base, access.codes.make("operator")), picture=picture)
+    return lines
+
+
+def invitation(link: str, *, picture: bool) -> list[str]:
+    """A pairing link for a person; as a picture too, where another device could follow it."""
+    lines = ["To sign a browser in, open this link. It works once, for ten minutes:", f"  {link}"]
+    if picture and not is_loopback(urlsplit(link).hostname or ""):
+        lines.append(qr_text(link))
+    return lines
+
+
+def shows_pictures(stream: TextIO) -> bool:
+    """Whether what it is read with knows the signs of which a QR code is drawn."""
+    return stream.encoding.lower().startswith("utf")
+
+
+def _reach(settings: Settings) -> str:
+    if settings.only_here:
+        return f"It listens on {settings.host}: only this computer reaches it."
+    where = "all networks" if settings.host in ("0.0.0.0", "::") else "its network"
+    read = "" if settings.tls else ", and read along what others ask: server.tls in robot.toml hides it"
+    return f"It listens on {settings.host}: every computer in {where} can ask for a sign-in{read}."

@@ -1,0 +1,64 @@
+"""The scenarios that there are: those that come with the program, and one's own in the data folder."""
+
+import logging
+from importlib.resources import files
+from pathlib import Path
+
+from robot_runtime.durable_files import make_folder, write_whole
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, ScenarioError, read_scenario
+from server.features.scenarios.schemas import ScenarioText, summarize
+
+log = logging.getLogger(__name__)
+
+SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link")
+"""The thesis's own first."""
+
+
+def list_scenarios(own: Path) -> list[ScenarioText]:
+    """Those that ship, then those in the folder `own`, by name; what cannot be read is left out."""
+    return [_describe(name, text, shipped=True) for name, text in _shipped().items()] + [
+        _describe(file.stem, text, shipped=False) for file, text in _own(own)
+    ]
+
+
+def keep_scenario(own: Path, text: str) -> Scenario:
+    """Write a scenario into the folder `own`, under its own name.
+
+    Raises ScenarioError where it cannot be run, Refused where it may not or cannot be written.
+    """
+    scenario = read_scenario(text)
+    if scenario.name in SHIPPED:
+        raise Refused(f"{scenario.name} comes with the program. Give yours another name.")
+    try:
+        make_folder(own)
+        write_whole(own / f"{scenario.name}.toml", text.encode())
+    except OSError as problem:
+        raise Refused(f"{own} cannot be written: {problem.strerror}.") from problem
+    return scenario
+
+
+def _shipped() -> dict[str, str]:
+    folder = files("robot_runtime.experiments.scenario") / "shipped"
+    return {name: (folder / f"{name}.toml").read_text(encoding="utf-8") for name in SHIPPED}
+
+
+def _own(folder: Path) -> list[tuple[Path, str]]:
+    found = []
+    for file in sorted(folder.glob("*.toml")):
+        try:
+            if file.stat().st_size <= TEXT_BYTES_MAX:
+                found.append((file, file.read_text(encoding="utf-8")))
+        except (OSError, UnicodeDecodeError) as problem:
+            log.warning("the scenario %s cannot be read: %s", file, problem)
+    return found
+
+
+def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
+    """Its title is the file's name where there is something wrong with it; the check says what."""
+    try:
+        summary = summarize(read_scenario(text))
+    except ScenarioError:
+        summary = None
+    title = summary.title if summary else name
+    return ScenarioText(name=name, title=title, text=text, shipped=shipped, summary=summary)

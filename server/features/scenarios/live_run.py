@@ -1,0 +1,224 @@
+"""A scenario on the running robot, in real time: everything is as when an operator sits at the page."""
+
+import asyncio
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from robot_runtime.clock import Clock
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.experiments.scenario.events import Event, Line
+from robot_runtime.simulation.water.parameters import Parameters
+from server.features.scenarios.live_setup import Before, Surroundings
+from server.features.scenarios.recording import begin, describe_session, mark
+from server.features.scenarios.run import Run, RunCancelled, RunFailed
+from server.features.scenarios.snapshot import Left
+from server.features.sessions.recorder import Recorder
+from server.health.monitor import Watch
+from server.platform.settings import Settings
+from server.platform.store import Store
+from server.processes.supervisor import Parts, Tell
+from server.stream.bridge import Bridge, RuntimeSilent
+
+LOOK_SECONDS = 0.1
+SETTLE_SECONDS = 0.5
+"""After the water was changed at once, so that the sensors show it before the recording begins."""
+NEEDED = ("board", "runtime", "simulator")
+
+
+class Live:
+    """The robot that runs, its water and its recorder, as a stage. `stopped` is whom a STOP is told."""
+
+    def __init__(
+        self,
+        settings: Settings,
+        store: Store,
+        recorder: Recorder,
+        bridge: Bridge,
+        watch: Watch,
+        parts: Parts,
+        clock: Clock,
+        tell: Tell,
+    ) -> None:
+        self._settings = settings
+        self._store = store
+        self._recorder = recorder
+        self._bridge = bridge
+        self._watch = watch
+        self._parts = parts
+        self._clock = clock
+        self._tell = tell
+        self._left = Left(settings.data.scenario_before)
+        self._recovering = False
+        self._surroundings = Surroundings(
+            bridge, settings.data.board_socket if settings.emulated_board else None
+        )
+
+    def check(self, scenario: Scenario) -> None:
+        """Raises Refused with all reasons why it cannot be performed now."""
+        if reasons := [*self._occupied(), *self._unlike(scenario)]:
+            raise Refused(" ".join(reasons))
+
+    async def perform(self, run: Run) -> None:
+        """From its beginning to its end. Raises what may go wrong on its way."""
+        self.check(run.scenario)
+        run.phase = "preparing"
+        before = await self._surroundings.read(self._state())
+        await asyncio.to_thread(self._left.keep, before)
+        try:
+            await self._surroundings.prepare(run.scenario, before)
+            await run.sleep(SETTLE_SECONDS)
+            await self._record(run)
+        finally:
+            run.phase = "ending"
+            await _whole(self._put_back(before))
+
+    async def recover(self) -> None:
+        """End what a killed server has left running: disarm, close the recording, put everything back."""
+        before = await asyncio.to_thread(self._left.read)
+        recording = self._recorder.session
+        session = recording.id if recording is not None and recording.origin == "scenario" else None
+        if before is None and session is None:
+            return
+        self._recovering = True
+        try:
+            while (state := self._watch.state()) is None:
+                await asyncio.sleep(LOOK_SECONDS)
+            if session is not None:
+                words = "The server was killed, and the scenario ends here."
+                await mark(self._store, session, self._clock.now(), words)
+            await self._finish(session)
+            # A runtime that has started since is as robot.toml says.
+            if before is not None and state["run"] == before.robot["run"]:
+                await self._put_back(before)
+            await asyncio.to_thread(self._left.forget)
+        finally:
+            self._recovering = False
+        words = (
+            "The server was killed in the middle of a scenario. The robot is disarmed, and as it was before."
+        )
+        self._tell("scenario", "caution", words)
+
+    async def _record(self, run: Run) -> None:
+        row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
+        session = await begin(self._recorder, self._store, run, row)
+        try:
+            await self._play(run, row.started_steady)
+        except RunCancelled as why:
+            await mark(self._store, session, self._clock.now(), str(why))
+            raise
+        finally:
+            run.phase = "ending"
+            await _whole(self._finish(session))
+
+    async def _play(self, run: Run, began: float) -> None:
+        processes = self._processes()
+        coming = list(run.scenario.events)
+        while True:
+            run.elapsed = self._clock.now() - began
+            self._look(run, processes)
+            while coming and coming[0].at <= run.elapsed:
+                run.check()
+                await self._happen(run, coming.pop(0), began)
+            if run.elapsed >= run.scenario.duration:
+                return
+            until = min([run.scenario.duration, *(event.at for event in coming[:1])])
+            await run.sleep(min(until - run.elapsed, LOOK_SECONDS))
+
+    async def _happen(self, run: Run, event: Event, began: float) -> None:
+        assert run.session is not None
+        words = event.words
+        if event.to != "session":
+            try:
+                await self._surroundings.apply(event)
+            except (Refused, RuntimeSilent) as problem:
+                # As with an operator, whom the robot may refuse something: the experiment goes on.
+                words = f"{words}: refused. {problem}"
+                run.remarks.append(f"At {event.at:g} s: {words}")
+        await mark(self._store, run.session, max(self._clock.now(), began), words)
+
+    def _look(self, run: Run, processes: Mapping[str, int | None]) -> None:
+        """Raises RunFailed where what the run needs is no longer there."""
+        recording = self._recorder.session
+        if recording is None or recording.id != run.session:
+            raise RunCancelled("Somebody stopped the recording.")
+        if self._bridge.lent is not None:
+            raise RunFailed(self._bridge.lent)
+        for name, pid in self._processes().items():
+            if pid != processes[name]:
+                raise RunFailed(f"The {name} ended in the middle of it, and with it what was set.")
+
+    async def _finish(self, session: int | None) -> None:
+        """Disarm, and close the scenario's recording with that in it."""
+        try:
+            await self._surroundings.disarm()
+            await asyncio.sleep(SETTLE_SECONDS)
+        except (Refused, RuntimeSilent) as problem:
+            self._tell("scenario", "alarm", f"The robot could not be disarmed after the scenario: {problem}")
+        if self._recorder.session is not None and self._recorder.session.id == session:
+            await self._recorder.stop(session)
+
+    async def _put_back(self, before: Before) -> None:
+        if problems := await self._surroundings.put_back(before):
+            told = " ".join(problems)
+            self._tell("scenario", "caution", f"Not everything is as before the scenario. {told}")
+        await asyncio.to_thread(self._left.forget)
+
+    def _occupied(self) -> list[str]:
+        recording = self._recorder.session
+        if self._recovering:
+            return ["What a scenario has changed before the server ended is being put back. Wait a moment."]
+        if self._settings.mode == "robot":
+            return [
+                "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
+            ]
+        if self._bridge.lent is not None:
+            return [self._bridge.lent]
+        state = self._watch.state()
+        if state is None:
+            return ["The robot's runtime has said nothing yet. Wait a moment."]
+        reasons = []
+        if recording is not None:
+            reasons.append(f"“{recording.name}” is being recorded. Stop the recording first.")
+        if state["armed"]:
+            reasons.append("The robot is armed. STOP it first.")
+        elif state["mode"] == "failsafe":
+            reasons.append("The robot is in failsafe. Acknowledge its alarms first.")
+        if not state["connected"]:
+            reasons.append(f"There is no connection to the board: {state['connection']}.")
+        reasons += [f"The {name} does not run." for name, pid in self._processes().items() if pid is None]
+        return reasons
+
+    def _unlike(self, scenario: Scenario) -> list[str]:
+        """Why the running robot is not the scenario's."""
+        reasons = []
+        if not self._settings.emulated_board and any(isinstance(one, Line) for one in scenario.events):
+            reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
+        if scenario.robot != Parameters():
+            reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")
+        state = self._watch.state() or {}
+        rate = state.get("control_rate", scenario.control.rate)
+        if rate != scenario.control.rate:
+            reasons.append(
+                f"It wants control at {scenario.control.rate:g} Hz; this robot's runs at {rate:g} Hz "
+                "([control] rate in robot.toml)."
+            )
+        return reasons
+
+    def _state(self) -> dict[str, Any]:
+        state = self._watch.state()
+        if state is None:
+            raise Refused("The robot's runtime has said nothing yet. Wait a moment.")
+        return state
+
+    def _processes(self) -> dict[str, int | None]:
+        # In the loop the simulator may be on another computer; where it is lost, the robot disarms.
+        needed = [name for name in NEEDED if not (self._settings.in_the_loop and name == "simulator")]
+        parts = {name: self._parts.get(name) for name in needed}
+        return {name: part.pid for name, part in parts.items() if part is not None}
+
+
+async def _whole(step: Any) -> None:
+    """Let it come to its end even where the server is ending."""
+    await asyncio.shield(asyncio.create_task(step))

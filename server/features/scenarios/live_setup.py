@@ -1,0 +1,235 @@
+"""Sets up the running robot and its water for a scenario, and puts back what was there before."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.experiments.scenario.events import Event, Line
+from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.water.surroundings import Trim
+from server.stream.bridge import Bridge, RuntimeSilent
+
+Question = Mapping[str, Any]
+STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
+TURNING = tuple(loop for loop in CONTROLLERS if loop != "depth")
+DIRECTIONS = ("to_board", "from_board")
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """How everything was: the runtime's `state`, the simulator's `surroundings`, the scene's `contents`.
+
+    `sight` is None where no scene is rendered.
+    """
+
+    robot: Question
+    water: Question
+    sight: Question | None
+
+
+class Surroundings:
+    """The runtime, the simulator and the board, as a scenario speaks to them.
+
+    `board_socket` is None where the board is a real one. Everything may raise Refused or RuntimeSilent.
+    """
+
+    def __init__(self, bridge: Bridge, board_socket: Path | None) -> None:
+        self._bridge = bridge
+        self._board_socket = board_socket
+
+    async def read(self, robot: Question) -> Before:
+        """How everything is now; `robot` is the newest `state`."""
+        water = await self._bridge.ask_simulator("surroundings", {})
+        try:
+            return Before(robot, water, await self._bridge.scene("contents", {}))
+        except RuntimeSilent:
+            return Before(robot, water, None)
+
+    async def prepare(self, scenario: Scenario, before: Before) -> None:
+        """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
+        await self._set_water(_water_of(scenario), before.water)
+        start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
+        await self._bridge.ask_simulator("reset", {**start, "seed": scenario.seed})
+        if before.sight is not None:
+            await self._set_sight(_sight_of(scenario))
+        await self._clean_line(scenario.seed)
+        for name, gains in _gains_of(scenario).items():
+            await self._bridge.command("controller", {"name": name, "gains": gains})
+        control, vision = scenario.control, scenario.vision
+        await self._bridge.command("controller", {"name": control.controller})
+        await self._bridge.command(
+            "set_points", {"default": control.set_point, "detected": control.set_point_detected}
+        )
+        for loop in TURNING:
+            await self._bridge.command("loop", _at_rest(loop))
+        await self._bridge.command("steering", {"by": control.steering})
+        await self._bridge.command("vision", {"rate": vision.rate, "colour": vision.colour})
+        if vision.camera == "card":
+            await self._bridge.command("card", {"colour": None})
+
+    async def apply(self, event: Event) -> None:
+        """Do what an event says to runtime, simulator or board."""
+        if isinstance(event, Line):
+            await self._order(event.command)
+        elif event.to == "simulator":
+            await self._bridge.ask_simulator(event.do, event.question)
+        elif event.do == "stop":
+            await self._bridge.disarm()
+        else:
+            await self._bridge.command(event.do, event.question)
+
+    async def disarm(self) -> None:
+        """Let the fins rest."""
+        await self._bridge.disarm()
+
+    async def put_back(self, before: Before) -> list[str]:
+        """Make everything as it was; what could not be, in words."""
+        robot = before.robot
+        steps: list[Callable[[], Awaitable[None]]] = [
+            lambda: self._clean_line(0),
+            lambda: self._set_water(before.water, None),
+            lambda: self._set_sight(before.sight),
+            *(
+                lambda one=one: self._bridge.command(
+                    "controller",
+                    {"name": one["name"], "gains": _values(one["gains"])},
+                )
+                for one in robot["controllers"]
+            ),
+            lambda: self._bridge.command("controller", {"name": robot["controller"]}),
+            lambda: self._bridge.command(
+                "set_points",
+                {"default": robot["set_point_default"], "detected": robot["set_point_detected"]},
+            ),
+            *(
+                lambda question=question: self._bridge.command("loop", question)
+                for question in _loops_of(robot)
+            ),
+            lambda: self._bridge.command("steering", {"by": robot["steering"]}),
+            lambda: self._bridge.command(
+                "vision", {"rate": robot["vision_rate"], "colour": robot["vision_colour"]}
+            ),
+            lambda: self._put_card_back(robot["card"]),
+        ]
+        problems = []
+        for step in steps:
+            try:
+                await step()
+            except (Refused, RuntimeSilent) as problem:
+                problems.append(str(problem))
+        return list(dict.fromkeys(problems))
+
+    async def _put_card_back(self, colour: str | None) -> None:
+        try:
+            await self._bridge.command("card", {"colour": colour})
+        except Refused:
+            # A camera without cards had none before, either.
+            if colour is not None:
+                raise
+
+    async def _set_water(self, wanted: Question, present: Question | None) -> None:
+        ask = self._bridge.ask_simulator
+        for fault in wanted["faults"] if present is None else present["faults"]:
+            await ask("fault", fault if present is None else {"sensor": fault["sensor"], "kind": "none"})
+        # The old waves might break in the new basin.
+        await ask("waves", STILL)
+        await ask("world", wanted["world"])
+        for name in ("beacons", "current", "waves", "trim"):
+            await ask(name, wanted[name])
+        await ask("reset", {})
+
+    async def _set_sight(self, wanted: Question | None) -> None:
+        if wanted is not None:
+            for name in ("world", "targets"):
+                await self._bridge.scene(name, wanted[name])
+
+    async def _clean_line(self, seed: int) -> None:
+        if self._board_socket is None:
+            return
+        for direction in DIRECTIONS:
+            await self._order(f"line {direction} clean")
+            await self._order(f"line {direction} stall 0")
+        await self._order(f"seed {seed}")
+
+    async def _order(self, command: str) -> None:
+        assert self._board_socket is not None
+        try:
+            await asyncio.to_thread(_order, self._board_socket, command)
+        except BoardError as problem:
+            raise Refused(f"The emulated board: {problem}.") from problem
+
+
+def _order(socket: Path, command: str) -> None:
+    with Board(socket) as board:
+        board.order(command)
+
+
+def _water_of(scenario: Scenario) -> Question:
+    """The scenario's water as the questions that make it."""
+    basin, robot = scenario.scene.basin, scenario.robot
+    trim = scenario.trim or Trim(robot.buoyancy, 0.0, 0.0, robot.buoyancy_height)
+    return {
+        "world": {name: value for name, value in asdict(basin).items() if value is not None},
+        "current": asdict(scenario.water.current),
+        "waves": asdict(scenario.water.waves),
+        "trim": asdict(trim),
+        "beacons": {"positions": [list(one) for one in scenario.scene.beacons]},
+        "faults": [],
+    }
+
+
+def _sight_of(scenario: Scenario) -> Question:
+    """The scenario's scene as the questions that make it."""
+    scene = scenario.scene
+    return {
+        "world": {"kind": scene.kind, "turbidity": scene.turbidity},
+        "targets": {"targets": [asdict(one) | {"position": list(one.position)} for one in scene.targets]},
+    }
+
+
+def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
+    """Every gain of every controller: the default where the scenario says nothing, so that it repeats."""
+    return {
+        one.name: _defaults(one) | scenario.control.gains.get(one.name, {}) for one in CONTROLLERS["depth"]
+    }
+
+
+def _at_rest(loop: str) -> Question:
+    """The command that leaves a loop as it is at the runtime's start."""
+    first = CONTROLLERS[loop][0]
+    return {
+        "name": loop,
+        "on": False,
+        "set_point": 0.0,
+        "controller": first.name,
+        "gains": _defaults(first),
+    }
+
+
+def _loops_of(robot: Question) -> list[Question]:
+    """The commands that make heading, pitch and roll as they were."""
+    questions: list[Question] = []
+    for loop in robot["loops"]:
+        if loop["name"] not in TURNING:
+            continue
+        name, chosen = {"name": loop["name"]}, {"controller": loop["controller"]}
+        questions += [
+            name
+            | {"controller": one["name"], "gains": {gain["name"]: gain["value"] for gain in one["gains"]}}
+            for one in loop["controllers"]
+        ]
+        questions.append(name | chosen | {"on": loop["on"], "set_point": loop["set_point"]})
+    return questions
+
+
+def _values(gains: Sequence[Question]) -> dict[str, float]:
+    return {gain["name"]: gain["value"] for gain in gains}
+
+
+def _defaults(controller: type[Controller]) -> dict[str, float]:
+    return {name: limits.default for name, limits in controller.limits.items()}

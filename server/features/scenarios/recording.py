@@ -1,0 +1,51 @@
+"""The session that a run records: what it says of the scenario, and the moments that are marked in it."""
+
+import asyncio
+from time import time
+
+from sqlalchemy import insert
+from sqlmodel import col, desc, select
+
+from robot_runtime.clock import Clock
+from robot_runtime.errors import Refused
+from server.features.scenarios.run import Run
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import new_row
+from server.platform.models import Marker, SessionRow
+from server.platform.settings import Settings
+from server.platform.store import Store
+
+
+def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: str) -> SessionRow:
+    """The session of a run that begins now. Raises Refused where the configuration cannot be read."""
+    scenario = run.scenario
+    try:
+        row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
+    except OSError as problem:
+        raise Refused(f"The configuration {settings.config} cannot be read: {problem}") from problem
+    row.origin = "scenario" if run.place == "live" else "simulated"
+    row.scenario = run.text
+    row.scenario_name = scenario.name
+    row.seed = scenario.seed
+    return row
+
+
+async def begin(recorder: Recorder, store: Store, run: Run, row: SessionRow) -> int:
+    """Record the run from now on; the session's number. Raises RecordingRefused, StoreError."""
+    session = await recorder.start(row)
+    run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)
+    run.session, run.phase = session.id, "running"
+    return session.id
+
+
+def _find_before(store: Store, name: str, session: int) -> int | None:
+    same = (col(SessionRow.scenario_name) == name, col(SessionRow.deleted).is_(None))
+    older = select(SessionRow.id).where(*same, col(SessionRow.id) < session)
+    with store.read() as database:
+        return database.exec(older.order_by(desc(col(SessionRow.id)))).first()
+
+
+async def mark(store: Store, session: int, moment: float, text: str) -> None:
+    """Point out a moment (s, the session's clock). Raises StoreError."""
+    values = {"session_id": session, "time": moment, "text": text, "made": time()}
+    await store.write(lambda connection: connection.execute(insert(Marker).values(values)))

@@ -1,0 +1,76 @@
+"""Scenarios: those there are, checking, running, cancelling."""
+
+from fastapi import APIRouter, HTTPException, Request
+from fastapi.concurrency import run_in_threadpool
+
+from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+from server.container import Assembly
+from server.features.lease.admission import require_control
+from server.features.scenarios.library import keep_scenario, list_scenarios
+from server.features.scenarios.schemas import (
+    ScenarioCheck,
+    ScenarioDocument,
+    ScenarioStart,
+    ScenarioStarted,
+    ScenarioState,
+    ScenarioSummary,
+    ScenarioText,
+    summarize,
+)
+from server.http.problems import answers
+
+REFUSED = answers(_409="Refused now", _422="The scenario cannot be run")
+START = {**REFUSED, **answers(_423="On the robot: control is with somebody else")}
+
+router = APIRouter(prefix="/api/scenarios", tags=["scenarios"])
+
+
+@router.get("", summary="The scenarios that there are", operation_id="listScenarios")
+def get_scenarios(request: Request) -> list[ScenarioText]:
+    """Those that come with the program, the thesis's own first, then those in the data folder."""
+    return list_scenarios(Assembly.of(request).settings.data.scenarios)
+
+
+@router.post("", status_code=201, summary="Keep a scenario", operation_id="keepScenario", responses=REFUSED)
+async def keep(request: Request, document: ScenarioDocument) -> ScenarioSummary:
+    """Write it into the data folder under its own name, over one of that name."""
+    folder = Assembly.of(request).settings.data.scenarios
+    try:
+        return summarize(await run_in_threadpool(keep_scenario, folder, document.text))
+    except ScenarioError as problem:
+        raise HTTPException(422, "\n".join(problem.problems)) from problem
+
+
+@router.post("/check", summary="What is wrong with a scenario", operation_id="checkScenario")
+def check(document: ScenarioDocument) -> ScenarioCheck:
+    """Its problems, field by field; or what it says."""
+    try:
+        return ScenarioCheck(problems=[], summary=summarize(read_scenario(document.text)))
+    except ScenarioError as problem:
+        return ScenarioCheck(problems=list(problem.problems), summary=None)
+
+
+@router.get("/state", summary="What runs", operation_id="getScenarioState")
+async def get_state(request: Request) -> ScenarioState:
+    """What runs, what waits, and what ended last, as on the live socket."""
+    return Assembly.of(request).scenarios.state()
+
+
+@router.post(
+    "/runs", status_code=201, summary="Run a scenario", operation_id="startScenario", responses=START
+)
+async def start(request: Request, wanted: ScenarioStart) -> ScenarioStarted:
+    """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
+    if wanted.place == "live":
+        require_control(request)
+    try:
+        run = Assembly.of(request).scenarios.start(wanted.text, wanted.place, wanted.board)
+    except ScenarioError as problem:
+        raise HTTPException(422, "\n".join(problem.problems)) from problem
+    return ScenarioStarted(run=run)
+
+
+@router.post("/cancel", status_code=204, summary="Cancel what runs", operation_id="cancelScenario")
+async def cancel(request: Request) -> None:
+    """What was recorded is kept; what waits is forgotten. Its end is told on the live socket."""
+    Assembly.of(request).scenarios.cancel()

@@ -1,0 +1,99 @@
+"""One run of a scenario: how far it is, and how it is ended before its time."""
+
+import asyncio
+from dataclasses import dataclass, field
+
+from robot_runtime.experiments.scenario.document import Scenario
+from server.features.scenarios.schemas import (
+    ActiveRun,
+    BoardKind,
+    End,
+    EndedRun,
+    NextEvent,
+    Phase,
+    Place,
+    describe_events,
+)
+
+
+class RunCancelled(Exception):  # noqa: N818 - it says what happened
+    """Somebody ended the run; the text says who or how."""
+
+
+class RunFailed(Exception):  # noqa: N818 - it says what happened
+    """The run cannot go on; the text says why."""
+
+
+@dataclass(slots=True)
+class Run:
+    """Everything about one run; `elapsed` in s of the scenario."""
+
+    number: int
+    scenario: Scenario
+    text: str
+    place: Place
+    board: BoardKind
+    phase: Phase = "waiting"
+    elapsed: float = 0.0
+    session: int | None = None
+    before: int | None = None
+    """The newest older session of the same scenario."""
+    remarks: list[str] = field(default_factory=list)
+    """What did not go as the scenario says, though the run went on."""
+    _cancelled: asyncio.Event = field(default_factory=asyncio.Event)
+    _why: str = ""
+
+    def cancel(self, why: str) -> None:
+        """Let it end soon, in order; the first reason counts."""
+        if not self._cancelled.is_set():
+            self._why = why
+            self._cancelled.set()
+
+    def check(self) -> None:
+        """Raises RunCancelled where it was cancelled."""
+        if self._cancelled.is_set():
+            raise RunCancelled(self._why)
+
+    async def cancelled(self) -> None:
+        """Wait until it is cancelled."""
+        await self._cancelled.wait()
+
+    async def sleep(self, seconds: float) -> None:
+        """Let time pass. Raises RunCancelled."""
+        try:
+            async with asyncio.timeout(max(seconds, 0.0)):
+                await self._cancelled.wait()
+        except TimeoutError:
+            return
+        self.check()
+
+    def describe(self) -> ActiveRun:
+        """As the pages are told."""
+        coming = (one for one in self.scenario.events if one.at > self.elapsed or self.phase == "preparing")
+        following = next(coming, None)
+        return ActiveRun(
+            run=self.number,
+            name=self.scenario.name,
+            title=self.scenario.title,
+            place=self.place,
+            board=self.board,
+            phase=self.phase,
+            elapsed=round(self.elapsed, 2),
+            duration=self.scenario.duration,
+            session=self.session,
+            next=None if following is None else NextEvent(at=following.at, words=following.words),
+            events=describe_events(self.scenario),
+        )
+
+    def end(self, state: End, problem: str) -> EndedRun:
+        """As the pages are told afterwards."""
+        return EndedRun(
+            run=self.number,
+            name=self.scenario.name,
+            title=self.scenario.title,
+            place=self.place,
+            session=self.session,
+            before=self.before,
+            state=state,
+            problem=" ".join([*([problem] if problem else []), *self.remarks]),
+        )

@@ -1,0 +1,136 @@
+"""Runs scenarios one after the other; those in simulated time may wait in a queue."""
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Protocol
+
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from server.features.scenarios.run import Run, RunCancelled, RunFailed
+from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
+from server.features.sessions.recorder import RecordingRefused
+from server.platform.store import StoreError
+from server.stream.bridge import RuntimeSilent
+
+log = logging.getLogger(__name__)
+
+QUEUE_MAX = 20
+TELL_SECONDS = 0.25
+
+
+class Stage(Protocol):
+    """Where a scenario is performed."""
+
+    def check(self, scenario: Scenario) -> None:
+        """Raises Refused with all reasons why it cannot be performed here now."""
+
+    async def perform(self, run: Run) -> None:
+        """From its beginning to its end. Raises RunCancelled, RunFailed, and what it meets on its way."""
+
+
+class Runs:
+    """At most one scenario runs at a time; `tell` hears of all progress."""
+
+    def __init__(self, live: Stage, simulated: Stage, tell: Callable[[dict[str, Any]], None]) -> None:
+        self._stages: dict[Place, Stage] = {"live": live, "simulated": simulated}
+        self._tell = tell
+        self._number = 0
+        self._active: Run | None = None
+        self._queue: deque[Run] = deque()
+        self._last: EndedRun | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def active(self) -> Run | None:
+        """The run that is on."""
+        return self._active
+
+    def state(self) -> ScenarioState:
+        """What runs, what waits, and what ended last."""
+        return ScenarioState(
+            active=None if self._active is None else self._active.describe(),
+            queued=[
+                QueuedRun(run=run.number, name=run.scenario.name, title=run.scenario.title)
+                for run in self._queue
+            ],
+            last=self._last,
+        )
+
+    def start(self, text: str, place: Place, board: BoardKind) -> int:
+        """Run a scenario, or let it wait for its turn; its number. Raises ScenarioError, Refused."""
+        scenario = read_scenario(text)
+        if place == "live" and self._active is not None:
+            raise Refused(f"“{self._active.scenario.title}” is being run. Wait for its end, or cancel it.")
+        if len(self._queue) >= QUEUE_MAX:
+            raise Refused(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
+        self._stages[place].check(scenario)
+        self._number += 1
+        run = Run(self._number, scenario, text, place, board)
+        self._queue.append(run)
+        if self._task is None or self._task.done():
+            # Now, and not when the task begins: whoever asks next must find it occupied.
+            self._active = self._queue.popleft()
+            self._task = asyncio.create_task(self._work())
+        self.announce()
+        return run.number
+
+    def cancel(self) -> None:
+        """End what runs, in order, and forget what waits; what was recorded is kept."""
+        self._queue.clear()
+        if self._active is not None:
+            self._active.cancel("It was cancelled.")
+        self.announce()
+
+    def see_stop(self) -> None:
+        """Somebody said STOP to the robot: that ends what runs on it."""
+        if self._active is not None and self._active.place == "live":
+            self._active.cancel("Somebody pressed STOP.")
+
+    async def wait(self) -> None:
+        """Wait until nothing runs."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+
+    async def close(self) -> None:
+        """Cancel everything, and wait for its end."""
+        self.cancel()
+        await self.wait()
+
+    def announce(self) -> None:
+        """Tell the state."""
+        self._tell({"op": "scenario", **self.state().model_dump()})
+
+    async def _work(self) -> None:
+        while self._active is not None:
+            telling = asyncio.create_task(self._keep_telling())
+            try:
+                self._last = await self._perform(self._active)
+            finally:
+                telling.cancel()
+                with suppress(asyncio.CancelledError):
+                    await telling
+                self._active = self._queue.popleft() if self._queue else None
+                self.announce()
+
+    async def _perform(self, run: Run) -> EndedRun:
+        state: End = "complete"
+        problem = ""
+        try:
+            run.check()
+            await self._stages[run.place].perform(run)
+        except RunCancelled as why:
+            state, problem = "cancelled", str(why)
+        except (RunFailed, Refused, RecordingRefused, RuntimeSilent, StoreError, OSError) as why:
+            state, problem = "failed", str(why)
+        except Exception as why:
+            log.exception("a scenario failed")
+            state, problem = "failed", f"The server made a mistake ({why!r}); its log says more."
+        return run.end(state, problem)
+
+    async def _keep_telling(self) -> None:
+        while True:
+            self.announce()
+            await asyncio.sleep(TELL_SECONDS)

@@ -1,0 +1,149 @@
+"""What the interface says about scenarios."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario
+
+Place = Literal["live", "simulated"]
+BoardKind = Literal["host", "emulated"]
+Phase = Literal["waiting", "preparing", "running", "ending"]
+End = Literal["complete", "cancelled", "failed"]
+Text = Annotated[str, Field(max_length=TEXT_BYTES_MAX, description="TOML")]
+
+
+class ScenarioText(BaseModel):
+    """A scenario; `shipped` ones come with the program, the others lie in the data folder."""
+
+    name: str
+    title: str
+    text: str = Field(description="TOML")
+    shipped: bool
+    summary: "ScenarioSummary | None" = Field(description="null where there is something wrong with it")
+
+
+class ScenarioDocument(BaseModel):
+    """The text of a scenario."""
+
+    model_config = ConfigDict(extra="forbid")
+    text: Text
+
+
+class ScenarioEvent(BaseModel):
+    """Something that happens in a scenario."""
+
+    at: float = Field(description="s")
+    do: str
+    words: str
+
+
+class ScenarioSummary(BaseModel):
+    """What a scenario says, in short."""
+
+    name: str
+    title: str
+    description: str
+    duration: float = Field(description="s")
+    seed: int
+    scene: Literal["pool", "natural"]
+    controller: str = Field(description="the title of what steers the depth")
+    events: list[ScenarioEvent]
+
+
+class ScenarioCheck(BaseModel):
+    """What is wrong with a scenario, field by field; else what it says."""
+
+    problems: list[str]
+    summary: ScenarioSummary | None
+
+
+class ScenarioStart(BaseModel):
+    """A scenario that is to be run: on the running robot in real time, or in simulated time.
+
+    `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    text: Text
+    place: Place
+    board: BoardKind = "host"
+
+
+class ScenarioStarted(BaseModel):
+    """The number of a run, from 1 since the server started."""
+
+    run: int
+
+
+class NextEvent(BaseModel):
+    """What happens next."""
+
+    at: float = Field(description="s")
+    words: str
+
+
+class ActiveRun(BaseModel):
+    """The run that is on; times in s of the scenario."""
+
+    run: int
+    name: str
+    title: str
+    place: Place
+    board: BoardKind
+    phase: Phase
+    elapsed: float
+    duration: float
+    session: int | None
+    next: NextEvent | None
+    events: list[ScenarioEvent]
+
+
+class QueuedRun(BaseModel):
+    """A run that waits for its turn."""
+
+    run: int
+    name: str
+    title: str
+
+
+class EndedRun(BaseModel):
+    """The run that ended last; `session` is null where it came to no recording."""
+
+    run: int
+    name: str
+    title: str
+    place: Place
+    session: int | None
+    before: int | None = Field(description="the newest older session of the same scenario")
+    state: End
+    problem: str
+
+
+class ScenarioState(BaseModel):
+    """What runs, what waits, and what ended last."""
+
+    active: ActiveRun | None
+    queued: list[QueuedRun]
+    last: EndedRun | None
+
+
+def summarize(scenario: Scenario) -> ScenarioSummary:
+    """The scenario in short."""
+    steering = scenario.control.controller
+    return ScenarioSummary(
+        name=scenario.name,
+        title=scenario.title,
+        description=scenario.description,
+        duration=scenario.duration,
+        seed=scenario.seed,
+        scene=scenario.scene.kind,
+        controller=next(one.title for one in CONTROLLERS["depth"] if one.name == steering),
+        events=describe_events(scenario),
+    )
+
+
+def describe_events(scenario: Scenario) -> list[ScenarioEvent]:
+    """Its events, in order."""
+    return [ScenarioEvent(at=event.at, do=event.do, words=event.words) for event in scenario.events]

@@ -1,0 +1,214 @@
+"""A scenario in simulated time: a process of its own, at lower priority, whose blocks are recorded here.
+
+`python -m robot_runtime.experiments.scenario` takes the text on its standard input, and writes messages on
+its standard
+output: `u32 size | u8 kind | bytes` (little-endian), kind 0 a JSON object, kind 1 blocks.
+"""
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+import sys
+from asyncio.subprocess import PIPE, Process
+from collections import deque
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from struct import Struct
+from typing import Any
+
+from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.topics import Block, read_blocks
+from robot_runtime.experiments.scenario.document import Scenario
+from server.features.scenarios.recording import begin, describe_session, mark
+from server.features.scenarios.run import Run, RunFailed
+from server.features.sessions.recorder import Recorder
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+from server.processes.process import describe_status
+
+HEADER = Struct("<IB")
+EVENTS, BLOCKS = 0, 1
+MESSAGE_BYTES_MAX = 16_000_000
+FLUSH_BYTES = 2_000_000
+WORDS_KEPT = 5
+NICENESS = "10"
+END_SECONDS = 10.0
+"""After which a process that was asked to end is killed."""
+
+
+class SimulatedClock:
+    """The scenario's own time, s since its beginning."""
+
+    def __init__(self) -> None:
+        self.time = 0.0
+
+    def now(self) -> float:
+        """s."""
+        return self.time
+
+
+class Simulated:
+    """A process for each scenario, as a stage."""
+
+    def __init__(self, settings: Settings, store: Store, notices: Notices) -> None:
+        self._settings = settings
+        self._store = store
+        self._notices = notices
+
+    def check(self, scenario: Scenario) -> None:
+        """There is always room for one more in the queue."""
+
+    async def perform(self, run: Run) -> None:
+        """From its beginning to its end. Raises RunCancelled, RunFailed, StoreError, OSError."""
+        clock = SimulatedClock()
+        recorder = Recorder(self._store, clock, self._notices, lambda: None)
+        run.phase = "preparing"
+        try:
+            async with _process(run, self._settings) as (process, words):
+                await _Playback(run, self._settings, self._store, recorder, clock).take(process)
+                status = await process.wait()
+                run.check()
+                if status != 0:
+                    said = " / ".join(words)
+                    raise RunFailed(f"The simulation {describe_status(status)}. {said}".strip())
+        finally:
+            run.phase = "ending"
+            if recorder.session is not None:
+                await asyncio.shield(asyncio.create_task(recorder.stop(recorder.session.id)))
+
+
+class _Playback:
+    """Takes in what the process tells."""
+
+    def __init__(
+        self, run: Run, settings: Settings, store: Store, recorder: Recorder, clock: SimulatedClock
+    ) -> None:
+        self._run = run
+        self._settings = settings
+        self._store = store
+        self._recorder = recorder
+        self._clock = clock
+        self._gathered = 0
+        self._ended: dict[str, Any] | None = None
+
+    async def take(self, process: Process) -> None:
+        """Everything up to its end. Raises RunFailed, StoreError."""
+        assert process.stdout is not None
+        try:
+            while (message := await _read(process.stdout)) is not None:
+                kind, data = message
+                if kind == EVENTS:
+                    await self._take_event(json.loads(data))
+                elif kind == BLOCKS:
+                    await self._take_blocks(read_blocks(data), len(data))
+        except (ValueError, LayoutError, KeyError, TypeError, asyncio.IncompleteReadError) as problem:
+            if not isinstance(problem, asyncio.IncompleteReadError):
+                raise RunFailed(f"What the simulation told cannot be understood: {problem!r}") from problem
+        if self._ended and self._ended.get("problem"):
+            self._run.remarks.append(str(self._ended["problem"]))
+
+    async def _take_event(self, event: dict[str, Any]) -> None:
+        run = self._run
+        if "time" in event:
+            run.elapsed = self._clock.time = float(event["time"])
+        match event.get("event"):
+            case "started":
+                row = describe_session(self._settings, self._clock, run, "null")
+                row.firmware = str(event.get("firmware", ""))
+                row.software = str(event.get("software", ""))
+                await begin(self._recorder, self._store, run, row)
+            case "marker" if run.session is not None:
+                await mark(self._store, run.session, float(event["time"]), str(event["text"]))
+            case "ended":
+                self._ended = event
+            case "refused":
+                raise RunFailed(" ".join(map(str, event["problems"])))
+
+    async def _take_blocks(self, blocks: list[Block], size: int) -> None:
+        for block in blocks:
+            self._recorder.add(block)
+        self._gathered += size
+        if self._gathered >= FLUSH_BYTES:
+            self._gathered = 0
+            await self._recorder.flush()
+
+
+@asynccontextmanager
+async def _process(run: Run, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
+    """The process, which has the scenario's text; `words` are the last lines of its complaints."""
+    command = [
+        "nice",
+        "-n",
+        NICENESS,
+        sys.executable,
+        "-m",
+        "robot_runtime.experiments.scenario",
+        "--board",
+        run.board,
+    ]
+    process = await asyncio.create_subprocess_exec(
+        *command,
+        stdin=PIPE,
+        stdout=PIPE,
+        stderr=PIPE,
+        start_new_session=True,
+        limit=MESSAGE_BYTES_MAX,
+        env={**os.environ, "MUCAT_BUILD": str(settings.build)},
+    )
+    words: deque[str] = deque(maxlen=WORDS_KEPT)
+    tasks = [
+        asyncio.create_task(_give(process, run.text)),
+        asyncio.create_task(_listen(process, words)),
+        asyncio.create_task(_end_when_cancelled(process, run)),
+    ]
+    try:
+        yield process, words
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        if process.returncode is None:
+            _signal(process, signal.SIGKILL)
+            await process.wait()
+
+
+async def _give(process: Process, text: str) -> None:
+    assert process.stdin is not None
+    with contextlib.suppress(ConnectionError):
+        process.stdin.write(text.encode())
+        await process.stdin.drain()
+    process.stdin.close()
+
+
+async def _listen(process: Process, words: deque[str]) -> None:
+    assert process.stderr is not None
+    async for line in process.stderr:
+        words.append(line.decode(errors="replace").strip())
+
+
+async def _end_when_cancelled(process: Process, run: Run) -> None:
+    await run.cancelled()
+    _signal(process, signal.SIGTERM)
+    await asyncio.sleep(END_SECONDS)
+    _signal(process, signal.SIGKILL)
+
+
+def _signal(process: Process, number: signal.Signals) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, number)
+
+
+async def _read(stream: asyncio.StreamReader) -> tuple[int, bytes] | None:
+    """One message; None after the last. Raises ValueError, IncompleteReadError where it is cut off."""
+    try:
+        size, kind = HEADER.unpack(await stream.readexactly(HEADER.size))
+    except asyncio.IncompleteReadError as problem:
+        if problem.partial:
+            raise
+        return None
+    if size > MESSAGE_BYTES_MAX:
+        raise ValueError(f"a message of {size} bytes")
+    return kind, await stream.readexactly(size)

@@ -1,0 +1,92 @@
+"""Records by itself while the robot is armed."""
+
+import asyncio
+import json
+import logging
+from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.topics import Block
+from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.platform.models import SessionRow
+from server.platform.notices import Notices
+from server.platform.store import StoreError
+
+log = logging.getLogger(__name__)
+
+REST_SECONDS = 5.0
+"""How long it records on after the robot was disarmed: until the fins rest and it has begun to rise."""
+
+
+class ArmingRecording:
+    """Begins a session when the robot becomes armed while none records, and ends it after it was disarmed.
+
+    `make_row` makes the session of a name and the robot's state. A session of this origin that is there
+    already, since an earlier server began it, is ended in the same way.
+    """
+
+    def __init__(
+        self,
+        recorder: Recorder,
+        clock: Clock,
+        notices: Notices,
+        make_row: Callable[[str, str], Awaitable[SessionRow]],
+    ) -> None:
+        self._recorder = recorder
+        self._clock = clock
+        self._notices = notices
+        self._make_row = make_row
+        self._armed = False
+        self._disarmed_at: float | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def see(self, block: Block) -> None:
+        """Take note of a block of the topic `state`."""
+        try:
+            state = json.loads(block.payload)[-1]
+            armed = state["armed"] is True
+        except (ValueError, LookupError, TypeError, RecursionError):
+            return
+        if armed:
+            self._disarmed_at = None
+            if not self._armed and self._recorder.session is None:
+                self._act(self._begin(json.dumps(state)))
+        elif self._armed or self._disarmed_at is None:
+            self._disarmed_at = self._clock.now()
+        self._armed = armed
+
+    def tick(self) -> None:
+        """To be called every second or so: end the session when its time has come."""
+        session = self._recorder.session
+        if session is None or session.origin != "arming" or self._disarmed_at is None:
+            return
+        if self._clock.now() - self._disarmed_at >= REST_SECONDS:
+            self._act(self._end(session.id))
+
+    async def close(self) -> None:
+        """Wait for what is under way."""
+        if self._task is not None:
+            await self._task
+
+    def _act(self, step: "asyncio._CoroutineLike[None]") -> None:
+        if self._task is None or self._task.done():
+            self._task = asyncio.create_task(step)
+        else:
+            step.close()
+
+    async def _begin(self, state: str) -> None:
+        try:
+            await self._recorder.start(
+                await self._make_row(f"Armed {datetime.now(UTC):%Y-%m-%d %H:%M} UTC", state)
+            )
+        except RecordingRefused as problem:
+            log.info("not recorded at arming: %s", problem)
+        except (StoreError, OSError) as problem:
+            self._notices.tell("recording", "caution", f"Armed, but not recorded: {problem}.")
+
+    async def _end(self, session: int) -> None:
+        try:
+            await self._recorder.stop(session)
+        except (RecordingRefused, StoreError) as problem:
+            log.info("the session begun at arming does not end yet: %s", problem)

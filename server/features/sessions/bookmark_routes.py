@@ -1,0 +1,68 @@
+"""Marks: moments of a session that people point out."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Request
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from server.container import Assembly
+from server.features.sessions.routes import STORING, Identifier
+from server.features.sessions.session import IDENTIFIER_MAX, Mark
+from server.http.problems import answers
+
+UNKNOWN = answers(_404="There is no such session, or it has no such mark")
+
+router = APIRouter(prefix="/api/sessions/{session}/markers", tags=["sessions"])
+
+MarkIdentifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
+Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class NewMark(BaseModel):
+    """A moment to be marked: s since the session's start, or null for now."""
+
+    model_config = ConfigDict(extra="forbid")
+    time: Moment | None = None
+    text: Text = ""
+
+
+class MarkChanges(BaseModel):
+    """What is to be different; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    time: Moment | None = None
+    text: Text | None = None
+
+
+@router.post(
+    "", status_code=201, summary="Mark a moment", operation_id="addMark", responses={**UNKNOWN, **STORING}
+)
+async def add_mark(request: Request, session: Identifier, wanted: NewMark) -> Mark:
+    """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
+    assembly = Assembly.of(request)
+    mark = await assembly.markers.add(session, wanted.time, wanted.text)
+    assembly.catalogue.tell(session)
+    return mark
+
+
+@router.patch("/{mark}", summary="Change a mark", operation_id="changeMark", responses={**UNKNOWN, **STORING})
+async def change_mark(
+    request: Request, session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
+) -> Mark:
+    """Move it, or say something else of it."""
+    return await Assembly.of(request).markers.change(session, mark, wanted.time, wanted.text)
+
+
+@router.delete(
+    "/{mark}",
+    status_code=204,
+    summary="Take a mark away",
+    operation_id="removeMark",
+    responses={**UNKNOWN, **STORING},
+)
+async def remove_mark(request: Request, session: Identifier, mark: MarkIdentifier) -> None:
+    """Take it away for good."""
+    assembly = Assembly.of(request)
+    await assembly.markers.remove(session, mark)
+    assembly.catalogue.tell(session)

@@ -1,0 +1,123 @@
+"""Moments of a session that people point out, while it records or later."""
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from time import time
+
+from sqlalchemy import Connection, delete, insert, update
+from sqlmodel import col, select
+
+from robot_runtime.clock import Clock
+from server.features.sessions.presence import NotNow, require
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import Mark
+from server.platform.models import Marker, SessionRow
+from server.platform.store import Store
+
+
+class UnknownMark(LookupError):  # noqa: N818 - it says what happened
+    """The session has no such mark."""
+
+
+class Markers:
+    """The marks of all sessions. Times are in s since the session's start.
+
+    Every method raises StoreError, UnknownSession, UnknownMark, and NotNow where the session does not reach
+    so far.
+    """
+
+    def __init__(self, store: Store, clock: Clock, recorder: Recorder) -> None:
+        self._store = store
+        self._clock = clock
+        self._recorder = recorder
+
+    async def add(self, session: int, moment: float | None, text: str) -> Mark:
+        """Mark a moment; None is now, in a session that records."""
+        now = self._now(session)
+
+        def write(connection: Connection) -> Mark:
+            require(connection, session)
+            start, duration = _span(connection, session)
+            steady = _place(moment, start, duration, now)
+            row = Marker(session_id=session, time=steady, text=text, made=time())
+            key = connection.execute(
+                insert(Marker).values(row.model_dump(exclude={"id"}))
+            ).inserted_primary_key
+            assert key is not None
+            row.id = int(key[0])
+            return show_marks([row], start)[0]
+
+        return await self._store.write(write)
+
+    async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Mark:
+        """Move a mark, or say something else of it; None leaves it as it is."""
+        now = self._now(session)
+
+        def write(connection: Connection) -> Mark:
+            row = _require_mark(connection, session, mark)
+            start, duration = _span(connection, session)
+            if moment is not None:
+                row.time = _place(moment, start, duration, now)
+            if text is not None:
+                row.text = text
+            connection.execute(
+                update(Marker).where(col(Marker.id) == mark).values(time=row.time, text=row.text)
+            )
+            return show_marks([row], start)[0]
+
+        return await self._store.write(write)
+
+    async def remove(self, session: int, mark: int) -> None:
+        """Take a mark away."""
+
+        def write(connection: Connection) -> None:
+            _require_mark(connection, session, mark)
+            connection.execute(delete(Marker).where(col(Marker.id) == mark))
+
+        await self._store.write(write)
+
+    def _now(self, session: int) -> float | None:
+        """The steady time up to which a session that records reaches; None for any other."""
+        active = self._recorder.session
+        return self._clock.now() if active is not None and active.id == session else None
+
+
+def show_marks(markers: Iterable[Marker], start: float) -> list[Mark]:
+    """Marks in the order of their times, of a session that began at `start` (s, steady clock)."""
+    return [
+        Mark(
+            id=one.id or 0,
+            time=one.time - start,
+            text=one.text,
+            made=datetime.fromtimestamp(one.made, UTC),
+        )
+        for one in sorted(markers, key=lambda one: (one.time, one.id or 0))
+    ]
+
+
+def _require_mark(connection: Connection, session: int, mark: int) -> Marker:
+    require(connection, session)
+    query = select(Marker.time, Marker.text, Marker.made).where(
+        Marker.id == mark, Marker.session_id == session
+    )
+    found = connection.execute(query).first()
+    if found is None:
+        raise UnknownMark(f"Session {session} has no mark {mark}.")
+    return Marker(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
+
+
+def _span(connection: Connection, session: int) -> tuple[float, float]:
+    query = select(SessionRow.started_steady, SessionRow.duration).where(SessionRow.id == session)
+    start, duration = connection.execute(query).one()
+    return start, duration
+
+
+def _place(moment: float | None, start: float, duration: float, now: float | None) -> float:
+    if moment is None:
+        if now is None:
+            raise NotNow("This session does not record any more. Say at what time of it the mark is to be.")
+        return now
+    end = duration if now is None else now - start
+    if moment > end:
+        raise NotNow(f"The session has {end:.1f} s; {moment:.1f} s is beyond its end.")
+    return start + moment

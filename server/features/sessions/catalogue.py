@@ -1,0 +1,231 @@
+"""The sessions that are kept: found, described, marked, deleted and taken back."""
+
+import json
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from time import time
+from typing import Any
+
+from sqlalchemy import Connection, delete, insert, update
+from sqlalchemy.orm import defer
+from sqlmodel import col, desc, func, select
+
+from server.features.sessions.bookmarks import show_marks
+from server.features.sessions.chunks import row_layout
+from server.features.sessions.presence import NotNow, UnknownSession, require
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import (
+    HIDDEN,
+    REMOVING,
+    RecordedColumn,
+    RecordedTopic,
+    Session,
+    SessionDetail,
+    SessionGap,
+    find_row,
+    from_row,
+)
+from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.store import Reader, Store
+
+
+class Listing:
+    """Every session of a database, to be looked at.
+
+    Every method raises StoreError, and UnknownSession where a session or a marker is not there.
+    """
+
+    def __init__(self, store: Reader) -> None:
+        self._reader = store
+
+    def list(
+        self,
+        search: str = "",
+        tags: Collection[str] = (),
+        origin: str | None = None,
+        *,
+        deleted: bool = False,
+    ) -> list[Session]:
+        """Those with each word of `search` in name, note, tags or scenario, and with each tag; newest first.
+
+        `deleted` chooses those in the bin instead of all others.
+        """
+        texts = (SessionRow.configuration, SessionRow.robot_state, SessionRow.topics, SessionRow.scenario)
+        query = (
+            select(SessionRow)
+            .options(*(defer(text) for text in texts))  # type: ignore[arg-type]
+            .where(col(SessionRow.state).not_in(HIDDEN), col(SessionRow.deleted).is_not(None) == deleted)
+            .order_by(desc(col(SessionRow.id)))
+        )
+        if origin is not None:
+            query = query.where(SessionRow.origin == origin)
+        with self._reader.read() as database:
+            tagged: defaultdict[int, list[str]] = defaultdict(list)
+            for tag in database.exec(select(SessionTag)):
+                tagged[tag.session_id].append(tag.tag)
+            counts = select(Marker.session_id, func.count()).group_by(col(Marker.session_id))
+            marked = dict(database.exec(counts).all())
+            rows = database.exec(query).all()
+            sessions = [from_row(row, tagged[row.id or 0], marked.get(row.id or 0, 0)) for row in rows]
+        # SQLite's LIKE knows no letters but English ones.
+        words = search.casefold().split()
+        wanted = {tag.casefold() for tag in tags}
+        return [one for one in sessions if _holds(one, words) and wanted <= {t.casefold() for t in one.tags}]
+
+    def find(self, session: int) -> Session:
+        """One session, also from the bin."""
+        with self._reader.read() as database:
+            row = database.get(SessionRow, session)
+            if row is None or row.state in HIDDEN:
+                raise UnknownSession(session)
+            tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
+            markers = select(func.count()).select_from(Marker).where(Marker.session_id == session)
+            return from_row(row, tags, database.exec(markers).one())
+
+    def row(self, session: int) -> SessionRow:
+        """The row of a session, for whoever reads its samples."""
+        row = find_row(self._reader, session)
+        if row is None:
+            raise UnknownSession(session)
+        return row
+
+    def detail(self, session: int) -> SessionDetail:
+        """One session with all that is known of it."""
+        found = self.find(session)
+        with self._reader.read() as database:
+            row = database.get_one(SessionRow, session)
+            gaps = database.exec(select(Gap).where(Gap.session_id == session).order_by(col(Gap.time))).all()
+            spans = database.exec(
+                select(
+                    Chunk.topic, func.sum(Chunk.count), func.min(Chunk.first_time), func.max(Chunk.last_time)
+                )
+                .where(Chunk.session_id == session)
+                .group_by(Chunk.topic)
+            ).all()
+            start = row.started_steady
+            return SessionDetail(
+                **found.model_dump(),
+                identifier=row.identifier,
+                scenario=row.scenario,
+                configuration=row.configuration,
+                robot_state=json.loads(row.robot_state or "null"),
+                marks=show_marks(
+                    database.exec(select(Marker).where(Marker.session_id == session)).all(), start
+                ),
+                gaps=[
+                    SessionGap(**gap.model_dump(include={"topic", "kind", "missed"}), time=gap.time - start)
+                    for gap in gaps
+                ],
+                topics=_topics(json.loads(row.topics), {name: rest for name, *rest in spans}, start),
+            )
+
+
+class Catalogue(Listing):
+    """The same, to be changed. What is changed of the one that records, `recorder` is told."""
+
+    def __init__(self, store: Store, recorder: Recorder | None = None) -> None:
+        super().__init__(store)
+        self._store = store
+        self._recorder = recorder
+
+    async def change(
+        self,
+        session: int,
+        *,
+        name: str | None = None,
+        note: str | None = None,
+        tags: Sequence[str] | None = None,
+        kept: bool | None = None,
+    ) -> Session:
+        """Write down what people say about a session; None leaves it as it is."""
+        said = {"name": name, "note": note, "kept": kept}
+        values = {field: value for field, value in said.items() if value is not None}
+
+        def write(connection: Connection) -> None:
+            require(connection, session)
+            if values:
+                connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(values))
+            if tags is not None:
+                connection.execute(delete(SessionTag).where(col(SessionTag.session_id) == session))
+                rows = [{"session_id": session, "tag": tag} for tag in dict.fromkeys(tags)]
+                if rows:
+                    connection.execute(insert(SessionTag), rows)
+
+        await self._store.write(write)
+        return self.tell(session)
+
+    async def delete(self, session: int) -> Session:
+        """Put a session into the bin. Raises NotNow for one that records."""
+
+        def write(connection: Connection) -> None:
+            if require(connection, session) == "recording":
+                raise NotNow("This session records. Stop it first, then delete it.")
+            unset = col(SessionRow.deleted).is_(None)
+            query = update(SessionRow).where(col(SessionRow.id) == session, unset)
+            connection.execute(query.values(deleted=time()))
+
+        await self._store.write(write)
+        return self.find(session)
+
+    async def restore(self, session: int) -> Session:
+        """Take a session out of the bin."""
+
+        def write(connection: Connection) -> None:
+            require(connection, session)
+            connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(deleted=None))
+
+        await self._store.write(write)
+        return self.find(session)
+
+    async def purge(self, session: int) -> None:
+        """Have a session removed for good; to everybody it is gone at once. Raises NotNow outside the bin."""
+
+        def write(connection: Connection) -> None:
+            require(connection, session)
+            query = select(SessionRow.deleted).where(SessionRow.id == session)
+            if connection.execute(query).scalar() is None:
+                raise NotNow("This session is not in the bin. Delete it first.")
+            connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(state=REMOVING))
+
+        await self._store.write(write)
+
+    def tell(self, session: int) -> Session:
+        """Let everybody know what a session looks like now, if it is the one that records."""
+        found = self.find(session)
+        if self._recorder is not None:
+            self._recorder.amend(found)
+        return found
+
+
+def _holds(session: Session, words: Sequence[str]) -> bool:
+    text = "\n".join((session.name, session.note, session.scenario_name, *session.tags)).casefold()
+    return all(word in text for word in words)
+
+
+def _topics(
+    described: Mapping[str, dict[str, Any]], spans: Mapping[str, Sequence[Any]], start: float
+) -> list[RecordedTopic]:
+    return [
+        RecordedTopic(
+            name=name,
+            meaning=topic["meaning"],
+            kind=topic["kind"],
+            count=spans[name][0],
+            first=spans[name][1] - start,
+            last=spans[name][2] - start,
+            columns=_columns(topic),
+        )
+        for name, topic in described.items()
+        if name in spans
+    ]
+
+
+def _columns(topic: dict[str, Any]) -> list[RecordedColumn]:
+    if topic["kind"] != "rows":
+        return [RecordedColumn(name=field["name"], unit="", meaning="") for field in topic["fields"]]
+    names = iter(row_layout(topic).columns)
+    return [
+        RecordedColumn(name=next(names).partition(" [")[0], unit=field["unit"], meaning=field["meaning"])
+        for field in topic["fields"]
+        for _ in range(field["count"])
+    ]

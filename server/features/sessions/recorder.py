@@ -1,0 +1,391 @@
+"""Records everything that arrives while a session runs, in chunks of about a second a topic.
+
+Samples are gathered in memory, encoded in the writer's thread and committed every `PERIOD`, so that a power
+cut costs at most the last second. While the database cannot be written, up to `BACKLOG_BYTES` wait; what does
+not fit is counted as not stored. A hole in a topic's numbering ends a chunk and is noted as a gap. A session
+that a killed server has left goes on where what was missed is still to be had
+(`server.features.sessions.resume`).
+"""
+
+import asyncio
+import json
+import logging
+import zlib
+from collections import Counter
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from time import time
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection, insert, update
+from sqlmodel import col, select
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, Topic
+from server.features.sessions.chunks import RECORDED, encode
+from server.features.sessions.resume import Left, Missing, find_left
+from server.features.sessions.session import Session, from_row
+from server.platform.models import Chunk, Gap, SessionRow
+from server.platform.notices import Notices
+from server.platform.store import Store, StoreError
+
+log = logging.getLogger(__name__)
+
+T = TypeVar("T")
+
+PERIOD = 0.8
+"""s between commits; with the commit itself and the runtime's batches this stays below a second."""
+PROBE_PERIODS = 5
+"""Periods between attempts to write while writing fails and nothing is recorded."""
+BACKLOG_BYTES = 8_000_000
+
+_PARAMETERS = BY_NAME["parameters"]
+
+
+class RecordingRefused(Exception):  # noqa: N818 - it says what happened
+    """A session cannot be started or stopped now; the text says why."""
+
+
+@dataclass(slots=True)
+class _Run:
+    """Consecutive samples of one topic, as they arrived."""
+
+    topic: Topic
+    first: int
+    count: int = 0
+    payloads: list[bytes] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Batch:
+    """What is to be committed together: runs are encoded into chunks on the way."""
+
+    runs: list[_Run] = field(default_factory=list)
+    chunks: list[dict[str, Any]] = field(default_factory=list)
+    gaps: dict[tuple[str, str], dict[str, Any]] = field(default_factory=dict)
+
+    @property
+    def bytes(self) -> int:
+        return sum(len(chunk["data"]) for chunk in self.chunks)
+
+    @property
+    def samples(self) -> int:
+        return sum(chunk["count"] for chunk in self.chunks)
+
+    def note(self, topic: str, kind: str, missed: int, now: float) -> None:
+        """Add to the gap of this kind; its time is that of the first."""
+        gap = self.gaps.setdefault((topic, kind), {"topic": topic, "kind": kind, "time": now, "missed": 0})
+        gap["missed"] += missed
+
+    def take(self, newer: "_Batch") -> None:
+        """Take over what has been gathered since."""
+        self.runs += newer.runs
+        for gap in newer.gaps.values():
+            self.note(gap["topic"], gap["kind"], gap["missed"], gap["time"])
+
+
+class Recorder:
+    """Starts, feeds and stops the one session that records; `changed` is called whenever it is different."""
+
+    def __init__(self, store: Store, clock: Clock, notices: Notices, changed: Callable[[], None]) -> None:
+        self.session: Session | None = None
+        self._store = store
+        self._clock = clock
+        self._notices = notices
+        self._changed = changed
+        self._busy = asyncio.Lock()
+        self._accepts = False
+        self._started_steady = 0.0
+        self._standing: Block | None = None
+        self._reset()
+
+    async def recover(self) -> Left | None:
+        """Mark what a crash has left recording as interrupted, but for a session that may perhaps go on.
+
+        Raises StoreError.
+        """
+        left = await asyncio.to_thread(find_left, self._store)
+        kept = -1 if left is None else left.row.id
+        for name, duration in await self._store.write(lambda found: _mark_interrupted(found, kept)):
+            self._notices.tell(
+                "recording",
+                "caution",
+                f"“{name}” was cut off after {duration:.1f} s. What was stored is kept; at most the last "
+                "second before the end is missing.",
+            )
+        return left
+
+    async def resume(self, left: Left, missing: Mapping[str, Missing]) -> None:
+        """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
+
+        `missing` is what each sender has that is not stored, by its name. To be called before any of that is
+        added, and `caught_up` afterwards. Raises StoreError.
+        """
+        runtime = missing.get("runtime")
+        row = left.row
+        if runtime is None or not (runtime.same_run and runtime.whole):
+            sent = {name: count for one in missing.values() for name, count in one.sent.items() if count}
+            gaps = [
+                {"session_id": row.id, "topic": name, "kind": "missed", "missed": count}
+                | {"time": left.last[name].time}
+                for name, count in sent.items()
+            ]
+            await self._store.write(lambda connection: _interrupt(connection, gaps))
+            lost = sum(sent.values())
+            self._notices.tell(
+                "recording",
+                "caution",
+                f"The server was killed while “{row.name}” was recorded. What was stored is kept; "
+                + (f"{lost} samples sent since are" if lost else "what was sent since is")
+                + " not to be had any more.",
+            )
+            return
+        self._reset()
+        self._started_steady = row.started_steady
+        self._numbers.update({name: last.chunks for name, last in left.last.items()})
+        self._expected.update({BY_NAME[name].id: last.following for name, last in left.last.items()})
+        for sender in missing.values():
+            if sender.same_run:
+                self._skip |= sender.first
+        if "notice" in left.last:
+            self._notices.go_on(left.last["notice"].following)
+        self.session = from_row(row)
+        self._accepts = True
+        away = self._clock.now() - row.started_steady - row.duration
+        self._notices.tell(
+            "recording",
+            "caution",
+            f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
+        )
+        self._changed()
+
+    def caught_up(self) -> None:
+        """What was missing has been added: all that comes now is new, also low numbers of a new sender."""
+        self._skip.clear()
+
+    async def start(self, row: SessionRow) -> Session:
+        """Store a new session and record into it from now on. Raises RecordingRefused, StoreError."""
+        return await _whole(self._start(row))
+
+    async def _start(self, row: SessionRow) -> Session:
+        async with self._busy:
+            if self.session is not None:
+                raise RecordingRefused(f"“{self.session.name}” is being recorded; stop it first.")
+            values = row.model_dump(exclude={"id"})
+            row.id = await self._store.write(lambda connection: _insert_session(connection, values))
+            self.session = from_row(row)
+            self._started_steady = row.started_steady
+            self._reset()
+            self._accepts = True
+            if self._standing is not None:
+                # They are told at each change and else rarely: the session begins with what is in force.
+                self.add(_as_of(self._standing, self._clock.now()))
+        self._notices.tell("recording", "info", f"Recording of “{row.name}” has begun.")
+        self._changed()
+        return self.session
+
+    async def stop(self, session: int) -> Session:
+        """Store what is left and complete the session.
+
+        Raises RecordingRefused where it does not record, StoreError where its end cannot be stored; it then
+        goes on.
+        """
+        return await _whole(self._stop(session))
+
+    async def _stop(self, session: int) -> Session:
+        async with self._busy:
+            if self.session is None or self.session.id != session:
+                raise RecordingRefused("This session does not record; there is nothing to stop.")
+            self._accepts = False
+            try:
+                done = await self._commit(final=True)
+            except StoreError:
+                self._accepts = True
+                raise
+            self.session = None
+        self._notices.tell("recording", "info", f"Recording of “{done.name}” has ended.")
+        self._changed()
+        return done
+
+    def amend(self, session: Session) -> None:
+        """Take over what people have written about the session, if it is the one that records."""
+        if self.session is not None and self.session.id == session.id:
+            written = session.model_dump(include={"name", "note", "tags", "markers", "kept"})
+            self.session = self.session.model_copy(update=written)
+            self._changed()
+
+    def add(self, block: Block) -> None:
+        """Take in a block; without a session it is passed over."""
+        topic = block.topic
+        if topic is _PARAMETERS:
+            self._standing = block
+        if not self._accepts or topic not in RECORDED or (self._skip and self._is_stored(block)):
+            return
+        run = self._runs.get(topic.id)
+        expected = self._expected.get(topic.id, block.first)
+        if block.first != expected:
+            ahead = (block.first - expected) % NUMBERS
+            kind, missed = ("missed", ahead) if ahead < NUMBERS // 2 else ("restarted", 0)
+            self._gathered.note(topic.name, kind, missed, self._clock.now())
+            run = None
+        if run is None:
+            run = self._runs[topic.id] = _Run(topic, block.first)
+            self._gathered.runs.append(run)
+        run.payloads.append(block.payload)
+        run.count += block.count
+        self._expected[topic.id] = block.following
+
+    def _is_stored(self, block: Block) -> bool:
+        """Whether an earlier server has stored it, or it is older than the session."""
+        first = self._skip.get(block.topic.id)
+        return first is not None and not block.after(first)
+
+    async def run(self) -> None:
+        """Commit every period, for ever; tell when it fails, and when it works again."""
+        idle = 0
+        while True:
+            await asyncio.sleep(PERIOD)
+            failed_before = self._store.failing
+            idle = 0 if self.session or not failed_before else idle + 1
+            try:
+                if self.session:
+                    await self.flush()
+                elif idle >= PROBE_PERIODS:
+                    idle = 0
+                    await self._store.probe()
+            except StoreError as problem:
+                if failed_before is None:
+                    self._notices.tell("database", "alarm", f"Nothing can be stored: {problem}.")
+                continue
+            if failed_before is not None and self._store.failing is None:
+                self._notices.tell("database", "info", "Storing works again.")
+
+    async def flush(self) -> None:
+        """Commit what has been gathered. Raises StoreError; then it is kept for the next time."""
+        await _whole(self._flush())
+
+    async def _flush(self) -> None:
+        async with self._busy:
+            if self.session is not None:
+                await self._commit(final=False)
+
+    def _reset(self) -> None:
+        self._runs: dict[int, _Run] = {}
+        self._expected: dict[int, int] = {}
+        self._skip: dict[int, int] = {}
+        self._numbers: Counter[str] = Counter()
+        self._gathered = _Batch()
+        self._waiting = _Batch()
+
+    async def _commit(self, *, final: bool) -> Session:
+        assert self.session is not None
+        batch = self._waiting
+        batch.take(self._gathered)
+        self._gathered, self._runs = _Batch(), {}
+        now, session = self._clock.now(), self.session
+        changes: dict[str, Any] = {"duration": now - self._started_steady}
+        if final:
+            changes |= {"state": "complete", "ended": time()}
+
+        def write(connection: Connection) -> dict[str, Any]:
+            self._encode(session.id, batch, now)
+            changes["samples"] = session.samples + batch.samples
+            changes["bytes"] = session.bytes + batch.bytes
+            _insert(connection, session.id, batch, changes)
+            return changes
+
+        try:
+            await self._store.write(write)
+        except StoreError:
+            _drop_oldest(batch, now)
+            raise
+        self._waiting = _Batch()
+        if final:
+            changes["ended"] = datetime.fromtimestamp(changes["ended"], UTC)
+        # Somebody may have written about it meanwhile.
+        self.session = self.session.model_copy(update=changes)
+        self._changed()
+        return self.session
+
+    def _encode(self, session: int, batch: _Batch, now: float) -> None:
+        while batch.runs:
+            run = batch.runs.pop(0)
+            name = run.topic.name
+            try:
+                encoding, data, first_time, last_time = encode(run.topic, run.payloads, run.count)
+            except (ValueError, RecursionError, zlib.error) as problem:
+                log.warning("samples of %s cannot be recorded: %s", name, problem)
+                batch.note(name, "damaged", run.count, now)
+                continue
+            batch.chunks.append(
+                {
+                    "session_id": session,
+                    "topic": name,
+                    "number": self._numbers[name],
+                    "first_time": first_time,
+                    "last_time": last_time,
+                    "first": run.first,
+                    "count": run.count,
+                    "encoding": encoding,
+                    "data": data,
+                }
+            )
+            self._numbers[name] += 1
+
+
+def _as_of(block: Block, now: float) -> Block:
+    """The last document of a block once more, as of now (s, steady clock)."""
+    try:
+        document = json.loads(block.payload)[-1] | {"time": now}
+    except (ValueError, LookupError, TypeError, RecursionError):
+        # A damaged one is noted as such when it is stored.
+        return block
+    payload = json.dumps([document], separators=(",", ":")).encode()
+    return Block.of(block.topic, 1, (block.following - 1) % NUMBERS, payload)
+
+
+def _drop_oldest(batch: _Batch, now: float) -> None:
+    left = batch.bytes
+    while left > BACKLOG_BYTES:
+        chunk = batch.chunks.pop(0)
+        left -= len(chunk["data"])
+        batch.note(chunk["topic"], "not stored", chunk["count"], now)
+
+
+async def _whole(step: Coroutine[Any, Any, T]) -> T:
+    """Let a step finish even where its caller is cancelled, so that memory and database stay in agreement."""
+    return await asyncio.shield(asyncio.create_task(step))
+
+
+def _insert_session(connection: Connection, values: dict[str, Any]) -> int:
+    key = connection.execute(insert(SessionRow).values(values)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
+
+
+def _insert(connection: Connection, session: int, batch: _Batch, changes: dict[str, Any]) -> None:
+    if batch.chunks:
+        connection.execute(insert(Chunk), batch.chunks)
+    if batch.gaps:
+        connection.execute(insert(Gap), [gap | {"session_id": session} for gap in batch.gaps.values()])
+    connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(changes))
+
+
+def _interrupt(connection: Connection, gaps: list[dict[str, Any]]) -> None:
+    _mark_interrupted(connection, -1)
+    if gaps:
+        connection.execute(insert(Gap), gaps)
+
+
+def _mark_interrupted(connection: Connection, but: int | None) -> list[tuple[str, float]]:
+    """Names and durations (s) of the sessions that were marked."""
+    left = col(SessionRow.state) == "recording", col(SessionRow.id) != but
+    found = connection.execute(select(SessionRow.name, SessionRow.duration).where(*left))
+    marked = [(name, duration) for name, duration in found]
+    connection.execute(
+        update(SessionRow)
+        .where(*left)
+        .values(state="interrupted", ended=col(SessionRow.started) + col(SessionRow.duration))
+    )
+    return marked

@@ -1,0 +1,258 @@
+"""Reads what a session recorded: chunk by chunk, so that it is never in memory as a whole."""
+
+import json
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import groupby, islice
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from sqlmodel import Session, col, desc, func, select
+
+from server.features.sessions.chunks import (
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_documents,
+    decode_pictures,
+    decode_rows,
+    row_layout,
+)
+from server.platform.models import Chunk, SessionRow
+from server.platform.store import Reader
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+CHUNKS_AT_ONCE = 32
+DATA_AT_ONCE = 512
+
+
+class RecordingError(Exception):
+    """A recording that cannot be read; the text says what is wrong."""
+
+
+class Recording:
+    """One session's samples. What is committed while they are read may or may not be among them.
+
+    Times are the session's own steady ones (s); `row.started_steady` is its start. Every reading method
+    raises StoreError, and RecordingError where a chunk cannot be read.
+    """
+
+    def __init__(self, store: Reader, row: SessionRow) -> None:
+        self.row = row
+        self.topics: Mapping[str, dict[str, Any]] = json.loads(row.topics)
+        """What `chunks.describe_topics` said when it was recorded, by name."""
+        self._store = store
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """The database, for a query of one's own; as `Store.read`."""
+        with self._store.read() as database:
+            yield database
+
+    def counts(self, start: float = -inf, end: float = inf) -> dict[str, int]:
+        """Samples by topic, of the chunks that may have some between `start` and `end`; no topics without."""
+        query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
+        if start > -inf:
+            query = query.where(Chunk.last_time >= start)
+        if end < inf:
+            query = query.where(Chunk.first_time <= end)
+        with self._store.read() as database:
+            return {name: int(count) for name, count in database.exec(query.group_by(Chunk.topic))}
+
+    def has(self, topic: str) -> bool:
+        """Whether there is any sample of a topic."""
+        query = select(Chunk.id).where(Chunk.session_id == self.row.id, Chunk.topic == topic).limit(1)
+        with self._store.read() as database:
+            return database.exec(query).first() is not None
+
+    def spans(self, topic: str) -> list[tuple[float, float, int]]:
+        """Of each chunk in order: the times of its first and its last sample, and how many it has."""
+        query = (
+            select(Chunk.first_time, Chunk.last_time, Chunk.count)
+            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+            .order_by(col(Chunk.number))
+        )
+        with self._store.read() as database:
+            return [(first, last, count) for first, last, count in database.exec(query)]
+
+    def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
+        """The chunks that may have samples between `start` and `end`, in order."""
+        return self._found(select(Chunk), Session.exec, CHUNKS_AT_ONCE, topic, start, end)
+
+    def numbers(self, database: Session, topic: str, start: float, end: float) -> tuple[int, int]:
+        """The first and the last number of the chunks that may have samples between these times.
+
+        Found by the index of times, however long the session is. One more at either end, since the times of
+        samples may overlap a little where two chunks meet. The last is before the first where there are none.
+        """
+        newest = (
+            select(Chunk.number)
+            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+            .order_by(desc(col(Chunk.first_time)))
+            .limit(1)
+        )
+        last = database.exec(newest.where(Chunk.first_time <= end)).first()
+        if last is None:
+            return 0, -1
+        first = None if start == -inf else database.exec(newest.where(Chunk.first_time <= start)).first()
+        return (0 if first is None else max(first - 1, 0)), last + 1
+
+    def rows(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[bytes]:
+        """The rows of each such chunk, as `robot_runtime.contract.topics` has them; not cut to the range."""
+        size = self.topics[topic]["row_bytes"]
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, ROWS_ENCODING):
+                rows = decode_rows(chunk.data, size)
+            yield rows
+
+    def documents(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[dict[str, Any]]:
+        """The documents between `start` and `end`."""
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, DOCUMENTS_ENCODING):
+                documents = list(decode_documents(chunk.data))
+            yield from (one for one in documents if start <= one["time"] <= end)
+
+    def pictures(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
+        """The pictures between `start` and `end`: their times and their JPEG files."""
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, PICTURES_ENCODING):
+                pictures = list(decode_pictures(chunk.data))
+            yield from (one for one in pictures if start <= one[0] <= end)
+
+    def columns(
+        self, topic: str, names: Sequence[str], start: float = -inf, end: float = inf
+    ) -> "tuple[Floats, dict[str, Floats]]":
+        """The times of a topic of rows (s, steady clock), and columns by their names, in their units.
+
+        Names are without units, such as "depth" or "position_2"; arrays have the shape (samples,). Raises
+        KeyError on a name that is not there.
+        """
+        import numpy as np  # only where somebody compares or exports: it costs a small computer memory
+
+        described = self.topics[topic]
+        layout = row_layout(described)
+        codes = "".join(field["code"] * field["count"] for field in described["fields"])
+        # Struct's codes mean the same to NumPy.
+        types = [np.dtype("<" + code) for code in codes]
+        ends = np.cumsum([8, *(one.itemsize for one in types)]).tolist()
+        plain = [column.partition(" [")[0] for column in layout.columns]
+        for name in names:
+            if name not in plain:
+                raise KeyError(f"{topic} has no column {name}; it has {', '.join(plain)}")
+        places = [plain.index(name) for name in names]
+        # A chunk holds the first bytes of all its rows, then the second ones; only wanted ones are joined.
+        wanted = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
+        pieces = [
+            table[:, wanted].transpose(1, 0, 2).reshape(len(wanted), -1)
+            for table in self._tables(topic, start, end)
+        ]
+        whole = np.concatenate(pieces, axis=1) if pieces else np.empty((len(wanted), 0), np.uint8)
+
+        def column(first: int, type_: "np.dtype[Any]") -> "Floats":
+            rows = np.ascontiguousarray(whole[first : first + type_.itemsize].T)
+            return rows.view(type_).reshape(-1).astype(np.float64)
+
+        times = column(0, np.dtype("<f8"))
+        inside = (times >= start) & (times <= end)
+        values: dict[str, Floats] = {}
+        first = 8
+        for name, at in zip(names, places, strict=True):
+            values[name] = (column(first, types[at]) * layout.scales[at])[inside]
+            first += types[at].itemsize
+        return times[inside], values
+
+    def changes(self, topic: str) -> Iterator[dict[str, Any]]:
+        """The documents that say something else than the one before, but for their time."""
+        before = b""
+        for number, encoding, data in self._data(topic, -inf, inf):
+            if encoding != DOCUMENTS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                for line in zlib.decompress(data).splitlines():
+                    says = line.partition(b",")[2]
+                    if says != before:
+                        before = says
+                        yield json.loads(line)
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(topic, number, problem) from problem
+
+    def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
+        """The bytes of rows in the shape (chunks, size of a row, samples), of chunks of one length.
+
+        One call of NumPy for each chunk would cost more than all else.
+        """
+        import numpy as np
+
+        size = self.topics[topic]["row_bytes"]
+        for _, alike in groupby(self._shuffled(topic, size, start, end), len):
+            while some := list(islice(alike, DATA_AT_ONCE)):
+                yield np.frombuffer(b"".join(some), np.uint8).reshape(len(some), size, -1)
+
+    def _shuffled(self, topic: str, size: int, start: float, end: float) -> Iterator[bytes]:
+        """The rows of each chunk, of `size` bytes each, as `chunks.shuffle` left them."""
+        for number, encoding, data in self._data(topic, start, end):
+            if encoding != ROWS_ENCODING:
+                raise _foreign(topic, number, encoding)
+            try:
+                shuffled = zlib.decompress(data)
+            except zlib.error as problem:
+                raise _damaged(topic, number, problem) from problem
+            if len(shuffled) % size:
+                raise _damaged(topic, number, f"{len(shuffled)} bytes are not whole rows of {size}")
+            yield shuffled
+
+    def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
+        """Number, encoding and data of such chunks; as objects of a Session they would take twice as long."""
+        query = select(Chunk.number, Chunk.encoding, Chunk.data)
+
+        def execute(database: Session, query: Any) -> Any:
+            return database.connection().execute(query)
+
+        return self._found(query, execute, DATA_AT_ONCE, topic, start, end)
+
+    def _found(
+        self,
+        query: Any,
+        execute: Callable[[Session, Any], Any],
+        limit: int,
+        topic: str,
+        start: float,
+        end: float,
+    ) -> Iterator[Any]:
+        """What `query` selects of the chunks that may have samples in this range; `limit` at a time."""
+        with self._store.read() as database:
+            first, last = self.numbers(database, topic, start, end)
+        query = query.where(Chunk.session_id == self.row.id, Chunk.topic == topic)
+        query = query.where(Chunk.last_time >= start, Chunk.first_time <= end)
+        query = query.order_by(col(Chunk.number)).limit(limit)
+        while first <= last:
+            with self._store.read() as database:
+                found = execute(database, query.where(col(Chunk.number).between(first, last))).all()
+            yield from found
+            if len(found) < limit:
+                return
+            first = found[-1].number + 1
+
+
+@contextmanager
+def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
+    if chunk.encoding != encoding:
+        raise _foreign(topic, chunk.number, chunk.encoding)
+    try:
+        yield
+    except (ValueError, KeyError, zlib.error) as problem:
+        raise _damaged(topic, chunk.number, problem) from problem
+
+
+def _foreign(topic: str, number: int, encoding: str) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is encoded as {encoding!r}")
+
+
+def _damaged(topic: str, number: int, problem: object) -> RecordingError:
+    return RecordingError(f"chunk {number} of {topic} is damaged: {problem}")

@@ -1,0 +1,288 @@
+"""What a replay asks for: a stretch of a session, as the live socket would have carried it.
+
+A seek takes one answer: before the stretch itself lies what was in force at its start, and what the page's
+charts and lists show of the time before.
+"""
+
+import json
+import logging
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from math import inf
+from typing import Any
+
+from sqlmodel import col, select
+
+from robot_runtime.contract.topics import BY_NAME, TIME, Block, Kind, Topic
+from server import VERSION
+from server.features.sessions.chunks import (
+    DOCUMENTS_ENCODING,
+    PICTURES_ENCODING,
+    ROWS_ENCODING,
+    decode_pictures,
+    decode_rows,
+    describe_topics,
+)
+from server.features.sessions.recording import Recording
+from server.features.sessions.upgrade import NoCounterpart, rewrite_document, rewrite_rows
+from server.platform.models import Chunk
+
+RANGE_MAX = 120.0
+"""s of one answer."""
+HISTORY_MAX = 300.0
+"""s before the start that the page's charts can show."""
+BYTES_MAX = 16_000_000
+"""Of one answer; two minutes at the robot's full rate are 2 MB."""
+CHARTED = {"depth": HISTORY_MAX, "control": HISTORY_MAX, "navigation": 60.0, "detection": 10.0}
+"""Topics of which the page shows the time before, too, and how much of it at most (s)."""
+LISTED = frozenset({"debug", "event", "notice"})
+"""Topics that the page lists line by line."""
+LISTED_CHUNKS = 300
+STATE = BY_NAME["state"]
+COUNT_MAX = 65_535
+"""Samples in one block."""
+
+
+log = logging.getLogger(__name__)
+
+
+class TooMuch(Exception):  # noqa: N818 - it says what is the matter
+    """More was asked for than one answer holds; the text says how much may be."""
+
+
+@dataclass(slots=True)
+class Stretch:
+    """Blocks one after the other, in order of the times of their first samples, and how many samples were
+    left out since they are damaged or have no counterpart in this version's definitions. Thumbnails come as
+    the camera's pictures."""
+
+    data: bytes
+    left_out: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """What is needed of a chunk."""
+
+    first_time: float
+    last_time: float
+    first: int
+    count: int
+    encoding: str
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class _Range:
+    """Samples from `since` up to, but not at, `end`; with `newest` at least one before `start`, if any."""
+
+    since: float
+    start: float
+    end: float
+    newest: bool
+
+
+def read_stretch(recording: Recording, start: float, end: float, history: float | None = None) -> Stretch:
+    """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
+
+    With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
+    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises TooMuch,
+    StoreError.
+    """
+    if end - start > RANGE_MAX:
+        raise TooMuch(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
+    ranges = {name: _range(name, start, end, history) for name in recording.topics}
+    found = _find(recording, ranges)
+    described = describe_topics()
+    left_out, size = 0, 0
+    timed: list[tuple[float, Block]] = []
+    for name, pieces in found.items():
+        recorded, topic = recording.topics[name], BY_NAME.get(name)
+        if topic is None or recorded["kind"] != topic.kind.name.lower():
+            left_out += sum(piece.count for piece in pieces if start <= piece.first_time < end)
+            continue
+        same = recording.row.version == VERSION and recorded == described[name]
+        reader = _Reader(topic, None if same else recorded)
+        for time, block in reader.read(pieces, ranges[name]):
+            size += len(block.data)
+            if size > BYTES_MAX:
+                raise TooMuch(f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time.")
+            timed.append((time, block))
+        left_out += reader.left_out
+    if history is not None and not any(block.topic is STATE and time < start for time, block in timed):
+        timed += _first_state(recording)
+    timed.sort(key=lambda one: one[0])
+    return Stretch(b"".join(block.data for _, block in timed), left_out)
+
+
+def _first_state(recording: Recording) -> list[tuple[float, Block]]:
+    """The robot's state when the session began, which it tells of before its first sample."""
+    try:
+        state = rewrite_document(json.loads(recording.row.robot_state), STATE)
+    except (ValueError, TypeError):
+        return []
+    payload = json.dumps([state], separators=(",", ":")).encode()
+    return [(float(state["time"]), Block.of(STATE, 1, 0, payload))]
+
+
+def _range(name: str, start: float, end: float, history: float | None) -> _Range:
+    if history is None:
+        return _Range(start, start, end, newest=False)
+    since = -inf if name in LISTED else start - min(history, CHARTED.get(name, 0.0))
+    return _Range(since, start, end, newest=True)
+
+
+def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Piece]]:
+    names = [field.name for field in fields(_Piece)]
+    found: dict[str, list[_Piece]] = {}
+    with recording.read() as database:
+        for name, wanted in ranges.items():
+            since = wanted.start if wanted.since == -inf else wanted.since
+            first, last = recording.numbers(database, name, since, wanted.end)
+            if wanted.since == -inf:
+                first = max(0, first - LISTED_CHUNKS)
+            query = (
+                select(*(getattr(Chunk, name) for name in names))
+                .where(Chunk.session_id == recording.row.id, Chunk.topic == name)
+                .where(col(Chunk.number).between(first, last))
+                .order_by(col(Chunk.number))
+            )
+            found[name] = [_Piece(*row) for row in database.exec(query)]
+    return found
+
+
+class _Rows:
+    """The rows of one chunk; `most` of them make a block."""
+
+    most = COUNT_MAX
+
+    def __init__(self, rows: bytes, size: int) -> None:
+        self._rows = rows
+        self._size = size
+
+    def time(self, place: int) -> float:
+        return float(TIME.unpack_from(self._rows, place * self._size)[0])
+
+    def payload(self, first: int, last: int) -> tuple[int, bytes]:
+        return last - first, self._rows[first * self._size : last * self._size]
+
+
+class _Lines:
+    """The documents of one chunk, as lines of JSON; rewritten to `topic` where one is given."""
+
+    most = COUNT_MAX
+
+    def __init__(self, lines: list[bytes], topic: Topic | None) -> None:
+        self._lines = lines
+        self._topic = topic
+
+    def time(self, place: int) -> float:
+        return float(json.loads(self._lines[place])["time"])
+
+    def payload(self, first: int, last: int) -> tuple[int, bytes]:
+        lines = self._lines[first:last]
+        if self._topic is not None:
+            lines = list(_rewrite_lines(lines, self._topic))
+        return len(lines), b"[" + b",".join(lines) + b"]"
+
+
+class _Pictures:
+    """The pictures of one chunk."""
+
+    most = 1
+
+    def __init__(self, pictures: list[tuple[float, bytes]]) -> None:
+        self._pictures = pictures
+
+    def time(self, place: int) -> float:
+        return self._pictures[place][0]
+
+    def payload(self, first: int, last: int) -> tuple[int, bytes]:
+        return last - first, b"".join(TIME.pack(time) + jpeg for time, jpeg in self._pictures[first:last])
+
+
+_Samples = _Rows | _Lines | _Pictures
+
+
+class _Reader:
+    """Makes blocks of one topic's chunks; `recorded` describes the topic where it was another then."""
+
+    def __init__(self, topic: Topic, recorded: Mapping[str, Any] | None) -> None:
+        self.left_out = 0
+        self._topic = topic
+        self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
+        self._recorded = recorded
+
+    def read(self, pieces: list[_Piece], wanted: _Range) -> Iterator[tuple[float, Block]]:
+        """The blocks, each with the time of its first sample."""
+        earlier: tuple[_Piece, int] | None = None
+        has_earlier = not wanted.newest
+        for piece in pieces:
+            if piece.first_time >= wanted.end:
+                break
+            if piece.last_time < wanted.since:
+                earlier = (piece, piece.count)
+                continue
+            samples = self._open(piece)
+            if samples is None:
+                continue
+            first = _count_before(samples, piece, wanted.since)
+            last = _count_before(samples, piece, wanted.end)
+            if first > 0:
+                earlier = (piece, first)
+            if first < last:
+                has_earlier = has_earlier or samples.time(first) < wanted.start
+                yield from self._blocks(samples, piece, first, last)
+        if not has_earlier and earlier is not None:
+            piece, count = earlier
+            samples = self._open(piece)
+            if samples is not None:
+                yield from self._blocks(samples, piece, count - 1, count)
+
+    def _open(self, piece: _Piece) -> _Samples | None:
+        try:
+            if piece.encoding == ROWS_ENCODING:
+                recorded = self._recorded
+                size = self._topic.row_bytes if recorded is None else int(recorded["row_bytes"])
+                rows = decode_rows(piece.data, size)
+                if recorded is not None:
+                    rows = rewrite_rows(rows, recorded, self._topic)
+                return _Rows(rows, self._topic.row_bytes)
+            if piece.encoding == DOCUMENTS_ENCODING:
+                lines = zlib.decompress(piece.data).splitlines()
+                return _Lines(lines, None if self._recorded is None else self._topic)
+            if piece.encoding == PICTURES_ENCODING:
+                return _Pictures(list(decode_pictures(piece.data)))
+        except (ValueError, KeyError, zlib.error) as problem:
+            log.warning("a chunk of %s cannot be read: %s", self._topic.name, problem)
+        self.left_out += piece.count
+        return None
+
+    def _blocks(
+        self, samples: _Samples, piece: _Piece, first: int, last: int
+    ) -> Iterator[tuple[float, Block]]:
+        for start in range(first, last, samples.most):
+            end = min(last, start + samples.most)
+            count, payload = samples.payload(start, end)
+            self.left_out += end - start - count
+            if count:
+                yield samples.time(start), Block.of(self._given_as, count, piece.first + start, payload)
+
+
+def _count_before(samples: _Samples, piece: _Piece, time: float) -> int:
+    """How many of the chunk's samples, from its first on, are earlier."""
+    if piece.last_time < time:
+        return piece.count
+    if piece.first_time >= time:
+        return 0
+    return next(place for place in range(piece.count) if samples.time(place) >= time)
+
+
+def _rewrite_lines(lines: list[bytes], topic: Topic) -> Iterator[bytes]:
+    for line in lines:
+        try:
+            document = rewrite_document(json.loads(line), topic)
+        except NoCounterpart:
+            continue
+        yield json.dumps(document, separators=(",", ":")).encode()

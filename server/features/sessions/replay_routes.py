@@ -1,0 +1,68 @@
+"""Replay: a session's samples as the live socket carries them, and what its seek bar shows."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Query, Request
+from fastapi.responses import Response
+
+from server.container import Assembly
+from server.features.sessions.recording import Recording
+from server.features.sessions.replay import HISTORY_MAX, TooMuch, read_stretch
+from server.features.sessions.routes import UNKNOWN, Identifier
+from server.features.sessions.timeline import Timeline, read_timeline
+
+SECONDS_MAX = 1e9
+LEFT_OUT = "Left-Out"
+"""The header that says how many samples could not be given."""
+
+router = APIRouter(prefix="/api/sessions", tags=["sessions"])
+
+Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
+
+
+@router.get(
+    "/{session}/timeline", summary="Events and markers", operation_id="getTimeline", responses=UNKNOWN
+)
+def get_timeline(request: Request, session: Identifier) -> Timeline:
+    """What happened when in a session, and where nothing was recorded."""
+    return read_timeline(_open(request, session))
+
+
+@router.get(
+    "/{session}/blocks",
+    summary="A stretch of a session",
+    operation_id="getBlocks",
+    response_class=Response,
+    responses={
+        200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"},
+        **UNKNOWN,
+    },
+)
+def get_blocks(
+    request: Request,
+    session: Identifier,
+    start: Seconds,
+    end: Seconds,
+    history: Annotated[float | None, Query(ge=0, le=HISTORY_MAX, allow_inf_nan=False)] = None,
+) -> Response:
+    """The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+
+    With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
+    of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
+    that are damaged or cannot be said in this version's definitions.
+    """
+    if end < start:
+        raise HTTPException(422, f"The end, {end:g} s, lies before the start, {start:g} s.")
+    recording = _open(request, session)
+    zero = recording.row.started_steady
+    try:
+        stretch = read_stretch(recording, zero + start, zero + end, history)
+    except TooMuch as problem:
+        raise HTTPException(422, str(problem)) from problem
+    headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
+    return Response(stretch.data, media_type="application/octet-stream", headers=headers)
+
+
+def _open(request: Request, session: int) -> Recording:
+    assembly = Assembly.of(request)
+    return Recording(assembly.store, assembly.catalogue.row(session))

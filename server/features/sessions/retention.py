@@ -1,0 +1,247 @@
+"""Removes what was deleted and what the retention rule lets go, little by little: recording goes on.
+
+A session goes into the bin first. Out of it, it is marked, and to everybody gone; then its chunks go, a few
+in each transaction of the one writer, between which a recorder's commits pass. At last the pages that have
+become free are given back to the disk, a few at a time as well (the database's auto_vacuum is incremental).
+"""
+
+import asyncio
+import logging
+from collections.abc import Iterable, Sequence
+from math import inf
+from time import time
+from typing import NamedTuple
+
+from sqlalchemy import ColumnElement, Connection, delete, update
+from sqlmodel import col, select
+
+from robot_runtime.clock import Clock, boot
+from server.features.sessions.session import HIDDEN, REMOVING
+from server.features.sessions.storage import GIGABYTE, measure
+from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.notices import Notices
+from server.platform.schema import INCREMENTAL
+from server.platform.settings import Settings
+from server.platform.store import Store, StoreError
+
+log = logging.getLogger(__name__)
+
+PERIOD = 60.0
+"""s between two looks."""
+CHUNKS_AT_ONCE = 32
+PAGES_AT_ONCE = 64
+PAUSE = 0.02
+"""s between two such steps, in which the disk belongs to the recorder."""
+BIN_SECONDS = 3600.0
+"""What the retention rule takes stays in the bin for at least so long, even while room is short."""
+DAY = 86_400.0
+JUMP_SECONDS = 60.0
+"""By which the wall clock may move on beside the steady clock; a robot without a battery for its clock knows
+the time only once somebody has told it."""
+NAMES_TOLD = 3
+
+
+class _Candidate(NamedTuple):
+    """A session that may have to go."""
+
+    id: int
+    name: str
+    bytes: int
+    started: float
+    deleted: float | None
+
+
+class Tidying:
+    """The only one that removes sessions. `wake` makes it look at once.
+
+    For a day after the wall clock has jumped nothing goes by its age, which nobody knows.
+    """
+
+    def __init__(self, store: Store, settings: Settings, notices: Notices, clock: Clock) -> None:
+        self._store = store
+        self._settings = settings
+        self._notices = notices
+        self._clock = clock
+        self._ahead: float | None = None
+        """By how much the wall clock is ahead of the steady clock."""
+        self._ages_known_from = 0.0
+        self._wanted = asyncio.Event()
+        self._hopeless = False
+
+    def wake(self) -> None:
+        """Look soon."""
+        self._wanted.set()
+
+    async def run(self) -> None:
+        """Tidy up every minute, for ever."""
+        while True:
+            self._wanted.clear()
+            try:
+                await self.tidy(time())
+            except StoreError as problem:
+                log.warning("nothing can be tidied up: %s", problem)
+            try:
+                await asyncio.wait_for(self._wanted.wait(), PERIOD)
+            except TimeoutError:
+                continue
+
+    async def tidy(self, now: float) -> None:
+        """Once, at this time (UTC, s since 1970). Raises StoreError."""
+        rules = self._settings.sessions
+        ages_known = await self._ages_known(now)
+        if ages_known:
+            await self._empty_bin(now - rules.undo_days * DAY)
+        if ages_known and rules.keep_days > 0:
+            await self._let_go_old(now, now - rules.keep_days * DAY)
+        if rules.keep_free > 0:
+            await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
+        for session in await self._doomed():
+            await self._remove(session)
+        await self._give_back()
+
+    async def _ages_known(self, now: float) -> bool:
+        steady = self._clock.now()
+        if self._ahead is None:
+            # It may have jumped before this server was started.
+            self._ahead = await asyncio.to_thread(self._find_ahead)
+        if self._ahead is not None and abs(now - steady - self._ahead) > JUMP_SECONDS:
+            self._ages_known_from = steady + DAY
+        self._ahead = now - steady
+        return steady >= self._ages_known_from
+
+    def _find_ahead(self) -> float | None:
+        """As it was at the newest session of this start of the computer; None where there is none."""
+        row = SessionRow
+        query = select(row.started, row.started_steady).where(row.boot == boot())
+        with self._store.read() as database:
+            found = database.exec(query.order_by(col(row.id).desc()).limit(1)).first()
+        return None if found is None else found[0] - found[1]
+
+    async def _empty_bin(self, before: float) -> None:
+        deleted = col(SessionRow.deleted)
+        await self._store.write(
+            lambda connection: connection.execute(
+                update(SessionRow).where(deleted <= before).values(state=REMOVING)
+            )
+        )
+
+    async def _let_go_old(self, now: float, before: float) -> None:
+        rows = [row for row in await self._unprotected() if row.started < before]
+        if rows:
+            days = self._settings.sessions.keep_days
+            await self._change(rows, deleted=now)
+            self._tell(rows, f"Older than {days:g} days")
+
+    async def _make_room(self, now: float, settled_before: float) -> None:
+        storage = await asyncio.to_thread(measure, self._store, self._settings)
+        needed = int(self._settings.sessions.keep_free * GIGABYTE) - storage.free - storage.reusable
+        if needed <= 0:
+            self._hopeless = False
+            return
+        binned = await self._find(col(SessionRow.deleted).is_not(None))
+        settled = [one for one in binned if one.deleted is not None and one.deleted <= settled_before]
+        going = _first(sorted(settled, key=lambda one: one.deleted or now), needed)
+        await self._change(going, state=REMOVING)
+        # What is not in the bin for long will go by the same rule, and then there is room.
+        needed -= sum(one.bytes for one in binned if one in going or one not in settled)
+        if needed <= 0:
+            return
+        rows = _first(await self._unprotected(), needed)
+        if rows:
+            await self._change(rows, deleted=now)
+            self._tell(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
+        elif not self._hopeless:
+            self._hopeless = True
+            text = (
+                "Room is short, and every session is kept, tagged or in the bin already. Delete some, or free"
+            )
+            self._notices.tell(
+                "storage", "caution", f"{text} room on the computer that holds the data folder."
+            )
+
+    def _tell(self, rows: list[_Candidate], why: str) -> None:
+        names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_TOLD])
+        more = f" and {len(rows) - NAMES_TOLD} more" if len(rows) > NAMES_TOLD else ""
+        text = f"{why}: {names}{more} went into the bin. Restore and keep what is to stay."
+        self._notices.tell("storage", "caution", text)
+
+    async def _unprotected(self) -> list[_Candidate]:
+        """Sessions that a rule may take, oldest first."""
+        tagged = select(SessionTag.session_id)
+        return await self._find(
+            col(SessionRow.state) != "recording",
+            col(SessionRow.deleted).is_(None),
+            col(SessionRow.kept).is_(False),
+            col(SessionRow.id).not_in(tagged),
+        )
+
+    async def _find(self, *conditions: ColumnElement[bool]) -> list[_Candidate]:
+        row = SessionRow
+        query = select(row.id, row.name, row.bytes, row.started, row.deleted).order_by(col(row.started))  # type: ignore[call-overload]
+        query = query.where(col(row.state).not_in(HIDDEN), *conditions)
+
+        def read() -> list[_Candidate]:
+            with self._store.read() as database:
+                return [_Candidate(*found) for found in database.exec(query)]
+
+        return await asyncio.to_thread(read)
+
+    async def _change(self, sessions: list[_Candidate], **values: object) -> None:
+        ids = [one.id for one in sessions]
+
+        def write(connection: Connection) -> None:
+            those = col(SessionRow.id).in_(ids)
+            connection.execute(
+                update(SessionRow).where(those, col(SessionRow.state) != "recording").values(values)
+            )
+
+        await self._store.write(write)
+
+    async def _doomed(self) -> Sequence[int | None]:
+        def read() -> Sequence[int | None]:
+            with self._store.read() as database:
+                return database.exec(select(SessionRow.id).where(SessionRow.state == REMOVING)).all()
+
+        return await asyncio.to_thread(read)
+
+    async def _remove(self, session: int | None) -> None:
+        some = select(Chunk.id).where(Chunk.session_id == session).limit(CHUNKS_AT_ONCE)
+
+        def remove_some(connection: Connection) -> int:
+            return connection.execute(delete(Chunk).where(col(Chunk.id).in_(some))).rowcount
+
+        while await self._store.write(remove_some) > 0:
+            await asyncio.sleep(PAUSE)
+
+        def remove_rest(connection: Connection) -> None:
+            for table in (Gap, Marker, SessionTag):
+                connection.execute(delete(table).where(col(table.session_id) == session))
+            connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
+
+        await self._store.write(remove_rest)
+
+    async def _give_back(self) -> None:
+        def give_back_some(connection: Connection) -> int:
+            if connection.exec_driver_sql("PRAGMA auto_vacuum").scalar_one() != INCREMENTAL:
+                return 0
+            # The driver takes one step of such a statement only, and each step is one page.
+            for _ in range(PAGES_AT_ONCE):
+                connection.exec_driver_sql("PRAGMA incremental_vacuum(1)")
+            left: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
+            return left
+
+        before, left = None, await self._store.write(give_back_some)
+        while left > 0 and left != before:
+            await asyncio.sleep(PAUSE)
+            before, left = left, await self._store.write(give_back_some)
+
+
+def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:
+    """The first ones that together have so many bytes."""
+    taken: list[_Candidate] = []
+    for one in sessions:
+        if needed <= 0:
+            break
+        taken.append(one)
+        needed -= one.bytes
+    return taken

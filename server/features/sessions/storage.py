@@ -1,0 +1,87 @@
+"""How much the recordings take, and how much room there is."""
+
+import shutil
+from pathlib import Path
+
+from pydantic import BaseModel, Field
+from sqlmodel import col, func, select
+
+from robot_runtime.errors import Refused
+from server.features.sessions.session import HIDDEN
+from server.platform.models import SessionRow
+from server.platform.settings import DataFolder, Settings
+from server.platform.store import Store
+
+GIGABYTE = 1_000_000_000
+DIVE_BYTES = 20_000_000
+"""Room for an hour of recording without pictures; with less, nobody would know later what the robot did."""
+
+
+class Storage(BaseModel):
+    """Bytes of the disk that holds the data folder, and the rules by which sessions go by themselves."""
+
+    database: int = Field(description="bytes of the database's files")
+    reusable: int = Field(description="of these, bytes that nothing is in any more")
+    exports: int = Field(description="bytes of the files that were exported")
+    free: int = Field(description="bytes that may still be written on this disk")
+    total: int = Field(description="bytes of this disk")
+    sessions: int = Field(description="how many are kept, without the bin")
+    sessions_bytes: int
+    bin: int = Field(description="how many are in the bin")
+    bin_bytes: int
+    undo_days: float = Field(description="days in the bin before a session is removed")
+    keep_days: float = Field(description="days after which a session goes into the bin by itself; 0: never")
+    keep_free: float = Field(
+        description="GB that are kept free by removing the oldest sessions; 0: no such rule"
+    )
+
+
+def measure(store: Store, settings: Settings) -> Storage:
+    """Look at the disk and the database. Raises StoreError."""
+    folder, rules = settings.data, settings.sessions
+    binned = col(SessionRow.deleted).is_not(None)
+    query = select(binned, func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
+    with store.read() as database:
+        connection = database.connection()
+        pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
+        size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
+        rows = database.exec(query.where(col(SessionRow.state).not_in(HIDDEN)).group_by(binned))
+        found = {bool(deleted): (count, total) for deleted, count, total in rows}
+    disk = shutil.disk_usage(folder.path)
+    sessions, sessions_bytes = found.get(False, (0, 0))
+    in_bin, bin_bytes = found.get(True, (0, 0))
+    return Storage(
+        database=sum(_bytes(path) for path in _database_files(folder)),
+        reusable=pages * size,
+        exports=sum(_bytes(path) for path in folder.exports.glob("*")),
+        free=disk.free,
+        total=disk.total,
+        sessions=sessions,
+        sessions_bytes=sessions_bytes,
+        bin=in_bin,
+        bin_bytes=bin_bytes,
+        undo_days=rules.undo_days,
+        keep_days=rules.keep_days,
+        keep_free=rules.keep_free,
+    )
+
+
+def check_room(folder: DataFolder) -> None:
+    """Raises Refused where there is no room to record a dive."""
+    free = shutil.disk_usage(folder.path).free
+    if free < DIVE_BYTES:
+        raise Refused(
+            f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
+            f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
+        )
+
+
+def _database_files(folder: DataFolder) -> list[Path]:
+    return [folder.database.with_name(folder.database.name + end) for end in ("", "-wal", "-shm")]
+
+
+def _bytes(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0

@@ -1,0 +1,96 @@
+"""What a session's seek bar shows: events, markers, and where nothing was recorded."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from itertools import chain, pairwise
+from typing import Literal
+
+from pydantic import BaseModel, Field
+from sqlmodel import col, select
+
+from server.features.sessions.bookmarks import show_marks
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import Mark, State, from_row
+from server.platform.models import Chunk, Marker
+
+EVENTS_MAX = 2000
+HOLE_SECONDS = 3.0
+"""The robot's state is told once a second at least; this long without it, nothing of the robot came."""
+
+
+class Moment(BaseModel):
+    """An event: something that happened, in words."""
+
+    time: float = Field(description="s since the session's start")
+    kind: str
+    severity: Literal["info", "caution", "alarm"]
+    text: str
+
+
+class Hole(BaseModel):
+    """A time without a sample of the robot's state; s since the session's start."""
+
+    start: float
+    end: float
+
+
+class Timeline(BaseModel):
+    """A session as a whole, for whoever moves about in it."""
+
+    name: str
+    state: State
+    started: datetime = Field(description="UTC")
+    started_steady: float = Field(description="the same moment on the steady clock of its samples, s")
+    duration: float = Field(description="s, up to the last samples that are stored")
+    events: list[Moment] = Field(description=f"in order of time, the first {EVENTS_MAX}")
+    markers: list[Mark] = Field(description="in order of time")
+    holes: list[Hole]
+
+
+def read_timeline(recording: Recording) -> Timeline:
+    """The timeline of a session. Raises StoreError, RecordingError."""
+    row = recording.row
+    with recording.read() as database:
+        markers = database.exec(select(Marker).where(Marker.session_id == row.id)).all()
+        stretches = database.exec(
+            select(Chunk.first_time, Chunk.last_time)
+            .where(Chunk.session_id == row.id, Chunk.topic == "state")
+            .order_by(col(Chunk.number))
+        ).all()
+    session = from_row(row)
+    return Timeline(
+        name=session.name,
+        state=session.state,
+        started=session.started,
+        started_steady=row.started_steady,
+        duration=session.duration,
+        events=_events(recording),
+        markers=show_marks(markers, row.started_steady),
+        holes=_holes(stretches, row.started_steady, row.duration),
+    )
+
+
+def _events(recording: Recording) -> list[Moment]:
+    told = [name for name in ("event", "notice") if name in recording.topics]
+    found = [
+        Moment(
+            time=document["time"] - recording.row.started_steady,
+            kind=document["kind"],
+            severity=document["severity"],
+            text=document["text"],
+        )
+        for document in chain.from_iterable(recording.documents(name) for name in told)
+    ]
+    return sorted(found, key=lambda one: one.time)[:EVENTS_MAX]
+
+
+def _holes(stretches: Sequence[tuple[float, float]], start: float, duration: float) -> list[Hole]:
+    """The times between these stretches that are long enough; all in s of one clock."""
+    if not stretches:
+        return []
+    edges = [(start, start), *stretches, (start + duration, start + duration)]
+    return [
+        Hole(start=end - start, end=begin - start)
+        for (_, end), (begin, _) in pairwise(edges)
+        if begin - end > HOLE_SECONDS
+    ]

@@ -1,0 +1,40 @@
+"""The simulator of a robot with its hardware in the loop: on this computer, or left to another one."""
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict
+
+from robot_runtime.errors import Refused
+from server.container import Assembly
+from server.http.problems import answers
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE
+
+router = APIRouter(prefix="/api/simulator", tags=["robot"])
+
+
+class Place(BaseModel):
+    """Whether the simulator runs on this computer."""
+
+    model_config = ConfigDict(extra="forbid")
+    here: bool
+
+
+@router.put(
+    "",
+    status_code=204,
+    summary="Start or end the simulator on this computer",
+    operation_id="putSimulator",
+    responses=answers(_409="The robot is not in the loop", _423="Control is with somebody else"),
+)
+async def put_simulator(request: Request, wanted: Place) -> None:
+    """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""
+    assembly = Assembly.of(request)
+    if not assembly.settings.in_the_loop:
+        raise Refused(
+            "Only a robot with its hardware in the loop can do with or without this computer's simulator; "
+            f"robot.mode is {assembly.settings.mode}."
+        )
+    for name in SIMULATION:
+        if wanted.here:
+            assembly.parts.resume(name)
+        else:
+            await assembly.parts.pause(name, SIMULATION_ELSEWHERE)

@@ -1,0 +1,83 @@
+"""What was measured during an experiment: gathered from blocks, kept as bytes."""
+
+import json
+import zlib
+from array import array
+from dataclasses import dataclass, field
+from math import isnan
+from typing import Any
+
+from robot_runtime.contract.documents import Control
+from robot_runtime.contract.packets import Motor
+from robot_runtime.contract.topics import Block, read_rows
+
+DIGITS = 6
+"""Of the seconds and values that are kept."""
+TURNING = ("heading", "pitch", "roll")
+FINS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """The ticks of a loop, in order: times in s, values in the loop's unit (m, rad), outputs -1 to 1."""
+
+    times: list[float] = field(default_factory=list)
+    set_points: list[float] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+    outputs: list[float] = field(default_factory=list)
+
+    def add(self, time: float, set_point: float, value: float, output: float) -> None:
+        """One tick, where the loop was steered and its value known."""
+        if isnan(set_point) or isnan(value) or isnan(output):
+            return
+        for column, number in zip(self._columns(), (time, set_point, value, output), strict=True):
+            column.append(number)
+
+    def between(self, start: float, end: float, zero: float) -> "Curve":
+        """The ticks from `start` until before `end`, counted from `zero` on."""
+        inside = [place for place, time in enumerate(self.times) if start <= time < end]
+        times = [round(self.times[place] - zero, DIGITS) for place in inside]
+        rest = ([round(column[place], DIGITS) for place in inside] for column in self._columns()[1:])
+        return Curve(times, *rest)
+
+    def to_bytes(self) -> bytes:
+        """To be kept."""
+        return zlib.compress(json.dumps(self._columns()).encode())
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> "Curve":
+        """What was kept; empty where nothing was."""
+        return cls(*json.loads(zlib.decompress(data))) if data else cls()
+
+    def _columns(self) -> tuple[list[float], list[float], list[float], list[float]]:
+        return self.times, self.set_points, self.values, self.outputs
+
+
+class Gathering:
+    """Takes in, block by block, what a run on this loop needs."""
+
+    def __init__(self, loop: str) -> None:
+        self.curve = Curve()
+        self.fin_times = array("d")
+        self.fins = tuple(array("f") for _ in range(FINS))
+        """Angles, rad."""
+        self._loop = loop
+
+    def see(self, block: Block) -> None:
+        """Keep what of it belongs to the run."""
+        name = block.topic.name
+        if name == "motor":
+            for time, motor in read_rows(block):
+                assert isinstance(motor, Motor)
+                self.fin_times.append(time)
+                for kept, angle in zip(self.fins, motor.angle, strict=True):
+                    kept.append(angle)
+        elif name == "control" and self._loop == "depth":
+            for time, tick in read_rows(block):
+                assert isinstance(tick, Control)
+                self.curve.add(time, tick.set_point, tick.depth, tick.output)
+        elif name == "turning" and self._loop in TURNING:
+            place = TURNING.index(self._loop)
+            for time, tick in read_rows(block):
+                turning: Any = tick
+                self.curve.add(time, turning.set_point[place], turning.measured[place], turning.output[place])

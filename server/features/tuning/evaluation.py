@@ -1,0 +1,55 @@
+"""What comes of a run that has ended."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.figures import measure_response
+from server.features.tuning.relay import SAME, find_ultimate
+from server.features.tuning.schemas import RelayStart, RunState, StepStart
+
+LEAD = 3.0
+"""s before the step that a curve begins."""
+
+
+def measure_run(
+    wanted: StepStart | RelayStart,
+    gathering: Gathering,
+    starts: Mapping[str, float],
+    state: RunState,
+    problem: str,
+) -> tuple[dict[str, Any], Curve, str]:
+    """What was found, the curve, and why nothing was found.
+
+    `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
+    """
+    began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
+    if wanted.kind == "relay":
+        return _relay(wanted, gathering, starts, began, ended, problem)
+    step = starts.get("running", began)
+    curve = gathering.curve.between(max(began, step - LEAD), ended, step)
+    if state != "complete":
+        return {}, curve, problem
+    figures = measure_response(curve, gathering, wanted.loop, step, ended)
+    if not figures:
+        return {}, curve, "No ticks of the loop came during the run."
+    return {"figures": {name: figure.model_dump() for name, figure in figures.items()}}, curve, problem
+
+
+def _relay(
+    wanted: RelayStart,
+    gathering: Gathering,
+    starts: Mapping[str, float],
+    began: float,
+    ended: float,
+    problem: str,
+) -> tuple[dict[str, Any], Curve, str]:
+    # The relay ends in its last tick, a step before the tick in which the set point is the usual one again.
+    curve = gathering.curve.between(began, ended + SAME, began)
+    if problem or "running" not in starts:
+        return {}, curve, problem
+    try:
+        cycle = find_ultimate(curve, starts["running"] - began, wanted.hysteresis)
+    except ValueError as why:
+        return {}, curve, f"Nothing could be measured: {why}."
+    return {"cycle": cycle.model_dump()}, curve, ""

@@ -1,0 +1,80 @@
+"""The figures of a step response, defined as those of sessions (server/features/comparison)."""
+
+from math import degrees
+
+import numpy as np
+
+from server.features.comparison.definitions import Figure
+from server.features.comparison.samples import Floats, Series
+from server.features.comparison.step_response import StepResponse, measure_step
+from server.features.comparison.strokes import count_strokes
+from server.features.comparison.tracking import effort, integral_absolute, rms, travel
+from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.figure_definitions import is_angle, near
+
+STEADY = 0.5
+"""Share of the time after the step, at its end, in which the value should be steady."""
+
+
+def measure_response(
+    curve: Curve, gathering: Gathering, loop: str, began: float, ended: float
+) -> dict[str, Figure]:
+    """All figures of a step at 0 s of the curve; fins count from `began` to `ended` (s, steady clock)."""
+    series, set_points, outputs = _after_step(curve, loop)
+    if series.times.size < 2:
+        return {}
+    final, end = float(set_points[-1]), float(series.times[-1])
+    whole = Series(np.array(curve.times), _shown(curve.values, loop))
+    share = measure_step(whole, 0.0, end, final)
+    close = measure_step(whole, 0.0, end, final, near(loop))
+    errors = set_points - series.values
+    steady = series.times >= STEADY * end
+    return {
+        **_step_figures(share, close),
+        "steady_error": Figure(value=float(errors[steady].mean())),
+        "steady_swing": Figure(value=float(np.ptp(series.values[steady]))),
+        "rmse": Figure(value=rms(errors)),
+        "iae": Figure(value=integral_absolute(series.times, errors)),
+        "effort": Figure(value=100 * effort(outputs)),
+        "travel": Figure(value=travel(outputs)),
+        "fin_strokes": _strokes(gathering, began, ended),
+    }
+
+
+def _after_step(curve: Curve, loop: str) -> tuple[Series, Floats, Floats]:
+    times = np.array(curve.times)
+    after = times >= 0
+    values, set_points = _shown(curve.values, loop), _shown(curve.set_points, loop)
+    return Series(times[after], values[after]), set_points[after], np.array(curve.outputs)[after]
+
+
+def _shown(values: list[float], loop: str) -> Floats:
+    return np.array([degrees(one) for one in values] if is_angle(loop) else values)
+
+
+def _step_figures(share: StepResponse | None, near: StepResponse | None) -> dict[str, Figure]:
+    if share is None or near is None:
+        none = Figure(value=None, words="The value was at the set point before the step.")
+        return dict.fromkeys(("rise_time", "overshoot", "settling_share", "settling_near"), none)
+    unsettled = "The value did not stay in the band until the end."
+    return {
+        "rise_time": Figure(
+            value=share.rise_time,
+            words="" if share.rise_time is not None else "The value never came to 90 % of the step.",
+        ),
+        "overshoot": Figure(value=100 * share.overshoot),
+        "settling_share": Figure(
+            value=share.settling_time, words="" if share.settled is not None else unsettled
+        ),
+        "settling_near": Figure(
+            value=near.settling_time, words="" if near.settled is not None else unsettled
+        ),
+    }
+
+
+def _strokes(gathering: Gathering, began: float, ended: float) -> Figure:
+    times = np.array(gathering.fin_times)
+    inside = (times >= began) & (times <= ended)
+    if not inside.any():
+        return Figure(value=None, words="No fin angles came during the run.")
+    return Figure(value=sum(count_strokes(np.array(angle)[inside]) for angle in gathering.fins))

@@ -1,0 +1,252 @@
+"""The run that is on: begun in the runtime, gathered from what it sends, measured and kept at its end."""
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from math import degrees
+from typing import Any
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import ExperimentPhase
+from robot_runtime.contract.topics import Block
+from robot_runtime.errors import Refused
+from server.features.tuning.curve import Gathering
+from server.features.tuning.figure_definitions import is_angle
+from server.features.tuning.runs import Runs
+from server.features.tuning.schemas import (
+    ActiveTuning,
+    Force,
+    RelayStart,
+    RunState,
+    StepStart,
+    TuningRun,
+    TuningState,
+)
+from server.platform.store import StoreError
+from server.processes.supervisor import Tell
+from server.stream.bridge import Bridge, RuntimeSilent
+
+log = logging.getLogger(__name__)
+
+SILENCE = 5.0
+"""s without a word of the experiment, which speaks twice a second, after which it is lost."""
+LOOK_SECONDS = 1.0
+PID = "pid"
+OVER = ("complete", "stopped", "failed")
+
+
+@dataclass(slots=True)
+class _Active:
+    run: int
+    wanted: StepStart | RelayStart
+    gathering: Gathering
+    began: float
+    since: float
+    heard: float
+    phase: ExperimentPhase = "settling"
+    progress: float = 0.0
+    cycles: int = 0
+    text: str = ""
+    starts: dict[str, float] = field(default_factory=dict)
+    """When each phase began, s, steady clock."""
+
+    @property
+    def over(self) -> bool:
+        return self.phase in OVER
+
+    def describe(self) -> ActiveTuning:
+        """As the pages are told."""
+        return ActiveTuning(
+            run=self.run,
+            kind=self.wanted.kind,
+            loop=self.wanted.loop,
+            phase=self.phase,
+            began=self.began,
+            since=self.since,
+            progress=round(self.progress, 3),
+            cycles=self.cycles,
+            settings=self.wanted.model_dump(),
+        )
+
+
+class TuningLab:
+    """At most one run at a time; `tell` hears of all progress, `occupied` says why none may begin now."""
+
+    def __init__(
+        self,
+        runs: Runs,
+        bridge: Bridge,
+        clock: Clock,
+        tell: Callable[[dict[str, Any]], None],
+        notice: Tell,
+        occupied: Callable[[], str | None],
+    ) -> None:
+        self.runs = runs
+        self._bridge = bridge
+        self._clock = clock
+        self._tell = tell
+        self._notice = notice
+        self._occupied = occupied
+        self._active: _Active | None = None
+        self._starting = False
+        self._stray = False
+        self._last: TuningRun | None = None
+        self._ending: asyncio.Task[None] | None = None
+
+    def state(self) -> TuningState:
+        """What runs, and what ended last."""
+        active = None if self._active is None else self._active.describe()
+        return TuningState(active=active, last=self._last)
+
+    async def start(self, wanted: StepStart | RelayStart) -> int:
+        """Begin a run; its number. Raises Refused, RuntimeSilent, StoreError."""
+        self._check()
+        self._starting = True
+        try:
+            # What the server was told last may be older than the controller that was just chosen.
+            force, limits = _in_force(await self._bridge.query("state"), wanted.loop)
+            run = await self.runs.begin(wanted, _name(wanted, force), force, limits)
+            now = self._clock.now()
+            self._active = _Active(run, wanted, Gathering(wanted.loop), began=now, since=now, heard=now)
+            try:
+                await self._bridge.command("experiment", {"number": run, **wanted.model_dump()})
+            except BaseException:
+                self._active = None
+                await asyncio.shield(self.runs.forget(run))
+                raise
+        finally:
+            self._starting = False
+        self.announce()
+        return run
+
+    async def delete(self, run: int) -> None:
+        """Remove a run for good. Raises NotNow while it is on, UnknownRun, StoreError."""
+        await self.runs.delete(run)
+        if self._last is not None and self._last.id == run:
+            self._last = None
+            self.announce()
+
+    async def stop(self) -> None:
+        """End what runs; the curve so far is kept. Raises Refused where nothing runs, RuntimeSilent."""
+        if self._active is None:
+            raise Refused("No experiment runs.")
+        await self._bridge.command("end_experiment", {})
+
+    def see(self, block: Block) -> None:
+        """Something came from the robot."""
+        active = self._active
+        if block.topic.name == "experiment":
+            for told in json.loads(block.payload):
+                self._hear(told)
+        elif active is not None and not active.over:
+            active.gathering.see(block)
+
+    def announce(self) -> None:
+        """Tell the state."""
+        self._tell({"op": "tuning", **json.loads(self.state().model_dump_json())})
+
+    async def run(self) -> None:
+        """Look after the run that is on, for ever."""
+        while True:
+            await asyncio.sleep(LOOK_SECONDS)
+            active = self._active
+            if active is not None and not active.over and self._clock.now() - active.heard > SILENCE:
+                active.phase = "failed"
+                active.text = "The robot's runtime said nothing of it any more."
+                self._end(active)
+            if self._stray:
+                self._stray = False
+                with suppress(Refused, RuntimeSilent):
+                    await self._bridge.command("end_experiment", {})
+
+    async def close(self) -> None:
+        """End what runs, and keep what there is of it."""
+        active = self._active
+        if active is not None and not active.over:
+            with suppress(Refused, RuntimeSilent):
+                await self._bridge.command("end_experiment", {})
+            active.phase, active.text = "stopped", "The server ended."
+            self._end(active)
+        if self._ending is not None:
+            await asyncio.wait([self._ending])
+
+    def _check(self) -> None:
+        if self._active is not None or self._starting:
+            raise Refused("An experiment runs already. Wait for its end, or stop it first.")
+        if (why := self._occupied()) is not None:
+            raise Refused(why)
+
+    def _hear(self, told: dict[str, Any]) -> None:
+        active = self._active
+        if active is None or told["number"] != active.run:
+            # Of a server that was killed, or of a start that this one did not hear the answer to.
+            self._stray = self._stray or told["phase"] not in OVER
+            return
+        if active.over:
+            return
+        active.heard = self._clock.now()
+        active.phase, active.since, active.progress = told["phase"], told["since"], told["progress"]
+        active.cycles, active.text = told["cycles"], told["text"]
+        active.starts.setdefault(active.phase, active.since)
+        active.began = min(active.starts.values())
+        if told["phase"] in OVER:
+            self._end(active)
+        self.announce()
+
+    def _end(self, active: _Active) -> None:
+        self._ending = asyncio.create_task(self._finish(active))
+
+    async def _finish(self, active: _Active) -> None:
+        state: RunState = "failed" if active.phase not in ("complete", "stopped") else active.phase
+        problem = active.text
+        try:
+            # NumPy is loaded here, when it is first needed.
+            from server.features.tuning.evaluation import measure_run
+
+            found, curve, problem = await asyncio.to_thread(
+                measure_run, active.wanted, active.gathering, active.starts, state, problem
+            )
+            state = "failed" if problem and state == "complete" else state
+            await self.runs.end(active.run, state, problem, found, curve)
+            self._last = await asyncio.to_thread(self.runs.detail, active.run)
+            words = {"complete": "is complete", "stopped": "was stopped", "failed": "failed"}[state]
+            self._notice("tuning", "info", f"“{self._last.name}” {words}. {problem}".strip())
+        except StoreError as why:
+            self._notice("tuning", "caution", f"The run could not be stored: {why}.")
+        except Exception:
+            log.exception("a tuning run could not be measured")
+            await self.runs.mark_interrupted()
+        finally:
+            self._active = None
+            self.announce()
+
+
+def _name(wanted: StepStart | RelayStart, force: Force) -> str:
+    if wanted.kind == "step":
+        return f"{force.title}, {_place(wanted.start, wanted.loop)} to {_place(wanted.target, wanted.loop)}"
+    return f"Relay ±{100 * wanted.amplitude:g} % at {_place(wanted.set_point, wanted.loop)}"
+
+
+def _place(value: float, loop: str) -> str:
+    return f"{degrees(value):.0f}°" if is_angle(loop) else f"{value:g} m"
+
+
+def _in_force(state: Mapping[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
+    """The loop's controller, and what its PID's gains may be. Raises Refused where no run may begin on it."""
+    if state["mode"] != "automatic":
+        raise Refused(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
+    one = next((one for one in state["loops"] if one["name"] == loop), None)
+    if one is None:
+        raise Refused(f"This robot's runtime steers no loop {loop!r}.")
+    choices = {choice["name"]: choice for choice in one["controllers"]}
+    chosen = choices[one["controller"]]
+    force = Force(
+        controller=chosen["name"],
+        title=chosen["title"],
+        gains={gain["name"]: gain["value"] for gain in chosen["gains"]},
+    )
+    pid = choices.get(PID, {"gains": []})
+    return force, {gain["name"]: (gain["minimum"], gain["maximum"]) for gain in pid["gains"]}

@@ -1,0 +1,63 @@
+"""The limit cycle of a relay experiment."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from server.features.comparison.samples import Floats
+from server.features.tuning.curve import Curve
+from server.features.tuning.rules import ultimate_gain
+from server.features.tuning.schemas import LimitCycleFound
+
+SAME = 0.05
+"""s by which a tick may bear another time than what it has caused; less than the time between two ticks."""
+UNLIKE = 0.2
+"""Share by which cycles may differ from each other, and the halves of one, before that is remarked on."""
+
+
+def find_ultimate(curve: Curve, began: float, hysteresis: float) -> LimitCycleFound:
+    """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
+
+    Each is the median over whole cycles, from one time that the relay turns to its greater command to the
+    next. Raises ValueError where there is no whole cycle, or it does not go beyond the hysteresis.
+    """
+    times, values, outputs = (np.array(one) for one in (curve.times, curve.values, curve.outputs))
+    counts = outputs[times >= began - SAME]
+    bias = float(counts.max() + counts.min()) / 2 if counts.size else 0.0
+    greater = outputs > bias
+    turns = np.flatnonzero(greater[1:] & ~greater[:-1]) + 1
+    turns = turns[times[turns] >= began - SAME]
+    if turns.size < 2:
+        raise ValueError("there is no whole cycle")
+    cycles = [slice(first, last) for first, last in pairwise(turns)]
+    periods = np.diff(times[turns])
+    swings = np.array([np.ptp(values[one]) / 2 for one in cycles])
+    halves = np.array([2 * float(greater[one].mean()) - 1 for one in cycles])
+    period, swing = float(np.median(periods)), float(np.median(swings))
+    amplitude = float(counts.max() - counts.min()) / 2
+    asymmetry = float(np.median(halves))
+    return LimitCycleFound(
+        cycles=len(cycles),
+        period=period,
+        swing=swing,
+        amplitude=amplitude,
+        bias=bias,
+        asymmetry=asymmetry,
+        ultimate_gain=ultimate_gain(amplitude, swing, hysteresis),
+        remarks=_remarks(periods, swings, asymmetry),
+    )
+
+
+def _remarks(periods: Floats, swings: Floats, asymmetry: float) -> list[str]:
+    remarks = []
+    if any(np.ptp(one) > UNLIKE * np.median(one) for one in (periods, swings)):
+        remarks.append(
+            "The cycles differ by more than 20 %: the water moves, or there are too few of them. "
+            "Run it again."
+        )
+    if abs(asymmetry) > UNLIKE:
+        remarks.append(
+            "One half of each cycle is much longer than the other, since the load is more than the bias can "
+            "balance: the ultimate gain is too low then. Trim the robot, or choose a smaller amplitude."
+        )
+    return remarks

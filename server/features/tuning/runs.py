@@ -1,0 +1,145 @@
+"""Tuning runs in the database. What is awaited is on the disk when it returns."""
+
+import json
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, delete, insert, select, update
+from sqlmodel import col
+from sqlmodel import select as select_rows
+
+from server.features.sessions.presence import NotNow
+from server.features.tuning.curve import Curve
+from server.features.tuning.proposals import propose
+from server.features.tuning.schemas import (
+    Force,
+    LoopName,
+    RelayStart,
+    RunState,
+    StepStart,
+    TuningCurve,
+    TuningRun,
+    TuningRunDetail,
+)
+from server.platform.models import TuningRunRow
+from server.platform.store import Store
+
+LISTED_MOST = 500
+
+
+class UnknownRun(LookupError):  # noqa: N818 - it says what happened
+    """There is no such run."""
+
+
+class Runs:
+    """All runs, kept until somebody deletes them. Methods raise StoreError, and UnknownRun."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def list(self, loop: LoopName) -> Sequence[TuningRun]:
+        """Runs on this loop without their curves, the newest first."""
+        columns = [column for column in TuningRunRow.__table__.columns if column.name != "curve"]  # type: ignore[attr-defined]
+        wanted = select(*columns).where(col(TuningRunRow.loop) == loop)
+        newest = wanted.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
+        with self._store.read() as database:
+            rows = database.execute(newest).mappings().all()
+        return [TuningRun(**_shown(TuningRunRow(**row, curve=b""))) for row in rows]
+
+    def detail(self, run: int) -> TuningRunDetail:
+        """One run with its curve."""
+        with self._store.read() as database:
+            row = database.exec(select_rows(TuningRunRow).where(col(TuningRunRow.id) == run)).one_or_none()
+        if row is None:
+            raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+        shown = TuningRun(**_shown(row))
+        curve = Curve.from_bytes(row.curve)
+        limits = json.loads(row.parameters)["limits"]
+        proposals = [] if shown.cycle is None else propose(shown.loop, shown.cycle, limits)
+        return TuningRunDetail(
+            **dict(shown),
+            curve=TuningCurve(
+                times=curve.times, set_points=curve.set_points, values=curve.values, outputs=curve.outputs
+            ),
+            proposals=proposals,
+        )
+
+    async def begin(self, wanted: StepStart | RelayStart, name: str, force: Force, limits: Any) -> int:
+        """A run that begins now; its number. `limits` are those of the PID's gains, by name."""
+        values = {
+            "name": name,
+            "kind": wanted.kind,
+            "loop": wanted.loop,
+            "started": time.time(),
+            "state": "running",
+            "problem": "",
+            "settings": wanted.model_dump_json(),
+            "parameters": json.dumps({**force.model_dump(), "limits": limits}),
+            "figures": "{}",
+            "curve": b"",
+        }
+
+        def change(connection: Connection) -> int:
+            key = connection.execute(insert(TuningRunRow).values(values)).inserted_primary_key
+            assert key is not None
+            return int(key[0])
+
+        return await self._store.write(change)
+
+    async def end(self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: Curve) -> None:
+        """The run is over; with all that came of it, or nothing of it is kept."""
+        values = {
+            "state": state,
+            "problem": problem,
+            "figures": json.dumps(found),
+            "curve": curve.to_bytes(),
+        }
+        change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(values)
+        await self._store.write(lambda connection: connection.execute(change))
+
+    async def rename(self, run: int, name: str) -> None:
+        """Call it so."""
+        change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(name=name)
+        if (await self._store.write(lambda connection: connection.execute(change).rowcount)) == 0:
+            raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+
+    async def delete(self, run: int) -> None:
+        """Remove it for good. Raises NotNow while it runs."""
+
+        def change(connection: Connection) -> None:
+            state = connection.execute(
+                select(col(TuningRunRow.state)).where(col(TuningRunRow.id) == run)
+            ).scalar_one_or_none()
+            if state is None:
+                raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+            if state == "running":
+                raise NotNow("This run is on. Stop it first.")
+            connection.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
+
+        await self._store.write(change)
+
+    async def forget(self, run: int) -> None:
+        """It never began."""
+        change = delete(TuningRunRow).where(col(TuningRunRow.id) == run)
+        await self._store.write(lambda connection: connection.execute(change))
+
+    async def mark_interrupted(self) -> None:
+        """Runs that still say that they are on were left by a server that was killed."""
+        values = {"state": "interrupted", "problem": "The server ended while it ran; its curve is not kept."}
+        change = update(TuningRunRow).where(col(TuningRunRow.state) == "running").values(values)
+        await self._store.write(lambda connection: connection.execute(change))
+
+
+def _shown(row: TuningRunRow) -> dict[str, Any]:
+    found = json.loads(row.figures)
+    force = json.loads(row.parameters)
+    return {
+        **row.model_dump(include={"id", "name", "kind", "loop", "state", "problem"}),
+        "started": datetime.fromtimestamp(row.started, UTC),
+        "settings": json.loads(row.settings),
+        "force": {name: force[name] for name in Force.model_fields},
+        "figures": found.get("figures", {}),
+        "cycle": found.get("cycle"),
+    }

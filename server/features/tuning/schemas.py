@@ -1,0 +1,157 @@
+"""Tuning as the interface shows it."""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
+from server.features.comparison.definitions import Figure, FigureMeaning
+
+LoopName = Literal["depth", "heading", "pitch", "roll"]
+RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
+RunName = Annotated[str, Field(min_length=1, max_length=100)]
+Seconds = Annotated[FiniteFloat, Field(ge=0, le=300, description="s")]
+Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle rad")]
+
+
+class Limits(BaseModel):
+    """What the value must stay within from when it has come there; beyond, the experiment ends at once."""
+
+    model_config = ConfigDict(extra="forbid")
+    low: Value
+    high: Value
+
+
+class StepStart(Limits):
+    """A step of a loop's set point."""
+
+    kind: Literal["step"]
+    loop: LoopName = "depth"
+    start: Value
+    target: Value
+    tolerance: Annotated[
+        FiniteFloat, Field(gt=0, le=20, description="how near to the start counts as settled")
+    ]
+    settle: Annotated[Seconds, Field(description="s for which the start is held at most")]
+    duration: Annotated[Seconds, Field(description="s from the step on")]
+
+
+class RelayStart(Limits):
+    """A relay in the place of a loop's controller."""
+
+    kind: Literal["relay"]
+    loop: LoopName = "depth"
+    set_point: Value
+    amplitude: Annotated[FiniteFloat, Field(ge=0.1, le=1, description="d, share of the most command")]
+    hysteresis: Annotated[FiniteFloat, Field(ge=0, le=20, description="ε, in the loop's unit")]
+    cycles: Annotated[int, Field(ge=3, le=20, description="that are measured")]
+    duration: Annotated[Seconds, Field(description="s after which it gives up")]
+
+
+Start = Annotated[StepStart | RelayStart, Field(discriminator="kind")]
+
+
+class Force(BaseModel):
+    """The controller in force, with its gains."""
+
+    controller: str
+    title: str
+    gains: dict[str, float]
+
+
+class LimitCycleFound(BaseModel):
+    """What a relay experiment measured; medians over its cycles, values in the loop's unit."""
+
+    cycles: int
+    period: float = Field(description="ultimate period, s")
+    swing: float = Field(description="a: half of the height from peak to peak")
+    amplitude: float = Field(description="d: of the command, either way from the bias")
+    bias: float = Field(description="mean command, which balances the load")
+    asymmetry: float = Field(description="share of the cycle by which its halves differ; 0: none")
+    ultimate_gain: float = Field(description="command for each unit of the loop")
+    remarks: list[str] = Field(description="what makes these figures doubtful")
+
+
+class Proposal(BaseModel):
+    """Gains by a named rule."""
+
+    rule: str
+    title: str
+    source: str
+    known_for: str
+    gains: dict[str, float]
+    problem: str = Field(description="why these cannot be set; empty where they can")
+
+
+class TuningRun(BaseModel):
+    """A run, without its curve."""
+
+    id: int
+    name: str
+    kind: ExperimentKind
+    loop: LoopName
+    started: datetime
+    state: RunState
+    problem: str = Field(description="why it did not complete")
+    settings: dict[str, Any] = Field(description="as it was started")
+    force: Force
+    figures: dict[str, Figure] = Field(description="of a step response, by name")
+    cycle: LimitCycleFound | None = Field(description="of a relay experiment")
+
+
+class TuningCurve(BaseModel):
+    """The loop's ticks, in its unit. Times in s: since the step, or since the relay took over."""
+
+    times: list[float]
+    set_points: list[float]
+    values: list[float]
+    outputs: list[float]
+
+
+class TuningRunDetail(TuningRun):
+    """A run with everything that is known of it."""
+
+    curve: TuningCurve
+    proposals: list[Proposal] = Field(description="of a relay experiment: gains of a PID by several rules")
+
+
+class TuningRuns(BaseModel):
+    """The runs on a loop, newest first, and what their figures are."""
+
+    figures: list[FigureMeaning]
+    runs: list[TuningRun]
+
+
+class TuningStarted(BaseModel):
+    """The run that has begun."""
+
+    run: int
+
+
+class TuningName(BaseModel):
+    """What a run is to be called."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: RunName
+
+
+class ActiveTuning(BaseModel):
+    """The run that is on."""
+
+    run: int
+    kind: ExperimentKind
+    loop: LoopName
+    phase: ExperimentPhase
+    began: float = Field(description="s, steady clock")
+    since: float = Field(description="s, steady clock, when its phase began")
+    progress: float
+    cycles: int
+    settings: dict[str, Any]
+
+
+class TuningState(BaseModel):
+    """What runs, and what ended last since the server started."""
+
+    active: ActiveTuning | None
+    last: TuningRun | None

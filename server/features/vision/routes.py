@@ -1,0 +1,89 @@
+"""The vision node's settings, and the colour at a place in its picture."""
+
+from typing import Any
+
+from fastapi import APIRouter, HTTPException, Request
+from fastapi.responses import PlainTextResponse
+
+from robot_runtime.config import ConfigError
+from server.container import Assembly
+from server.features.operate.routes import COMMAND, SILENT
+from server.features.vision.schemas import (
+    PickedColour,
+    PickPlace,
+    VisionInForce,
+    VisionSettings,
+    VisionText,
+    as_model,
+)
+from server.features.vision.toml_document import check, read_document, write_document
+from server.http.problems import answers
+
+router = APIRouter(prefix="/api/vision", tags=["vision"])
+
+
+@router.get("", summary="How the vision node looks", operation_id="getVision", responses=SILENT)
+async def get_vision(request: Request) -> VisionInForce:
+    """All settings that may change while it looks, and what robot.toml says of them."""
+    told = await Assembly.of(request).bridge.query("vision")
+    return VisionInForce(settings=as_model(told["settings"]), configured=as_model(told["configured"]))
+
+
+@router.put(
+    "",
+    status_code=204,
+    summary="Have the vision node look otherwise",
+    operation_id="putVisionSettings",
+    responses=COMMAND,
+)
+async def put_settings(request: Request, settings: VisionSettings) -> None:
+    """All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that."""
+    table = settings.model_dump(mode="json")
+    try:
+        check(table)
+    except ConfigError as problem:
+        raise HTTPException(422, "; ".join(problem.problems)) from problem
+    await Assembly.of(request).bridge.command("vision_settings", table)
+
+
+@router.post(
+    "/pick",
+    summary="The colour at a place in the picture",
+    operation_id="pickColour",
+    responses={**answers(_409="There is no colour, or no picture"), **SILENT},
+)
+async def pick(request: Request, place: PickPlace) -> PickedColour:
+    """A range for what is there in the newest picture. It changes nothing."""
+    told = await Assembly.of(request).bridge.query("pick", place.model_dump())
+    return PickedColour.model_validate(told, extra="ignore")
+
+
+@router.get(
+    "/toml",
+    summary="The settings as a part of robot.toml",
+    operation_id="downloadVision",
+    response_class=PlainTextResponse,
+    responses=SILENT,
+)
+async def download(request: Request) -> PlainTextResponse:
+    """The table [vision], to be kept or to be put into robot.toml."""
+    told = await Assembly.of(request).bridge.query("vision")
+    return PlainTextResponse(
+        write_document(told["settings"]),
+        headers={"Content-Disposition": 'attachment; filename="vision.toml"'},
+    )
+
+
+@router.post(
+    "/read",
+    summary="Read the settings in a robot.toml",
+    operation_id="readVision",
+    responses=answers(_422="There are no settings in it that can be used"),
+)
+def read(document: VisionText) -> VisionSettings:
+    """What its table [vision] says. It changes nothing."""
+    try:
+        table: dict[str, Any] = read_document(document.text)
+    except ConfigError as problem:
+        raise HTTPException(422, "; ".join(problem.problems)) from problem
+    return as_model(table)

@@ -1,0 +1,1 @@
+"""Health: the state of processes and streams, and the alarms about them."""

@@ -1,0 +1,77 @@
+"""Looks a few times a second for what is wrong around the robot, and keeps the server's alarms by it."""
+
+import asyncio
+import shutil
+
+from robot_runtime.clock import Clock
+from server.health.alarms import Alarms
+from server.health.monitor import Watch
+from server.platform.settings import Settings
+from server.platform.store import Store
+from server.processes.supervisor import Parts
+
+PERIOD = 0.25
+SILENT_SECONDS = 1.5
+"""The runtime sends its state every second, if nothing else; the water sends 20 times as often."""
+HUNG_SECONDS = 10.0
+"""For which a running runtime may say nothing before it is ended; the board has disarmed long before that."""
+STARTING_SECONDS = 10.0
+"""For which a process that has just been started may be silent; a Raspberry Pi Zero takes its time."""
+DISK_LOW_BYTES = 500_000_000
+DISK_LOW_SHARE = 0.05
+"""The smaller of the two is little room: hours of recording, but on a disk that is small itself."""
+DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scene")}
+"""The alarms of parts that have ended."""
+
+
+class Inspection:
+    """Looks by `look`, and for ever by `run`."""
+
+    def __init__(
+        self, settings: Settings, clock: Clock, watch: Watch, parts: Parts, store: Store, alarms: Alarms
+    ) -> None:
+        self._settings = settings
+        self._clock = clock
+        self._watch = watch
+        self._parts = parts
+        self._store = store
+        self._alarms = alarms
+        self._looked = clock.now()
+        self._silent = 0.0
+        """s; for which this server, itself awake, has heard nothing of the runtime, beyond what is normal."""
+
+    async def run(self) -> None:
+        """Look for ever."""
+        while True:
+            self.look()
+            await asyncio.sleep(PERIOD)
+
+    def look(self) -> None:
+        """Once, now."""
+        before, self._looked = self._looked, self._clock.now()
+        if self._looked - before > SILENT_SECONDS / 2:
+            # Whoever was held up has not listened either.
+            return
+        see = self._alarms.see
+        for name, fault in DOWN.items():
+            part = self._parts.get(name)
+            see(fault, part is not None and part.state == "failed")
+        see("runtime_silent", silent := self._is_silent("runtime"))
+        self._silent = self._silent + self._looked - before if silent else 0.0
+        runtime = self._parts.get("runtime")
+        if runtime is not None and self._silent > HUNG_SECONDS - SILENT_SECONDS:
+            self._silent = 0.0
+            runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
+        see("simulator_silent", self._settings.mode != "robot" and self._is_silent("simulator"))
+        disk = shutil.disk_usage(self._settings.data.path)
+        see("disk_low", disk.free < min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total))
+        see("store_failing", self._store.failing is not None)
+        see("server_restarted", wrong=False)
+
+    def _is_silent(self, name: str) -> bool:
+        part, heard = self._parts.get(name), self._watch.heard[name]
+        if part is None or part.state != "running":
+            return False
+        if heard <= part.since:
+            return self._looked - part.since > STARTING_SECONDS
+        return self._looked - heard > SILENT_SECONDS

@@ -1,0 +1,1 @@
+"""The HTTP floor: serving, the page, security headers, sign-in."""

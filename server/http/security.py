@@ -1,0 +1,105 @@
+"""Who may talk to the server at all: checks of Host and Origin, and headers that bind the page.
+
+Host guards against DNS rebinding, where a foreign name is made to point here; Origin against foreign pages
+in the operator's browser. Nothing is trusted by its address, and X-Forwarded-* are not looked at.
+"""
+
+from collections.abc import Collection
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from server.http.refusal import SAFE_METHODS, refuse
+
+BODY_BYTES_MAX = 65_536
+FRAMED = "/api/panels/frame"
+"""What the page shows in a frame; it brings a stricter policy of its own (panels/frame.py)."""
+OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
+STREAMED = frozenset({"/api/imports"})
+"""Paths that take bodies of any size, piece by piece, and see to their limits themselves."""
+HEADERS = {
+    "content-security-policy": "default-src 'self'; img-src 'self' blob:; object-src 'none'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+    "referrer-policy": "same-origin",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+
+
+class Guard:
+    """ASGI middleware: refuses foreign hosts and origins with 403, and adds the security headers.
+
+    `allowed_hosts` are names without a port; `port` is the one the server listens on.
+    """
+
+    def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], port: int) -> None:
+        self._app = app
+        self._hosts = {f"{host}:{port}" for host in allowed_hosts}
+        if port in (80, 443):
+            self._hosts.update(allowed_hosts)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or refuse."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        reason = self._refusal(scope)
+        streamed = scope["path"] in STREAMED
+        if reason is None and scope["type"] == "http" and not streamed and _has_large_body(scope):
+            told = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
+            await refuse(scope, receive, _with_headers(send, scope), 413, told)
+        elif reason is None:
+            # What passes an open socket has no headers, and is too much for a detour.
+            opened = scope["type"] == "websocket"
+            await self._app(scope, receive, send if opened else _with_headers(send, scope))
+        else:
+            await refuse(scope, receive, _with_headers(send, scope), 403, reason)
+
+    def _refusal(self, scope: Scope) -> str | None:
+        """Why this request is refused; None where it is not."""
+        headers = Headers(scope=scope)
+        hosts, origins = headers.getlist("host"), headers.getlist("origin")
+        if len(hosts) != 1 or hosts[0].lower() not in self._hosts:
+            named = hosts[0] if hosts else "none"
+            return (
+                f"The address {named[:100]} is not one of this server's. Use one of "
+                f"{', '.join(sorted(self._hosts))}, or add it to server.allowed_hosts in robot.toml."
+            )
+        unsafe = scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
+        if not origins:
+            # Browsers send Origin with all of these; programs send neither this nor Sec-Fetch-Site.
+            if unsafe and headers.get("sec-fetch-site") not in (None, "same-origin"):
+                return "A browser must name the page that asks (Origin). Open this server's own page."
+            return None
+        if len(origins) > 1 or not _is_own(origins[0], hosts[0], scope["scheme"]):
+            return f"Pages of {origins[0][:100]} may not talk to this robot. Open this server's own page."
+        return None
+
+
+def _is_own(origin: str, host: str, scheme: str) -> bool:
+    page_scheme = {"ws": "http", "wss": "https"}.get(scheme, scheme)
+    parts = urlsplit(origin)
+    return origin.lower() == f"{page_scheme}://{host}".lower() and parts.netloc.lower() == host.lower()
+
+
+def _with_headers(send: Send, scope: Scope) -> Send:
+    async def send_with_headers(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in HEADERS.items():
+                if scope["path"] != FRAMED or name not in OWN_POLICY or name not in headers:
+                    headers[name] = value
+            if scope["path"].startswith("/api"):
+                headers.setdefault("cache-control", "no-store")
+        await send(message)
+
+    return send_with_headers
+
+
+def _has_large_body(scope: Scope) -> bool:
+    headers = Headers(scope=scope)
+    length = headers.get("content-length", "0")
+    return "transfer-encoding" in headers or not length.isdecimal() or int(length) > BODY_BYTES_MAX

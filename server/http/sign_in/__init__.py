@@ -1,0 +1,1 @@
+"""Sign-in: devices, tokens, pairing codes, roles, and the access policy."""

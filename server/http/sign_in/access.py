@@ -1,0 +1,168 @@
+"""Who may come in: pairing, signing in by cookie or token, roles, and the end of all that."""
+
+from collections.abc import Callable
+from hmac import compare_digest
+
+from starlette.requests import HTTPConnection
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract import documents
+from robot_runtime.durable_files import write_whole
+from robot_runtime.errors import Refused
+from server.http.sign_in.devices import Device, Devices
+from server.http.sign_in.identity import SHELL, Identity, Role
+from server.http.sign_in.pairing_codes import Codes, TooManyTries
+from server.http.sign_in.tokens import digest
+from server.platform.settings import Settings
+from server.platform.store import Store
+
+Tell = Callable[[str, documents.Severity, str], None]
+CloseSockets = Callable[[int, str], None]
+"""Ends the live sockets of a device, with this reason."""
+
+BEARER = "bearer "
+
+
+class Access:
+    """One for the server; `tell` writes notices, which also get into what is being recorded, and `token` is
+    what the shell of this computer is given to prove itself with.
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        store: Store,
+        clock: Clock,
+        tell: Tell,
+        close_sockets: CloseSockets,
+        token: str,
+    ) -> None:
+        self.cookie = f"mucat_{settings.port}"
+        """Its name: browsers keep the cookies of all ports of a computer together."""
+        self.codes = Codes(clock)
+        self.devices = Devices(store)
+        self._token_file = settings.data.token
+        self._token = token
+        self._tell = tell
+        self._close_sockets = close_sockets
+        self._limit_told = False
+
+    @staticmethod
+    def of(connection: HTTPConnection) -> "Access":
+        """What decides about this request."""
+        access = connection.app.state.assembly.access
+        assert isinstance(access, Access)
+        return access
+
+    def open(self) -> None:
+        """Know who was paired, and give the shell of this computer its token. Raises StoreError, OSError."""
+        self.devices.load()
+        write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
+
+    def identify(self, connection: HTTPConnection) -> Identity | None:
+        """Who asks. What is said to be a token must be one: a cookie beside it is not looked at."""
+        said = connection.headers.get("authorization")
+        if said is not None:
+            if not said.lower().startswith(BEARER):
+                return None
+            return self._find_bearer(said[len(BEARER) :].strip())
+        return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
+
+    def still(self, identity: Identity) -> bool:
+        """Whether this is who it was when it asked."""
+        return identity == SHELL or any(device.identity == identity for device in self.devices.all())
+
+    async def pair(self, code: str, name: str, known: Identity | None) -> tuple[Identity, str | None]:
+        """Let a browser in, and what its cookie is to hold; None where it has one, being `known`.
+
+        Such a one keeps its name, and its role where the code's is not a higher one.
+        Raises WrongCode, TooManyTries, Refused, StoreError.
+        """
+        try:
+            role = self.codes.use(code)
+        except TooManyTries as problem:
+            if not self._limit_told:
+                self._tell("access", "caution", f"Somebody tries pairing codes. {problem}")
+            self._limit_told = True
+            raise
+        self._limit_told = False
+        if known is not None and known.kind == "browser":
+            if role == "operator" and known.role == "viewer":
+                await self.set_role(known.device, role, by=known)
+            return self.devices.get(known.device).identity, None
+        device, secret = await self.devices.add(name, role, "browser")
+        self._tell("access", "info", f"“{name}” was paired as {role}.")
+        return device.identity, secret
+
+    async def make_program(self, name: str, role: Role, by: Identity) -> tuple[Device, str]:
+        """A program's place, and its token. Raises Refused, StoreError."""
+        device, token = await self.devices.add(name, role, "program")
+        self._tell("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
+        return device, token
+
+    async def set_role(self, number: int, role: Role, by: Identity) -> None:
+        """From now on; live sockets are closed, and come back in the new role.
+
+        Raises UnknownDevice, Refused, StoreError.
+        """
+        device = self.devices.get(number)
+        if device.role == role:
+            return
+        if role == "viewer":
+            self._keep_an_operator(device, by)
+            # Before anything else, and whatever the database says of it.
+        try:
+            await self.devices.set_role(number, role)
+        finally:
+            self._close_sockets(number, f"The role is now {device.role}.")
+        self._tell("access", "info", f"“{by.name}” made “{device.name}” {_with_article(role)}.")
+
+    async def rename(self, number: int, name: str) -> None:
+        """Raises UnknownDevice, StoreError."""
+        await self.devices.rename(number, name)
+
+    async def revoke(self, number: int, by: Identity) -> None:
+        """It is nobody from now on, also on live sockets. Raises UnknownDevice, Refused, StoreError."""
+        device = self.devices.get(number)
+        self._keep_an_operator(device, by)
+        await self._remove(device, "Access was revoked by an operator.")
+        self._tell("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
+
+    async def sign_out(self, identity: Identity) -> None:
+        """Its own end, which even the last operator may choose. Raises Refused for the shell, StoreError."""
+        if identity == SHELL:
+            raise Refused("The shell of this computer is not signed in, and needs not sign out.")
+        await self._remove(self.devices.get(identity.device), "Signed out.")
+        self._tell("access", "info", f"“{identity.name}” signed out.")
+
+    async def close(self) -> None:
+        """Nothing is asked any more."""
+        await self.devices.close()
+
+    async def _remove(self, device: Device, reason: str) -> None:
+        try:
+            await self.devices.remove(device.id)
+        finally:
+            self._close_sockets(device.id, reason)
+
+    def _keep_an_operator(self, device: Device, by: Identity) -> None:
+        if by != SHELL and self.devices.operators == [device]:
+            raise Refused(
+                f"“{device.name}” is the only operator. Make somebody else one first; "
+                "or use `mucat access` on the robot's computer, which always may."
+            )
+
+    def _find_bearer(self, token: str) -> Identity | None:
+        if compare_digest(digest(token), digest(self._token)):
+            return SHELL
+        return self._see(self.devices.find(token, "program"))
+
+    def _see(self, device: Device | None) -> Identity | None:
+        if device is None:
+            return None
+        self.devices.see(device)
+        return device.identity
+
+
+def _with_article(role: Role) -> str:
+    return "an operator" if role == "operator" else "a viewer"

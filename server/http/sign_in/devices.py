@@ -1,0 +1,172 @@
+"""Who has been paired, and in which role: looked up in memory, kept in the database."""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from sqlalchemy import Connection, delete, insert, update
+from sqlmodel import col, select
+
+from robot_runtime.errors import Refused
+from server.http.sign_in.identity import Identity, Kind, Role
+from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
+from server.platform.models import DeviceRow
+from server.platform.store import Store, StoreError
+
+log = logging.getLogger(__name__)
+
+DEVICES_MAX = 200
+SEEN_SECONDS = 3600.0
+"""How old the moment of the last visit may be in the database, which should not wear out its card."""
+
+
+class UnknownDevice(Exception):  # noqa: N818 - it says what happened
+    """There is no such browser or program; the text names it."""
+
+    def __init__(self, device: int) -> None:
+        super().__init__(f"There is no device {device}; GET /api/access/devices lists those there are.")
+
+
+@dataclass(slots=True)
+class Device:
+    """As DeviceRow."""
+
+    id: int
+    name: str
+    role: Role
+    kind: Kind
+    paired: float
+    seen: float
+    stored: float
+
+    @property
+    def identity(self) -> Identity:
+        """Who that is when it asks."""
+        return Identity(self.id, self.name, self.role, self.kind)
+
+
+class Devices:
+    """All devices. This server alone writes them, so that memory is never behind the database."""
+
+    def __init__(self, store: Store, utc: Callable[[], float] = time.time) -> None:
+        self._store = store
+        self._utc = utc
+        self._devices: dict[int, Device] = {}
+        self._by_secret: dict[str, int] = {}
+        self._writing: set[asyncio.Task[None]] = set()
+
+    def load(self) -> None:
+        """Take in what the database holds. Raises StoreError."""
+        with self._store.read() as session:
+            for row in session.exec(select(DeviceRow)):
+                assert row.id is not None
+                self._keep(row.id, row)
+
+    def all(self) -> list[Device]:
+        """By their numbers."""
+        return [self._devices[number] for number in sorted(self._devices)]
+
+    def get(self, number: int) -> Device:
+        """The device of this number. Raises UnknownDevice."""
+        if number not in self._devices:
+            raise UnknownDevice(number)
+        return self._devices[number]
+
+    def find(self, secret: str, kind: Kind) -> Device | None:
+        """The device of this kind that has this secret."""
+        device = self._devices.get(self._by_secret.get(digest(secret), 0))
+        return device if device is not None and device.kind == kind else None
+
+    @property
+    def operators(self) -> list[Device]:
+        """People who can let others in; a program lets nobody in by itself."""
+        return [one for one in self._devices.values() if (one.kind, one.role) == ("browser", "operator")]
+
+    async def add(self, name: str, role: Role, kind: Kind) -> tuple[Device, str]:
+        """A new device, and the secret that proves it, which nobody can be told again.
+
+        Raises Refused where there are too many, StoreError.
+        """
+        if len(self._devices) >= DEVICES_MAX:
+            raise Refused(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
+        secret = make_token(TOKEN_PREFIX if kind == "program" else "")
+        now = self._utc()
+        row = DeviceRow(name=name, role=role, kind=kind, secret=digest(secret), paired=now, seen=now)
+
+        def change(connection: Connection) -> int:
+            made = connection.execute(insert(DeviceRow).values(**row.model_dump(exclude={"id"})))
+            assert made.inserted_primary_key is not None
+            number: int = made.inserted_primary_key[0]
+            return number
+
+        return self._keep(await self._store.write(change), row), secret
+
+    async def set_role(self, number: int, role: Role) -> None:
+        """Less is allowed from now on, whatever the database says; more once it is stored.
+
+        Raises UnknownDevice, StoreError.
+        """
+        device = self.get(number)
+        if role == "viewer":
+            device.role = role
+        await self._update(number, role=role)
+        device.role = role
+
+    async def rename(self, number: int, name: str) -> None:
+        """Call it otherwise. Raises UnknownDevice, StoreError."""
+        device = self.get(number)
+        await self._update(number, name=name)
+        device.name = name
+
+    async def remove(self, number: int) -> None:
+        """It proves nothing from now on. Raises UnknownDevice; StoreError where it would come back."""
+        self.get(number)
+        self._by_secret = {secret: one for secret, one in self._by_secret.items() if one != number}
+        await self._store.write(
+            lambda connection: connection.execute(delete(DeviceRow).where(col(DeviceRow.id) == number))
+        )
+        self._devices.pop(number, None)
+
+    def see(self, device: Device) -> None:
+        """It has just asked for something."""
+        device.seen = self._utc()
+        # The clock may also have been set back.
+        if abs(device.seen - device.stored) < SEEN_SECONDS:
+            return
+        device.stored = device.seen
+        task = asyncio.create_task(self._store_seen(device))
+        self._writing.add(task)
+        task.add_done_callback(self._writing.discard)
+
+    async def close(self) -> None:
+        """Wait for what is being written."""
+        await asyncio.gather(*self._writing)
+
+    async def _store_seen(self, device: Device) -> None:
+        try:
+            await self._update(device.id, seen=device.seen)
+        except StoreError as problem:
+            log.warning("the last visit of device %d was not stored: %s", device.id, problem)
+
+    async def _update(self, number: int, **values: str | float) -> None:
+        await self._store.write(
+            lambda connection: connection.execute(
+                update(DeviceRow).where(col(DeviceRow.id) == number).values(**values)
+            )
+        )
+
+    def _keep(self, number: int, row: DeviceRow) -> Device:
+        device = Device(
+            id=number,
+            name=row.name,
+            role="operator" if row.role == "operator" else "viewer",
+            kind="program" if row.kind == "program" else "browser",
+            paired=row.paired,
+            seen=row.seen,
+            stored=row.seen,
+        )
+        self._devices[number] = device
+        self._by_secret[row.secret] = number
+        return device

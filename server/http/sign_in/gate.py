@@ -1,0 +1,58 @@
+"""The gate before everything under /api: who is not signed in is sent away before a byte of it is read."""
+
+from starlette.requests import HTTPConnection
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from server.http.refusal import SAFE_METHODS, refuse
+from server.http.sign_in.access import Access
+from server.http.sign_in.identity import IDENTITY, Identity
+
+OPEN = frozenset({("GET", "/api/access/me"), ("POST", "/api/access/pair")})
+"""What anybody may ask: those operations that need nothing."""
+PAGE_HEADER, PAGE_VALUE = "x-mucat", "page"
+"""No foreign page can send this header without being asked first by its browser, which is told no."""
+
+NOBODY = (
+    "You are not signed in. Open the link that the server printed when it started, or that `mucat pair` "
+    "prints; a program sends Authorization: Bearer with a token from `mucat access token`."
+)
+
+
+class Gate:
+    """ASGI middleware: puts the Identity of who asks into the scope; 401 where there is none, and 403 where
+    a browser does not say that its page asks."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, or refuse."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        connection = HTTPConnection(scope)
+        identity = Access.of(connection).identify(connection)
+        path = scope["path"]
+        if identity is None and _is_api(path) and (scope.get("method"), path) not in OPEN:
+            await refuse(scope, receive, send, 401, NOBODY)
+        elif identity is not None and (reason := _foreign(connection, identity)) is not None:
+            await refuse(scope, receive, send, 403, reason)
+        else:
+            scope[IDENTITY] = identity
+            await self._app(scope, receive, send)
+
+
+def _is_api(path: str) -> bool:
+    return path == "/api" or path.startswith("/api/")
+
+
+def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
+    """Why this may have been caused by a foreign page; its cookie a browser adds to whatever it sends."""
+    socket = connection.scope["type"] == "websocket"
+    if identity.kind != "browser" or (not socket and connection.scope["method"] in SAFE_METHODS):
+        return None
+    if "origin" not in connection.headers:
+        return "A browser must name the page that asks (Origin). Open this server's own page."
+    if not socket and connection.headers.get(PAGE_HEADER) != PAGE_VALUE:
+        return "What a browser changes needs the header X-Mucat: page, which this server's page sends."
+    return None

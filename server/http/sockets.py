@@ -1,0 +1,44 @@
+"""WebSockets with a shorter way out for what goes to many: the same bytes, put into a frame at once."""
+
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+from uvicorn.protocols.utils import ClientDisconnected
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.protocol import State
+
+if TYPE_CHECKING:
+    from uvicorn._types import ASGISendEvent
+
+_BINARY = 0x82
+"""First byte of an unfragmented binary frame (RFC 6455, 5.2)."""
+_SHORT, _LONG = 125, 0xFFFF
+_HEAD, _HEAD_16, _HEAD_64 = Struct(">BB"), Struct(">BBH"), Struct(">BBQ")
+
+
+class Sockets(WebSocketsSansIOProtocol):
+    """uvicorn's; binary messages go past websockets' own framing, which costs more than the system's send.
+
+    It holds as long as nothing is compressed: `server.http.serving` turns that off.
+    """
+
+    async def send(self, message: "ASGISendEvent") -> None:
+        """Send what the application has to say."""
+        said: Any = message
+        data = said.get("bytes")
+        if data is None:
+            await super().send(message)
+            return
+        if not self.writable.is_set():
+            await self.writable.wait()
+        if self.disconnected or self.conn.state is not State.OPEN:
+            raise ClientDisconnected
+        self.transport.write(_head(len(data)) + data)
+
+
+def _head(size: int) -> bytes:
+    if size <= _SHORT:
+        return _HEAD.pack(_BINARY, size)
+    if size <= _LONG:
+        return _HEAD_16.pack(_BINARY, _SHORT + 1, size)
+    return _HEAD_64.pack(_BINARY, _SHORT + 2, size)

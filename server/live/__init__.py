@@ -1,1 +1,0 @@
-"""What is live: blocks from the other processes, and everything of it to every open page."""

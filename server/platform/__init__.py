@@ -1,0 +1,1 @@
+"""The platform floor: settings, the data folder, the database, notices."""

@@ -1,0 +1,27 @@
+"""What the server itself has to tell: a topic like any other, shown on the page and kept in recordings."""
+
+from collections.abc import Callable
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract import documents
+from robot_runtime.contract.topics import BY_NAME, Block, pack_documents
+
+
+class Notices:
+    """Writes notices and hands each over as a block."""
+
+    def __init__(self, clock: Clock, deliver: Callable[[Block], None]) -> None:
+        self._clock = clock
+        self._deliver = deliver
+        self._told = 0
+
+    def go_on(self, number: int) -> None:
+        """Number on from here, where an earlier server's notices end."""
+        self._told = number
+
+    def tell(self, kind: str, severity: documents.Severity, text: str) -> None:
+        """Say something in words for a person; `kind` is one word for programs."""
+        event = documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text)
+        block = Block.of(BY_NAME["notice"], 1, self._told, pack_documents([event]))
+        self._told += 1
+        self._deliver(block)

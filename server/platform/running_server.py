@@ -1,0 +1,120 @@
+"""The server that works on a data folder, asked from a shell: nothing else may write its database."""
+
+import json
+import sqlite3
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, closing, contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+from migrations import HEAD
+from robot_runtime.durable_files import write_whole
+from server.http.certificate import trust_only
+from server.platform.schema import prepare, read_revision
+from server.platform.settings import DataFolder, Settings, SetupError
+from server.platform.store import Reader
+
+Claim = Callable[[DataFolder], AbstractContextManager[None]]
+"""Holds a data folder alone while entered; raises SetupError where a server works on it."""
+
+ASK_SECONDS = 10.0
+
+
+def announce(settings: Settings) -> None:
+    """Write down where the server of this folder is to be asked."""
+    host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
+    host = f"[{host}]" if ":" in host else host
+    write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
+
+
+def server_runs(folder: DataFolder, claim: Claim) -> bool:
+    """Whether a server works on this folder now."""
+    if not folder.path.is_dir():
+        return False
+    try:
+        with claim(folder):
+            return False
+    except SetupError:
+        return True
+
+
+def ask(
+    folder: DataFolder,
+    method: str,
+    path: str,
+    body: Mapping[str, Any] | None = None,
+    seconds: float = ASK_SECONDS,
+    headers: Mapping[str, str] | None = None,
+) -> Any:
+    """What the server answers to a request below /api; None where it has nothing to say.
+
+    Raises SetupError where none runs, or it refuses, in its words.
+    """
+    data = b"" if body is None and method == "POST" else None
+    if body is not None:
+        data = json.dumps(body).encode()
+    return _send(folder, method, path, data, {"content-type": "application/json", **(headers or {})}, seconds)
+
+
+def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
+    """What it answers to a file that is posted to it. Raises SetupError as `ask`, OSError."""
+    with file.open("rb") as body:
+        headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
+        return _send(folder, "POST", path, body, headers, seconds)
+
+
+@contextmanager
+def open_reader(folder: DataFolder, claim: Claim) -> Iterator[Reader]:
+    """The database, for reading alone: that may be done beside a running server.
+
+    Making or upgrading it may not, and claims the folder. Raises SetupError where that is not to be had.
+    """
+    try:
+        current = read_revision(folder.database) == HEAD
+    except sqlite3.DatabaseError:
+        current = False  # `prepare` says what is the matter
+    if not current:
+        with claim(folder):
+            prepare(folder)
+    with closing(Reader(folder.database)) as store:
+        yield store
+
+
+def _send(
+    folder: DataFolder,
+    method: str,
+    path: str,
+    body: bytes | IO[bytes] | None,
+    headers: dict[str, str],
+    seconds: float,
+) -> Any:
+    try:
+        address = folder.address.read_text(encoding="ascii").strip()
+        headers["authorization"] = f"Bearer {folder.token.read_text(encoding='ascii').strip()}"
+    except OSError as problem:
+        raise SetupError(f"No server works on {folder.path}. Start one with `mucat run`.") from problem
+    request = urllib.request.Request(f"{address}/api{path}", body, headers, method=method)
+    # What is on this computer is not to be asked through a proxy.
+    handlers: list[urllib.request.BaseHandler] = [urllib.request.ProxyHandler({})]
+    if address.startswith("https:"):
+        handlers.append(urllib.request.HTTPSHandler(context=trust_only(folder)))
+    opener = urllib.request.build_opener(*handlers)
+    try:
+        with opener.open(request, timeout=seconds) as answer:
+            text = answer.read()
+    except urllib.error.HTTPError as problem:
+        raise SetupError(_detail(problem)) from problem
+    except OSError as problem:
+        raise SetupError(
+            f"The server of {folder.path} does not answer at {address}: {problem}. Start it with `mucat run`."
+        ) from problem
+    return json.loads(text) if text else None
+
+
+def _detail(problem: urllib.error.HTTPError) -> str:
+    try:
+        return str(json.load(problem)["detail"])
+    except (ValueError, KeyError, TypeError):
+        return f"The server refused with status {problem.code}, and gave no reason."

@@ -1,0 +1,123 @@
+"""Brings the database to this version's tables before anything else opens it."""
+
+import errno
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import Literal
+
+from migrations import HEAD
+from server.features.backup.backup import copy_database, open_database, place, thin_out
+from server.platform.settings import DataFolder, SetupError
+
+INCREMENTAL = 2
+"""SQLite's auto_vacuum in which pages that became free are given back a few at a time, when asked for."""
+
+
+def prepare(folder: DataFolder) -> None:
+    """Create or upgrade the database; an older one is copied to `backups` first.
+
+    Raises SetupError where the database is of a newer version, damaged, or cannot be written.
+    """
+    try:
+        # For writing: what a killed upgrade has left is rolled back by this.
+        revision = read_revision(folder.database, "rw")
+        if revision == HEAD:
+            return
+        if revision is not None:
+            refuse_unknown(revision, folder.database)
+            copy_database(folder.database, place(folder, "before", revision))
+            thin_out(folder, "before")
+            _make_shrinkable(folder.database)
+        _upgrade(folder.database)
+    except (sqlite3.DatabaseError, OSError) as problem:
+        raise SetupError(
+            f"The database {folder.database} cannot be used: {explain(problem, folder.path)}"
+        ) from problem
+
+
+def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
+    """What is wrong, and what to do."""
+    words = str(problem)
+    if "disk is full" in words or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
+        return f"the disk that holds {folder} is full. Free some space, and try again."
+    if isinstance(problem, OSError) or "readonly" in words or "unable to open" in words:
+        return f"{words}. Check the permissions of {folder}, and whether its disk is read-only."
+    return f"{words}. Put back a copy (`mucat restore`), or move it away to start with an empty one."
+
+
+def read_revision(database: Path, mode: Literal["ro", "rw"] = "ro") -> str | None:
+    """The revision that a database is at; None where there is none yet. Raises sqlite3.DatabaseError."""
+    if not database.exists():
+        return None
+    with closing(open_database(database, mode)) as connection:
+        tables = {
+            name for (name,) in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+        }
+        if "alembic_version" not in tables:
+            if tables:
+                raise sqlite3.DatabaseError("it holds tables of another program")
+            return None
+        row = connection.execute("SELECT version_num FROM alembic_version").fetchone()
+    return None if row is None else str(row[0])
+
+
+def refuse_unknown(revision: str, database: Path) -> None:
+    """Raises SetupError where this version does not know the revision."""
+    from alembic.script import ScriptDirectory
+
+    known = {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
+    if revision not in known:
+        raise SetupError(
+            f"The database {database} was written by a newer version (its revision is {revision}, this "
+            f"version's is {HEAD}). Install that version, or choose another data folder with --data."
+        )
+
+
+def _make_shrinkable(database: Path) -> None:
+    """Have room given back of which an older version only made use again; it takes a copy of everything."""
+    with closing(sqlite3.connect(database, isolation_level=None)) as connection:
+        (kind,) = connection.execute("PRAGMA auto_vacuum").fetchone()
+        if kind != INCREMENTAL:
+            connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
+            connection.execute("VACUUM")
+
+
+def _upgrade(database: Path) -> None:
+    # Alembic is loaded only where there is something to do: it costs a Raspberry Pi time and memory.
+    from alembic import command
+    from alembic.config import Config
+    from sqlalchemy import create_engine, event, pool
+
+    def connect() -> sqlite3.Connection:
+        connection = sqlite3.connect(database, isolation_level=None)
+        # Of a database that has tables already this changes nothing.
+        connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
+        connection.execute("PRAGMA synchronous = FULL")
+        return connection
+
+    engine = create_engine("sqlite://", poolclass=pool.NullPool, creator=connect)
+    # The driver by itself begins no transaction before it changes tables; half an upgrade must not stay.
+    event.listen(engine, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
+    config = Config()
+    config.set_main_option("script_location", str(_scripts()))
+    config.set_main_option("path_separator", "os")
+    with _driver_errors(), engine.connect() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
+        connection.commit()
+
+
+@contextmanager
+def _driver_errors() -> Iterator[None]:
+    from sqlalchemy.exc import DBAPIError
+
+    try:
+        yield
+    except DBAPIError as problem:
+        raise sqlite3.DatabaseError(str(problem.orig)) from problem
+
+
+def _scripts() -> Path:
+    return Path(__file__).parents[2] / "migrations"

@@ -1,0 +1,276 @@
+"""What the server takes from `robot.toml`, the environment and its command line."""
+
+import os
+import re
+import socket
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Literal
+
+from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
+from robot_runtime.durable_files import make_folder
+from server.processes.pidfile import running_parts
+
+SOCKET_PATH_BYTES_MAX = 107
+"""Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""
+
+NOWHERE = "192.0.2.1"
+"""An address of documentation's own network (RFC 5737)."""
+
+ROBOT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,31}")
+
+Mode = Literal["emulated", "robot", "hil"]
+
+
+class SetupError(Exception):
+    """The server cannot start; the text is one line that says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataFolder:
+    """Everything the server keeps, and the sockets through which the processes meet."""
+
+    path: Path
+
+    @property
+    def database(self) -> Path:
+        """Sessions and what was recorded in them."""
+        return self.path / "mucat.db"
+
+    @property
+    def backups(self) -> Path:
+        """Copies of databases of older versions."""
+        return self.path / "backups"
+
+    @property
+    def logs(self) -> Path:
+        """What the supervised processes print."""
+        return self.path / "logs"
+
+    @property
+    def exports(self) -> Path:
+        """Sessions as files, to be taken home."""
+        return self.path / "exports"
+
+    @property
+    def imports(self) -> Path:
+        """Archives on their way in."""
+        return self.path / "imports"
+
+    @property
+    def run(self) -> Path:
+        """Sockets, and which processes run; emptied at a start where none of them has been left running."""
+        return self.path / "run"
+
+    @property
+    def lock(self) -> Path:
+        """Held by the one server that works on this folder."""
+        return self.path / "server.lock"
+
+    @property
+    def keeper(self) -> Path:
+        """Which process keeps the server of this folder running."""
+        return self.path / "server.pid"
+
+    @property
+    def address(self) -> Path:
+        """Where the server that works on this folder, or did last, is to be asked: host and port."""
+        return self.path / "server.address"
+
+    @property
+    def token(self) -> Path:
+        """What the shell of this computer proves itself with to the running server; for its user alone."""
+        return self.path / "server.token"
+
+    @property
+    def tls(self) -> Path:
+        """The robot's certificate and its key."""
+        return self.path / "tls"
+
+    @property
+    def runtime_socket(self) -> Path:
+        """Where the runtime listens for Zenoh."""
+        return self.run / "runtime.sock"
+
+    @property
+    def server_socket(self) -> Path:
+        """Where the server listens for Zenoh."""
+        return self.run / "server.sock"
+
+    @property
+    def scene_socket(self) -> Path:
+        """Where the scene listens for Zenoh; peers speak with those alone that they are connected to."""
+        return self.run / "scene.sock"
+
+    @property
+    def board_socket(self) -> Path:
+        """Where the emulated board listens for the water."""
+        return self.run / "board.sock"
+
+    @property
+    def board_tty(self) -> Path:
+        """The emulated board's end of the serial line."""
+        return self.run / "board.tty"
+
+    @property
+    def firmware_away(self) -> Path:
+        """There while the robot's board may hold anything but its firmware."""
+        return self.path / "firmware-away"
+
+    @property
+    def scenario_before(self) -> Path:
+        """There while a scenario runs on the robot: how everything was before."""
+        return self.path / "scenario-before.json"
+
+    @property
+    def scenarios(self) -> Path:
+        """One's own scenarios."""
+        return self.path / "scenarios"
+
+    @property
+    def panels(self) -> Path:
+        """Panels of one's own for the page (docs/panels.md)."""
+        return self.path / "panels"
+
+    @property
+    def board_eeprom(self) -> Path:
+        """What the emulated board remembers without power."""
+        return self.path / "board.eeprom"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How this server is to run; `build` is the folder that holds the emulated board and the firmware."""
+
+    data: DataFolder
+    config: Path
+    robot: str = "turtle"
+    mode: Mode = "emulated"
+    link: LinkConfig = field(default_factory=LinkConfig)
+    hil: HilConfig = field(default_factory=HilConfig)
+    sessions: SessionsConfig = field(default_factory=SessionsConfig)
+    host: str = "127.0.0.1"
+    port: int = 8000
+    tls: bool = False
+    allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
+    build: Path = Path(__file__).parents[2] / "build"
+    page: Path = Path(__file__).parents[1] / "page"
+
+    @property
+    def scheme(self) -> str:
+        """What its addresses begin with."""
+        return "https" if self.tls else "http"
+
+    @property
+    def only_here(self) -> bool:
+        """Whether no other computer can reach the server."""
+        return is_loopback(self.host)
+
+    def base_url(self, called: str = "") -> str:
+        """The server's address for a browser; `called` is the name by which somebody has just called it.
+
+        Where others can reach the server, it is a name that works for them too.
+        """
+        names = [name for name in self.allowed_hosts if self.only_here or not is_loopback(name)]
+        name = called if called in names else (names or [self.host])[0]
+        return f"{self.scheme}://{name}:{self.port}"
+
+    @property
+    def emulated_board(self) -> bool:
+        """Whether the robot's board is an emulated one."""
+        return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
+
+    @property
+    def in_the_loop(self) -> bool:
+        """Whether the board's sensors are a simulator's."""
+        return self.mode == "hil"
+
+
+def read_settings(
+    config: Path, data: Path | None, host: str | None, port: int | None, environment: Mapping[str, str]
+) -> Settings:
+    """Command line before environment before `robot.toml`. Raises SetupError on what is not valid."""
+    try:
+        loaded = load(config)
+    except ConfigError as problem:
+        raise SetupError(f"{problem}. Correct the file, or name another with --config.") from problem
+    folder = DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
+    _check_socket_paths(folder)
+    if not ROBOT_NAME.fullmatch(loaded.robot.name):
+        raise SetupError(f"{config}: robot.name is {loaded.robot.name!r}; use up to 32 of a-z, 0-9, - and _.")
+    chosen_port = loaded.server.port if port is None else port
+    if not 0 < chosen_port < 65536:
+        raise SetupError(f"The port is {chosen_port}; it must be a whole number from 1 to 65535.")
+    chosen_host = host or loaded.server.host
+    return Settings(
+        data=folder,
+        config=config.absolute(),
+        robot=loaded.robot.name,
+        mode=loaded.robot.mode,
+        link=loaded.link,
+        hil=loaded.hil,
+        sessions=loaded.sessions,
+        host=chosen_host,
+        port=chosen_port,
+        tls=loaded.server.tls,
+        allowed_hosts=_allowed_hosts(loaded.server.allowed_hosts, chosen_host),
+    )
+
+
+def make_folders(folder: DataFolder) -> None:
+    """Create the data folder, and empty its `run` where nothing runs. Raises SetupError where it cannot."""
+    try:
+        for path in (folder.path, folder.logs, folder.run):
+            make_folder(path)
+        folder.run.chmod(0o700)
+        # What lives there belongs to parts of a killed server, as long as one of them runs.
+        if not running_parts(folder.run):
+            for left in folder.run.iterdir():
+                left.unlink()
+    except OSError as problem:
+        raise SetupError(
+            f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."
+        ) from problem
+
+
+def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
+    everywhere = host in ("0.0.0.0", "::")
+    own = _own_names() if everywhere else [f"[{host}]" if ":" in host else host]
+    return tuple(dict.fromkeys(name.lower() for name in [*names, *own]))
+
+
+def _own_names() -> list[str]:
+    """How other computers may call this one: its address in the network that its packets leave by, and its
+    names. No foreign page can make a browser take such an address for the page's own.
+    """
+    name = socket.gethostname().lower()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((NOWHERE, 9))  # which sends nothing
+            address = [probe.getsockname()[0]]
+        except OSError:
+            address = []
+    return [*address, f"{name}.local", name]
+
+
+def is_loopback(name: str) -> bool:
+    """Whether this address or name always means the computer that uses it."""
+    try:
+        return ip_address(name.strip("[]")).is_loopback
+    except ValueError:
+        return name == "localhost"
+
+
+def _check_socket_paths(folder: DataFolder) -> None:
+    longest = max(
+        (folder.runtime_socket, folder.server_socket, folder.scene_socket, folder.board_socket),
+        key=lambda path: len(os.fsencode(path)),
+    )
+    size = len(os.fsencode(longest))
+    if size > SOCKET_PATH_BYTES_MAX:
+        raise SetupError(
+            f"The data folder's path is too long: {longest} has {size} bytes, and a Unix socket's path may "
+            f"have {SOCKET_PATH_BYTES_MAX}. Choose a shorter one with --data."
+        )

@@ -1,0 +1,300 @@
+"""Keeps the other processes running: starts them in order, watches them, starts them again, ends them.
+
+A part runs in a session of its own, so that Ctrl-C reaches the server alone and nothing that the part has
+started outlives it. It writes its log itself and needs nothing of the server: where that is killed the robot
+swims on, and the next server adopts the parts that it would start the same way. Where no server comes, they
+end by themselves (`robot_runtime.transport.lifetime`), but for a real robot's runtime.
+"""
+
+import asyncio
+import hashlib
+import logging
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.documents import Severity
+from robot_runtime.contract.packets import DEFINITIONS_HASH
+from robot_runtime.simulation.boards.firmware import firmware_path
+from server import VERSION
+from server.platform.settings import DataFolder, Settings
+from server.processes.backoff import Backoff, describe_pause
+from server.processes.logs import PartLog
+from server.processes.pidfile import end_parts, pid_file
+from server.processes.process import AdoptedProcess, Process, describe_status
+
+log = logging.getLogger(__name__)
+
+TERM_SECONDS = 3.0
+NEED_POLL_SECONDS = 0.05
+LINES_TOLD = 3
+TRIM_SECONDS = 1.0
+HEARTBEAT_SECONDS = 4.0
+"""After which, and half a second, the runtime stops a robot whose server is silent: 5 s are allowed."""
+
+SIMULATION = ("simulator", "scene")
+"""Parts that may be left to another computer."""
+SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
+
+State = Literal["waiting", "running", "failed", "ended", "paused"]
+Tell = Callable[[str, Severity, str], None]
+SeeDown = Callable[[str, str], None]
+"""Told a part's name, and in a sentence how it has ended unexpectedly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """How a part is started; `needs` are files that must be there first, `made_of` those that it reads.
+
+    A part that runs is taken over by the next server where these hold the same as when it was started.
+    """
+
+    name: str
+    title: str
+    arguments: tuple[str, ...]
+    needs: tuple[Path, ...] = ()
+    made_of: tuple[Path, ...] = ()
+
+    def fingerprint(self) -> str:
+        """Tells apart what is started by this command, as its files are now."""
+        digest = hashlib.sha256(repr((self.arguments, VERSION, DEFINITIONS_HASH)).encode())
+        for path in self.made_of:
+            with suppress(OSError):
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
+        return digest.hexdigest()
+
+
+class Part:
+    """One supervised process; `run` is the folder that tells the next server of it."""
+
+    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, see_down: SeeDown) -> None:
+        self.command = command
+        self.state: State = "waiting"
+        self.since = clock.now()
+        self.problem = ""
+        self._log = log
+        self._logged_before = 0
+        self._pid_file = pid_file(run, command.name)
+        self._clock = clock
+        self._see_down = see_down
+        self._process: Process | AdoptedProcess | None = None
+        self._backoff = Backoff()
+        self._hung = ""
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number while it runs."""
+        return self._process.pid if self._process is not None and self.state == "running" else None
+
+    async def run(self) -> None:
+        """Keep the process running until this is cancelled; then end it."""
+        self._set("waiting")
+        try:
+            await self._adopt()
+            while True:
+                began = self._clock.now()
+                if self._process is None:
+                    await self._wait_for_needs()
+                    began = self._clock.now()
+                problem, killed = await self._run_once()
+                pause = self._backoff.after(self._clock.now() - began, killed=killed)
+                self._fail(problem, pause)
+                await asyncio.sleep(pause)
+        finally:
+            await self.end()
+            self._set("ended")
+
+    async def _adopt(self) -> None:
+        """Take over the process that a killed server has left, or end it where it is not the same."""
+        left = self._pid_file.read()
+        if left is None:
+            return
+        with suppress(OSError):
+            self._process = AdoptedProcess(left.pid, left.started)
+        if left.made != self.command.fingerprint():
+            await self.end()
+
+    async def _wait_for_needs(self) -> None:
+        while not all(path.exists() for path in self.command.needs):
+            if self.state != "failed":
+                self._set("waiting")
+            await asyncio.sleep(NEED_POLL_SECONDS)
+
+    async def _run_once(self) -> tuple[str, bool]:
+        """Run the process to its end. Returns what happened, in words, and whether a signal ended it."""
+        try:
+            process = self._process = self._process or self._start()
+        except OSError as problem:
+            program = self.command.arguments[0]
+            return f"cannot be started: {program}: {problem.strerror}. Build it with “make firmware”", False
+        self._set("running")
+        trimming = asyncio.create_task(self._trim())
+        try:
+            status = await process.wait()
+        finally:
+            trimming.cancel()
+        self._let_go()
+        if self._hung:
+            words, self._hung = self._hung, ""
+            return words, True
+        last = self._log.last(LINES_TOLD, self._logged_before)
+        words = describe_status(status) + (f". Its last words: {last}" if last else "")
+        return words, status is None or status < 0
+
+    def _start(self) -> Process:
+        self._logged_before = self._log.size()
+        with self._log.open() as output:
+            process = Process(self.command.arguments, output)
+        try:
+            self._pid_file.write(process.pid, self.command.fingerprint())
+        except OSError as problem:
+            log.warning("%s: the next server will not find it: %s", self.command.name, problem)
+        return process
+
+    async def _trim(self) -> None:
+        while True:
+            self._log.trim()
+            await asyncio.sleep(TRIM_SECONDS)
+
+    def _let_go(self) -> None:
+        assert self._process is not None
+        self._process.close()
+        self._process = None
+        self._pid_file.remove()
+
+    def _fail(self, problem: str, pause: float) -> None:
+        self.problem = problem
+        self._set("failed")
+        text = f"The {self.command.title} {problem}. It is started again {describe_pause(pause)}."
+        self._see_down(self.command.name, text)
+
+    async def end(self) -> None:
+        """End the process, also one that a killed server has left and that was not taken over yet."""
+        if self._process is None and (left := self._pid_file.read()) is not None:
+            with suppress(OSError):
+                self._process = AdoptedProcess(left.pid, left.started)
+        if self._process is None:
+            return
+        self._process.signal(signal.SIGTERM)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(TERM_SECONDS):
+                await self._process.wait()
+        self._let_go()
+
+    def end_hung(self, problem: str) -> None:
+        """End a process that no longer listens; `problem` goes on after its name. It is started again."""
+        if self._process is not None:
+            self._hung = problem
+            self._process.signal(signal.SIGKILL)
+
+    async def pause(self, why: str) -> None:
+        """End the process on purpose; `why` is a sentence."""
+        await self.end()
+        self.problem = why
+        self._set("paused")
+
+    def _set(self, state: State) -> None:
+        self.state = state
+        self.since = self._clock.now()
+
+
+class Parts:
+    """All parts of this robot, by name."""
+
+    def __init__(
+        self, commands: Sequence[Command], folder: DataFolder, clock: Clock, see_down: SeeDown
+    ) -> None:
+        self._run = folder.run
+        self._parts = {
+            command.name: Part(
+                command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
+            )
+            for command in commands
+        }
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+
+    async def end_others(self) -> None:
+        """End what a killed server has left and this one does not have, such as another mode's board."""
+        await asyncio.to_thread(end_parts, self._run, self._parts)
+
+    def start(self) -> None:
+        """Start everything, each as soon as what it needs is there; what is paused is not started."""
+        for name, part in self._parts.items():
+            if part.state != "paused":
+                self._tasks[name] = asyncio.create_task(part.run())
+
+    async def stop(self) -> None:
+        """End every process, also what a killed server has left, and wait until they are gone."""
+        tasks = self._tasks.values()
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        await asyncio.gather(*(part.end() for part in self._parts.values()))
+
+    async def pause(self, name: str, why: str) -> None:
+        """End a part, and leave it so until it is resumed; `why` is a sentence for a person."""
+        task = self._tasks.pop(name, None)
+        if task is not None:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if name in self._parts:
+            await self._parts[name].pause(why)
+
+    def resume(self, name: str) -> None:
+        """Start a part that was paused."""
+        part = self._parts.get(name)
+        if part is not None and part.state == "paused":
+            self._tasks[name] = asyncio.create_task(part.run())
+
+    def get(self, name: str) -> Part | None:
+        """The part of this name; None where this robot has none."""
+        return self._parts.get(name)
+
+
+def plan(settings: Settings) -> list[Command]:
+    """What must run for this robot, in the order in which one needs the other."""
+    folder, build = settings.data, settings.build
+    runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
+    runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]
+    runtime_files = (settings.config,)
+    if settings.mode == "robot":
+        # Nothing ends it but a server: it is what keeps a robot under water in hand.
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
+    lock = ("--server-lock", str(folder.lock))
+    simulator = [sys.executable, "-m", "robot_runtime.simulation"]
+    if settings.in_the_loop:
+        simulator += ["--in-the-loop", "--connect", f"unixsock-stream/{folder.runtime_socket}"]
+    else:
+        simulator += ["--board", str(folder.board_socket)]
+        for socket in (folder.runtime_socket, folder.server_socket, folder.scene_socket):
+            simulator += ["--connect", f"unixsock-stream/{socket}"]
+    simulator += ["--robot", settings.robot, *lock]
+    needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
+    water = Command("simulator", "simulator", tuple(simulator), needs)
+    scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
+    scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
+    for socket in (folder.runtime_socket, folder.server_socket):
+        scene += ["--connect", f"unixsock-stream/{socket}"]
+    scene += ["--robot", settings.robot, *lock]
+    sight = Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
+    if not settings.emulated_board:
+        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water, sight]
+    runtime += ["--port", str(folder.board_tty), *lock]
+    program = build / "board"
+    elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
+    # The communication test uploads its sketches to this board, as to a real one.
+    bootloader = build / "firmware" / "optiboot.hex"
+    board = [str(program), "--elf", str(elf), "--bootloader", str(bootloader)]
+    board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
+    board += ["--eeprom", str(folder.board_eeprom), *lock]
+    return [
+        Command("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
+        Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
+        water,
+        sight,
+    ]

@@ -1,1 +1,0 @@
-"""The HTTP and WebSocket interface, one module for each part of it."""

@@ -1,0 +1,294 @@
+"""The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
+
+What they send passes through a `Source` each, which asks again for what did not arrive. Zenoh calls back in
+its own threads. What arrives is put into a queue. An arrival wakes the event loop, which empties it at once,
+or `ROUND_SECONDS` after it was emptied last.
+"""
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.topics import BY_NAME, Block, read_blocks
+from robot_runtime.control.pilot import PILOT
+from robot_runtime.errors import Refused
+from robot_runtime.transport.lifetime import HEARTBEAT
+from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.replay_cache import Kept, write_question
+from robot_runtime.transport.zenoh_transport import Messages, NoAnswer, Subscription
+from server.features.sessions.chunks import RECORDED
+from server.platform.settings import Settings, SetupError
+from server.stream.gap_filler import Source
+
+log = logging.getLogger(__name__)
+
+ROUND_SECONDS = 0.024
+"""The lever between latency and cost: waking the event loop costs more than what there is to do in it."""
+QUEUE_MAX = 20_000
+"""Blocks that wait while the event loop is held up; far more than can be normal."""
+ANSWER_SECONDS = 2.0
+COMMANDS_AT_ONCE = 4
+BLOCK_BYTES_MAX = 4_000_000
+KEPT_SECONDS = 3.0
+KEPT_PAUSE = 0.1
+"""s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
+CONTACT_SECONDS = 10.0
+"""For which a server that starts waits for processes that a killed one has left."""
+
+_TRUTH, _NOTICE = BY_NAME["truth"], BY_NAME["notice"]
+SENT_BY = {
+    "runtime": tuple(one for one in RECORDED if one not in (_TRUTH, _NOTICE)),
+    "simulator": (_TRUTH,),
+}
+"""What the processes send that number it; notices are the server's own."""
+
+
+QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
+"""Where the processes answer for what they have kept."""
+
+
+class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
+    """The runtime did not answer; `waited` says whether it was there to be asked at all."""
+
+    def __init__(self, text: str, waited: bool) -> None:
+        super().__init__(text)
+        self.waited = waited
+
+
+class Bridge:
+    """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order.
+
+    Nothing is delivered before `go_on`.
+    """
+
+    def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
+        self.damaged = 0
+        self.on_stop: Callable[[], None] | None = None
+        """Called when somebody says STOP."""
+        self.lent: str | None = None
+        """Why nobody commands the robot now, on purpose; None where it is as always."""
+        self.stopped = False
+        """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
+        self._settings = settings
+        self._deliver = deliver
+        self._queue: deque[tuple[str, bytes, str]] = deque(maxlen=QUEUE_MAX)
+        self._sources = {
+            name: Source(topics, partial(self._ask_kept, name), self._pass_on)
+            for name, topics in SENT_BY.items()
+        }
+        self._ready: list[Block] = []
+        self._emptying = False
+        self._resting = True
+        """Nothing is about to empty the queue: whoever puts something into it wakes the event loop."""
+        self._pictures: dict[str, Subscription] = {}
+        # STOP has threads of its own: it must not wait behind commands that nobody answers.
+        self._stops = ThreadPoolExecutor(2, "stop")
+        self._commands = ThreadPoolExecutor(COMMANDS_AT_ONCE, "command")
+        self._leases = ThreadPoolExecutor(1, "lease")
+        self._asking = 0
+
+    async def open(self) -> None:
+        """Join the conversation; the others may come and go at any time. Raises SetupError."""
+        self._loop = asyncio.get_running_loop()
+        folder = self._settings.data
+        try:
+            self._messages = await asyncio.to_thread(
+                Messages,
+                self._settings.robot,
+                listen=[f"unixsock-stream/{folder.server_socket}"],
+                connect=[f"unixsock-stream/{folder.runtime_socket}"],
+            )
+        except OSError as problem:
+            raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
+        self._messages.subscribe_runs(STREAM, self._receive)
+
+    async def catch_up(self, names: Iterable[str]) -> dict[str, Kept]:
+        """What the running processes of these names have kept; those that do not answer are left out."""
+        asked = [name for name in names if name in self._sources]
+        answers = await asyncio.gather(*map(self._contact, asked))
+        return {name: kept for name, kept in zip(asked, answers, strict=True) if kept is not None}
+
+    def go_on(self, kept: Mapping[str, Kept]) -> None:
+        """Deliver what was kept, by the processes' names, and from now on what arrives."""
+        for name, source in self._sources.items():
+            source.go_on(kept.get(name))
+
+    def beat(self) -> None:
+        """Let the runtime know that the server lives."""
+        self._messages.publish(HEARTBEAT, b"")
+
+    @property
+    def run(self) -> str:
+        """Of the runtime's process, as it was last heard; empty before."""
+        return self._sources["runtime"].run
+
+    def drive(self, command: bytes) -> None:
+        """Send the runtime what the driver does; where nobody listens it is lost."""
+        self._messages.publish(PILOT, command)
+
+    async def tell_lease(self, epoch: int) -> None:
+        """Have the runtime drop driving commands of earlier epochs. Raises Refused, or RuntimeSilent."""
+        try:
+            await self._loop.run_in_executor(
+                self._leases, lambda: self._messages.ask("command/lease", {"epoch": epoch}, ANSWER_SECONDS)
+            )
+        except NoAnswer as problem:
+            raise RuntimeSilent(str(problem), waited=False) from problem
+
+    def watch_pictures(self, wanted: frozenset[str]) -> None:
+        """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
+        for name in self._pictures.keys() - wanted:
+            self._pictures.pop(name).close()
+        for name in wanted - self._pictures.keys():
+            self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
+
+    async def command(self, name: str, payload: Mapping[str, Any]) -> None:
+        """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
+        if name == "stop" and self.on_stop is not None:
+            self.on_stop()
+        await self._ask(f"command/{name}", payload, stop=name == "stop")
+
+    async def tune(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Have the runtime do what may change parameters; what it changed. Raises as `command` does."""
+        return await self._ask(f"command/{name}", payload, stop=False)
+
+    async def disarm(self) -> None:
+        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilent."""
+        await self._ask("command/stop", {}, stop=True)
+
+    async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the simulator answers. Raises Refused with its reason, or RuntimeSilent."""
+        return await self._ask(f"simulator/{name}", payload, stop=False)
+
+    async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
+        """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
+        return await self._ask(f"query/{name}", question or {}, stop=False)
+
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the simulated scene answers. Raises Refused with its reason, or RuntimeSilent."""
+        try:
+            return await self._ask(f"scene/{name}", payload, stop=False)
+        except RuntimeSilent as problem:
+            raise RuntimeSilent(
+                "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
+            ) from problem
+
+    async def close(self) -> None:
+        """Leave the conversation."""
+        for source in self._sources.values():
+            await source.close()
+        self._stops.shutdown(wait=False, cancel_futures=True)
+        self._commands.shutdown(wait=False, cancel_futures=True)
+        self._leases.shutdown(wait=False, cancel_futures=True)
+        await asyncio.to_thread(self._messages.close)
+
+    async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
+        if self.lent is not None and not stop:
+            raise Refused(self.lent)
+        if not stop and self._asking >= COMMANDS_AT_ONCE:
+            raise RuntimeSilent(
+                "The robot's runtime is still busy with earlier commands. Try again.", waited=False
+            )
+        self._asking += not stop
+        started = self._loop.time()
+        try:
+            return await self._loop.run_in_executor(
+                self._stops if stop else self._commands,
+                lambda: self._messages.ask(name, payload, ANSWER_SECONDS),
+            )
+        except NoAnswer as problem:
+            if stop and self.stopped:
+                return {}
+            waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
+            raise RuntimeSilent(_silence(name, waited), waited) from problem
+        finally:
+            self._asking -= not stop
+
+    async def _contact(self, name: str) -> Kept | None:
+        wanted, kept = self._sources[name].everything(), None
+        with suppress(TimeoutError):
+            async with asyncio.timeout(CONTACT_SECONDS):
+                while kept is None:
+                    kept = await self._ask_kept(name, wanted, CONTACT_SECONDS)
+        return kept
+
+    async def _ask_kept(
+        self, name: str, wanted: Mapping[str, int], seconds: float = KEPT_SECONDS
+    ) -> Kept | None:
+        end = self._loop.time() + seconds
+        while self._loop.time() < end:
+            try:
+                return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted, seconds)
+            except NoAnswer:
+                await asyncio.sleep(KEPT_PAUSE)
+            except (Refused, LayoutError) as problem:
+                log.warning("what the %s has kept cannot be had: %s", name, problem)
+                break
+        return None
+
+    def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> Kept:
+        return Kept.from_bytes(self._messages.ask_bytes(question, write_question(wanted), seconds))
+
+    def _receive(self, name: str, data: bytes, run: str) -> None:
+        """Called in Zenoh's thread."""
+        self._queue.append((name, data, run))
+        if self._resting:
+            self._resting = False
+            try:
+                self._loop.call_soon_threadsafe(self._drain)
+            except RuntimeError:
+                log.debug("a block of %s came after the end", name)
+
+    def _drain(self) -> None:
+        if not self._queue:
+            self._resting = True
+            # What came before that line has woken nobody.
+            if not self._queue:
+                return
+            self._resting = False
+        self._empty_queue()
+        self._loop.call_later(ROUND_SECONDS, self._drain)
+
+    def _empty_queue(self) -> None:
+        self._emptying = True
+        while self._queue:
+            name, data, run = self._queue.popleft()
+            try:
+                if len(data) > BLOCK_BYTES_MAX:
+                    raise LayoutError(f"{len(data)} bytes are too many")
+                blocks = read_blocks(data)
+            except LayoutError as problem:
+                self.damaged += 1
+                log.warning("a message of %s was thrown away: %s", name, problem)
+                continue
+            if name != STREAM:
+                self._pass_on(blocks)
+            elif blocks:
+                sender = "simulator" if blocks[0].topic is _TRUTH else "runtime"
+                self._sources[sender].take(run, blocks)
+        self._emptying = False
+        self._hand_over()
+
+    def _pass_on(self, blocks: list[Block]) -> None:
+        self._ready += blocks
+        if not self._emptying:
+            self._hand_over()
+
+    def _hand_over(self) -> None:
+        blocks, self._ready = self._ready, []
+        if blocks:
+            self._deliver(blocks)
+
+
+def _silence(name: str, waited: bool) -> str:
+    if name.startswith("simulator/"):
+        return "The simulator does not answer. The System page tells more."
+    if waited:
+        return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. The System page tells more."
+    return "The robot's runtime is not running. The server starts it again; try again in a few seconds."

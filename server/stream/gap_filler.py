@@ -1,0 +1,123 @@
+"""What a process of the robot sends, made whole: what did not reach the server is asked for again.
+
+Samples are numbered by topic, and whoever sends them keeps those of the last minutes
+(`robot_runtime.transport.replay_cache`).
+While a question for them is out, what arrives waits, so that everything is passed on in order and once.
+"""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+
+from robot_runtime.contract.topics import Block, Topic
+from robot_runtime.transport.replay_cache import Kept
+
+Ask = Callable[[Mapping[str, int]], Awaitable[Kept | None]]
+"""Asks for the blocks from these numbers on, by the topics' names; None where nobody answers."""
+
+
+class Source:
+    """One process, through any number of its runs, and what only it sends.
+
+    `deliver` is called with its blocks, in order. At first everything waits, until `go_on`.
+    """
+
+    def __init__(self, topics: Sequence[Topic], ask: Ask, deliver: Callable[[list[Block]], None]) -> None:
+        self.topics = topics
+        self._ask = ask
+        self._deliver = deliver
+        self.run = ""
+        """Of the process, as it was last heard; empty before."""
+        self._over: set[str] = set()
+        self._expected: dict[int, int] = {}
+        self._asked: dict[str, int] = {}
+        self._waiting: list[tuple[str, list[Block]]] = []
+        self._waits = True
+        self._asking: asyncio.Task[None] | None = None
+
+    def everything(self) -> dict[str, int]:
+        """The question for all that is kept."""
+        return {topic.name: 0 for topic in self.topics}
+
+    def go_on(self, kept: Kept | None) -> None:
+        """Pass on what the process has kept, where it has told, and then what arrives."""
+        self._waits = False
+        self._merge(kept)
+
+    def take(self, run: str, blocks: list[Block]) -> None:
+        """Blocks have arrived from this run of the process; where it has no name, nothing is asked for."""
+        if self._waits:
+            self._waiting.append((run, blocks))
+        elif not run or run in self._over:
+            self._deliver(blocks)
+        elif run != self.run:
+            self._catch_up(run, blocks, self.everything())
+        elif self._follow(blocks) or self._follow(blocks := self._fresh(blocks)):
+            self._pass_on(blocks)
+        else:
+            numbers = {topic.name: self._expected.get(topic.id, 0) for topic in self.topics}
+            if numbers == self._asked:
+                # It was asked for these already, and has not got them: they stay missing.
+                self._pass_on(blocks)
+            else:
+                self._asked = numbers
+                self._catch_up(run, blocks, numbers)
+
+    async def close(self) -> None:
+        """Ask no more."""
+        if self._asking is not None:
+            self._asking.cancel()
+            await asyncio.gather(self._asking, return_exceptions=True)
+
+    def _catch_up(self, run: str, blocks: list[Block], wanted: Mapping[str, int]) -> None:
+        self._waits = True
+        self._waiting.append((run, blocks))
+        self._asking = asyncio.create_task(self._ask_and_merge(run, wanted))
+
+    async def _ask_and_merge(self, run: str, wanted: Mapping[str, int]) -> None:
+        kept = await self._ask(wanted)
+        if kept is not None and kept.run != run:
+            # Another run by now, whose numbers begin anew.
+            kept = await self._ask(self.everything())
+        self.go_on(kept)
+
+    def _merge(self, kept: Kept | None) -> None:
+        waiting, self._waiting = self._waiting, []
+        first = waiting[0][0] if waiting else ""
+        if kept is None:
+            # Whatever is missing stays so.
+            self._begin(first or self.run)
+        elif kept.run != self.run:
+            if first != kept.run:
+                self._over.add(first)
+            for run, blocks in waiting:
+                if run == self.run:
+                    self._pass_on(self._fresh(blocks))
+            waiting = [(run, blocks) for run, blocks in waiting if run != self.run]
+            self._begin(kept.run)
+        if kept is not None:
+            self._pass_on(self._fresh(kept.blocks))
+            self._expected = {topic.id: kept.next.get(topic.name, 0) for topic in self.topics}
+        for run, blocks in waiting:
+            self.take(run, blocks)
+
+    def _begin(self, run: str) -> None:
+        if run != self.run:
+            self._over.add(self.run)
+        self.run, self._expected, self._asked = run, {}, {}
+
+    def _follow(self, blocks: list[Block]) -> bool:
+        expected = dict(self._expected)
+        for block in blocks:
+            if expected.get(block.topic.id, block.first) != block.first:
+                return False
+            expected[block.topic.id] = block.following
+        return True
+
+    def _fresh(self, blocks: list[Block]) -> list[Block]:
+        return [block for block in blocks if block.after(self._expected.get(block.topic.id, block.first))]
+
+    def _pass_on(self, blocks: list[Block]) -> None:
+        for block in blocks:
+            self._expected[block.topic.id] = block.following
+        if blocks:
+            self._deliver(blocks)

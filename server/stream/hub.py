@@ -1,0 +1,283 @@
+"""Everything to every open page, without one page ever holding up another, the recorder or the robot.
+
+Rows go through one lane that all clients share: who falls behind loses the oldest and is told how many.
+Documents go through a second lane and are never skipped: who falls behind too far is sent away with a
+reason, and finds the rest in the recording. Of pictures there is only the newest. A send that hangs for
+`STALL_SECONDS` ends the connection; measured: the alternatives freeze everybody or fill the memory.
+"""
+
+import asyncio
+import json
+from collections import deque
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from robot_runtime.clock import Clock
+from robot_runtime.contract.topics import Block, Kind
+from server.stream.broadcast import History, Lane, Totals
+
+HISTORY_SECONDS = 600.0
+HISTORY_TOPIC_BYTES = 4_000_000
+"""At the robot's full rate all topics together have 7 MB in ten minutes, the largest 2.3 MB."""
+FIRST_SECONDS = 65.0
+"""Of rows, what every page gets when it connects: a minute's chart. What shows more asks for it."""
+HISTORY_MESSAGE_BYTES = 256_000
+"""Small enough that one of them passes a poor radio link within `STALL_SECONDS`."""
+HISTORY_ROUNDS = 10
+ROWS_MESSAGES, ROWS_BYTES = 200, 1_000_000
+DOCUMENTS_MESSAGES, DOCUMENTS_BYTES = 2_000, 2_000_000
+ANSWERS_MAX = 64
+CLIENTS_MAX = 50
+STALL_SECONDS = 5.0
+WATCH_SECONDS = 1.0
+TRY_AGAIN_LATER = 1013
+"""WebSocket close code for a client that the server cannot go on serving now."""
+POLICY_VIOLATION = 1008
+"""WebSocket close code for a client that may not go on."""
+
+Send = Callable[[bytes | str], Awaitable[None]]
+_NO_PICTURE = (0, b"")
+
+
+class Evicted(Exception):  # noqa: N818 - it says what happened
+    """A client cannot be served any longer; the text is the reason that it is told, `code` WebSocket's."""
+
+    def __init__(self, reason: str, code: int = TRY_AGAIN_LATER) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class Client:
+    """One open socket: its places in the lanes, and what is for it alone."""
+
+    def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
+        self.device = device
+        self.sending_since: float | None = None
+        self.dismissal: Evicted | None = None
+        self._hub = hub
+        self._raw_send = send
+        self._clock = clock
+        self._wake = asyncio.Event()
+        self._answers: deque[str] = deque()
+        self._newest: dict[str, str] = {}
+        self._rows = self._documents = 0
+        self._seen: Totals = {}
+        self._pictures: dict[str, int] = {}
+        self.watching = frozenset({"picture"})
+        """Topics of pictures that it wants."""
+
+    def answer(self, message: dict[str, Any]) -> None:
+        """Send this soon, in order. Raises Evicted where too many answers already wait to be read."""
+        if len(self._answers) >= ANSWERS_MAX:
+            raise Evicted("Too many answers wait unread.")
+        # In ASCII: what a client has said may hold halves of characters, which no other text can.
+        self._answers.append(json.dumps(message))
+        self._wake.set()
+
+    def tell(self, kind: str, text: str) -> None:
+        """Send this soon; of each kind only the newest."""
+        self._newest[kind] = text
+        self._wake.set()
+
+    def wake(self) -> None:
+        """Something new is in a lane."""
+        self._wake.set()
+
+    async def run(self) -> None:
+        """Send the past, then the present, for ever. Raises Evicted where the client is too slow."""
+        await self._send_history()
+        while True:
+            while self._behind:
+                await self._send_one()
+            self._wake.clear()
+            await self._wake.wait()
+
+    async def _send_history(self) -> None:
+        tick, start = -1, self._clock.now() - FIRST_SECONDS
+        for _ in range(HISTORY_ROUNDS):
+            groups, tick = self._hub.history.since(tick, HISTORY_MESSAGE_BYTES, start), self._hub.tick
+            self._rows, self._documents = self._hub.rows.end, self._hub.documents.end
+            self._seen = self._hub.rows.totals
+            for group in groups:
+                while self._answers or self._newest:
+                    await self._send_one()
+                await self._send(b"".join(group))
+            if self._hub.rows.first <= self._rows and self._hub.documents.first <= self._documents:
+                return
+        raise Evicted("The connection is slower than what the robot sends.")
+
+    @property
+    def _behind(self) -> bool:
+        """Whether there is anything to be sent."""
+        hub = self._hub
+        if self._rows < hub.rows.end or self._documents < hub.documents.end:
+            return True
+        return bool(self._answers or self._newest or self._picture)
+
+    @property
+    def _picture(self) -> str | None:
+        """The topic of a picture that it wants and has not got."""
+        for topic in self.watching:
+            if self._pictures.get(topic, 0) < self._hub.pictures.get(topic, _NO_PICTURE)[0]:
+                return topic
+        return None
+
+    async def _send_one(self) -> None:
+        """Send what is most urgent, if there is anything."""
+        hub = self._hub
+        if self._answers:
+            await self._send(self._answers.popleft())
+        elif self._newest:
+            await self._send(self._newest.pop(next(iter(self._newest))))
+        elif self._documents < hub.documents.end:
+            if self._documents < hub.documents.first:
+                raise Evicted(
+                    "The connection fell too far behind; the rest is in the recording, if there is one."
+                )
+            self._documents += 1
+            await self._send(hub.documents.get(self._documents - 1).data)
+        elif self._rows < hub.rows.end:
+            await self._send_rows()
+        elif (topic := self._picture) is not None:
+            self._pictures[topic], picture = hub.pictures[topic]
+            await self._send(picture)
+
+    async def _send_rows(self) -> None:
+        lane = self._hub.rows
+        if self._rows < lane.first:
+            for topic, count in lane.lost(self._seen):
+                self.answer({"op": "dropped", "topic": topic.name, "count": count})
+            self._rows = lane.first
+        message = lane.get(self._rows)
+        self._rows += 1
+        self._seen = message.after
+        await self._send(message.data)
+
+    async def _send(self, data: bytes | str) -> None:
+        self.sending_since = self._clock.now()
+        await self._raw_send(data)
+        self.sending_since = None
+
+
+class Hub:
+    """Takes in blocks and hands them to all clients; `audience` is called with what pictures they want."""
+
+    def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
+        self.rows = Lane(ROWS_MESSAGES, ROWS_BYTES)
+        self.documents = Lane(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
+        self.history = History(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
+        self.tick = 0
+        self.pictures: dict[str, tuple[int, bytes]] = {}
+        """The newest of each topic that somebody wants, and its number."""
+        self._picture_number = 0
+        self._watched: frozenset[str] = frozenset()
+        self._clock = clock
+        self._audience = audience
+        self._clients: dict[Client, asyncio.Task[None]] = {}
+        self._newest: dict[str, str] = {}
+
+    @property
+    def clients(self) -> int:
+        """How many sockets are open."""
+        return len(self._clients)
+
+    def add(self, blocks: list[Block]) -> None:
+        """Hand these blocks to everybody, as one message each for rows and for documents."""
+        self.tick += 1
+        now = self._clock.now()
+        rows: list[Block] = []
+        documents: list[Block] = []
+        for block in blocks:
+            if block.topic.name == "thumbnail":
+                continue
+            if block.topic.kind is Kind.PICTURE:
+                self._picture_number += 1
+                if block.topic.name in self._watched:
+                    self.pictures[block.topic.name] = (self._picture_number, block.data)
+                continue
+            self.history.add(block, self.tick, now)
+            (rows if block.topic.kind is Kind.ROWS else documents).append(block)
+        if not self._clients:
+            return
+        if rows:
+            self.rows.append(rows)
+        if documents:
+            self.documents.append(documents)
+        for client in self._clients:
+            client.wake()
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Tell everybody, now and on connecting; of each `op` only the newest."""
+        kind, text = message["op"], json.dumps(message, ensure_ascii=False)
+        if self._newest.get(kind) == text:
+            return
+        self._newest[kind] = text
+        for client in self._clients:
+            client.tell(kind, text)
+
+    def show(self, client: Client, topics: frozenset[str]) -> None:
+        """Give this client pictures of these topics and of no other."""
+        client.watching = topics
+        self._count_audience()
+        client.wake()
+
+    def dismiss(self, device: int, reason: str) -> None:
+        """End all connections of this device, and tell it why."""
+        for client in self._clients:
+            if client.device == device:
+                self._end(client, Evicted(reason, POLICY_VIOLATION))
+
+    async def serve(
+        self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]], device: int
+    ) -> None:
+        """Serve one socket of a device until `receive` returns. Raises Evicted with the reason where it must
+        go.
+        """
+        if len(self._clients) >= CLIENTS_MAX:
+            raise Evicted(f"{CLIENTS_MAX} pages are open already; close one.")
+        client = Client(self, send, self._clock, device)
+        client.answer(greeting)
+        for kind, text in self._newest.items():
+            client.tell(kind, text)
+        sender = asyncio.create_task(client.run())
+        receiver = asyncio.ensure_future(receive(client))
+        self._clients[client] = sender
+        self._count_audience()
+        try:
+            await asyncio.wait({sender, receiver}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._leave(client)
+            sender.cancel()
+            receiver.cancel()
+            outcomes = await asyncio.gather(sender, receiver, return_exceptions=True)
+        if client.dismissal is not None:
+            raise client.dismissal
+        for outcome in outcomes:
+            if isinstance(outcome, Exception):
+                raise outcome
+
+    async def watch(self) -> None:
+        """End connections that have stopped reading, for ever."""
+        while True:
+            await asyncio.sleep(WATCH_SECONDS)
+            limit = self._clock.now() - STALL_SECONDS
+            for client in self._clients:
+                if client.sending_since is not None and client.sending_since < limit:
+                    self._end(client, Evicted(f"Nothing was read for {STALL_SECONDS:g} s."))
+
+    def _end(self, client: Client, reason: Evicted) -> None:
+        client.dismissal = reason
+        self._clients[client].cancel()
+
+    def _leave(self, client: Client) -> None:
+        del self._clients[client]
+        self._count_audience()
+
+    def _count_audience(self) -> None:
+        wanted = frozenset[str]().union(*(client.watching for client in self._clients))
+        if wanted == self._watched:
+            return
+        self._watched = wanted
+        for topic in self.pictures.keys() - wanted:
+            del self.pictures[topic]
+        self._audience(wanted)

@@ -1,0 +1,54 @@
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.documents import Event
+from robot_runtime.contract.packets import Packet, Sense
+from robot_runtime.control.hil_feed import SILENCE, InTheLoop
+
+WORD = Sense(
+    pressure=101_325,
+    temperature=20.0,
+    rate=(0.0, 0.0, 0.0),
+    force=(0.0, 0.0, -9.81),
+    right=1,
+    left=0,
+    battery=8.2,
+)
+
+
+class Rig:
+    def __init__(self) -> None:
+        self.clock = SimulatedClock(100.0)
+        self.sent: list[Packet] = []
+        self.events: list[Event] = []
+        self.loop = InTheLoop(self.clock, self.sent.append, self.events.append)
+
+
+def test_a_word_goes_on_to_the_board_as_it_is() -> None:
+    rig = Rig()
+    rig.loop.hear(WORD.to_bytes())
+    assert [packet.to_bytes() for packet in rig.sent] == [WORD.to_bytes()]
+    assert rig.loop.refusals() == []
+
+
+def test_its_coming_is_told_once_and_its_going_is_known() -> None:
+    rig = Rig()
+    rig.loop.tick()
+    assert rig.events == []
+    assert "There is no simulator" in rig.loop.refusals()[0]
+    rig.loop.hear(WORD.to_bytes())
+    for _ in range(3):
+        rig.loop.tick()
+    rig.clock.forward(SILENCE * 1.01)
+    for _ in range(3):
+        rig.loop.tick()
+    assert [(event.kind, event.severity) for event in rig.events] == [("simulator", "info")]
+    assert rig.loop.lost
+    assert rig.loop.refusals() != []
+
+
+def test_what_is_no_word_is_dropped_and_does_not_count(caplog: pytest.LogCaptureFixture) -> None:
+    rig = Rig()
+    rig.loop.hear(WORD.to_bytes()[:-1])
+    assert (rig.sent, rig.loop.present) == ([], False)
+    assert "no Sense" in caplog.text

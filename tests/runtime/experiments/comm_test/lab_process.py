@@ -1,0 +1,72 @@
+"""The lab as a process, as the server starts it."""
+
+import json
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from typing import IO, Any
+
+from robot_runtime.experiments.comm_test.document import CommTest
+from tests.board.rig import ROOT
+
+LIMIT = 110.0
+"""s of real time for its end."""
+COMMAND = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--build", str(ROOT / "build")]
+Event = dict[str, Any]
+
+
+def write_document(*tests: CommTest) -> bytes:
+    return json.dumps([asdict(test) for test in tests]).encode()
+
+
+@contextmanager
+def lab(document: bytes, *options: str) -> Iterator[subprocess.Popen[bytes]]:
+    """It runs, has read the document, and is killed at the end if it still runs."""
+    command = [*COMMAND, *options]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT
+    ) as process:
+        try:
+            assert process.stdin
+            process.stdin.write(document)
+            process.stdin.close()
+            process.stdin = None
+            yield process
+        finally:
+            if process.poll() is None:
+                process.kill()
+
+
+def read_until(output: IO[bytes] | None, **wanted: Any) -> list[Event]:
+    """The events up to the first with these values."""
+    assert output
+    events: list[Event] = []
+    for line in output:
+        events.append(json.loads(line))
+        if wanted.items() <= events[-1].items():
+            return events
+    raise AssertionError(f"{wanted} is not among {events}")
+
+
+def run_lab(document: bytes, *options: str) -> tuple[int, list[Event]]:
+    """Its exit status and all that it told."""
+    with lab(document, *options) as process:
+        return _rest(process)
+
+
+def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
+    """SIGTERM: its exit status and what it tells from then on."""
+    # The end of a parent with threads sends several.
+    for _ in range(20):
+        process.send_signal(signal.SIGTERM)
+    return _rest(process)
+
+
+def _rest(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
+    told, errors = process.communicate(timeout=LIMIT)
+    # An upload in real time may have to be tried again where the computer is busy.
+    assert [line for line in errors.splitlines() if not line.endswith(b"; trying again")] == []
+    return process.returncode, [json.loads(line) for line in told.splitlines()]

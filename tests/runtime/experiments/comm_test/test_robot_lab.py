@@ -1,0 +1,106 @@
+"""The lab on the robot's own board, in real time; an emulated board at 1x plays the Arduino."""
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from time import monotonic
+
+import pytest
+
+from robot_runtime.experiments.comm_test.faults import Faults
+from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
+from robot_runtime.experiments.comm_test.runner import BOOTLOADER
+from robot_runtime.link.port import Port
+from robot_runtime.link.session import Session, Stage
+from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from tests.board.host import BAUD
+from tests.board.rig import ROOT, build, wait_for
+from tests.runtime.experiments.comm_test.conftest import make_test
+from tests.runtime.experiments.comm_test.lab_process import cancel, lab, read_until, run_lab, write_document
+
+SHORT = make_test(framing="plain", to_val=21, expected=20)
+ROBOT = ROOT / "build/firmware/robot.hex"
+
+
+@pytest.fixture
+def arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+    """A board with the robot's firmware and a boot loader; opening its port resets it, as on many boards."""
+    with start_board(program, tmp_path, "--reset-on-open") as process:
+        yield process
+
+
+@pytest.fixture
+def bare_arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+    """The same, whose reset pin has to be pulled, as on the robot."""
+    with start_board(program, tmp_path) as process:
+        yield process
+
+
+def start_board(program: Path, folder: Path, *options: str) -> BoardProcess:
+    build(ROOT / "firmware", "robot")
+    bootloader = ("--bootloader", str(program.parent / BOOTLOADER))
+    return BoardProcess(
+        program, ROBOT.with_suffix(".elf"), folder / "tty", folder / "socket", *bootloader, *options
+    )
+
+
+def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
+    return ("--port", str(arduino.tty), "--reset", reset)
+
+
+def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
+    """The robot's firmware is uploaded, and answers a greeting once the boot loader has waited in vain."""
+    assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
+    session = Session(1, BAUD)
+    with Port(str(arduino.tty), BAUD) as port:
+        while session.stage is not Stage.ESTABLISHED:
+            port.write(session.poll(monotonic()))
+            if port.wait(session.due() - monotonic()):
+                list(session.receive(port.read(), monotonic()))
+            assert session.stage is not Stage.REFUSED
+
+
+def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:
+    faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
+    status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino))
+    assert (status, [event["state"] for event in events if event["event"] == "ended"]) == (
+        0,
+        ["complete"] * 2,
+    )
+    clean, harmed = (event["values"] for event in events if event["event"] == "cell")
+    assert (clean["rate"], clean["bytes_read"]) == (1.0, 40)
+    assert harmed["answered"]
+    assert harmed["bytes_lost"] > 0
+    check_restored(arduino)
+
+
+def test_a_board_whose_reset_pin_is_pulled(bare_arduino: BoardProcess) -> None:
+    reset = f"board:{bare_arduino.socket}"
+    linked = make_test(framing="robot", direction="both", to_val=21, expected=20)
+    status, events = run_lab(write_document(linked), "--where", "robot", *place(bare_arduino, reset))
+    assert (status, [event["values"]["rate"] for event in events if event["event"] == "cell"]) == (0, [1.0])
+    check_restored(bare_arduino, reset)
+
+
+def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) -> None:
+    slow = make_test(delay=(10.0,))
+    with lab(write_document(slow), "--where", "robot", *place(arduino)) as process:
+        read_until(process.stdout, event="phase", phase="run")
+        status, events = cancel(process)
+    assert (status, events[-1]["state"]) == (1, "cancelled")
+    check_restored(arduino)
+
+
+def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: BoardProcess) -> None:
+    with lab(write_document(SHORT), "--where", "robot", *place(arduino)) as process:
+        read_until(process.stdout, event="phase", phase="upload")
+        with arduino.connect() as board:
+            wait_for(lambda: board.stats()["bytes_to_board"] > 600, "the first pages")
+        process.send_signal(signal.SIGKILL)
+    check_restored(arduino)
+
+
+@pytest.mark.parametrize("spec", ["", "gpio", "gpio:4", "gpio:/dev/gpiochip0:x", "board:", "dtr:", "rts"])
+def test_a_reset_that_cannot_be_is_refused(spec: str) -> None:
+    with pytest.raises(ResetError, match="it must be gpio:CHIP:LINE, board:SOCKET or dtr"):
+        find_reset(spec)

@@ -1,0 +1,91 @@
+"""Uploads through the boot loader of a paused board: by the real avrdude, in whatever time it takes."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.experiments.comm_test import upload as module
+from robot_runtime.experiments.comm_test.builder import Builder
+from robot_runtime.experiments.comm_test.emulated_line import EmulatedLine
+from robot_runtime.experiments.comm_test.line import Stop, StoppedError
+from robot_runtime.experiments.comm_test.results import Cell, CellResult
+from robot_runtime.experiments.comm_test.runner import BOOTLOADER, run_cell
+from robot_runtime.experiments.comm_test.upload import UploadError, avrdude_version, upload_paused
+from robot_runtime.simulation.boards.emulator_process import Board, BoardProcess
+from tests.runtime.experiments.comm_test.conftest import make_test
+
+TEST, CELL = make_test(framing="robot"), Cell(115200, 0.0, 0.0)
+Empty = tuple[BoardProcess, Board]
+
+
+@pytest.fixture
+def empty(program: Path, tmp_path: Path) -> Iterator[Empty]:
+    """A board with nothing but its boot loader, and no time that passes."""
+    options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused")
+    with (
+        BoardProcess(program, None, tmp_path / "tty", tmp_path / "socket", *options) as process,
+        process.connect() as board,
+    ):
+        yield process, board
+
+
+def run_there(empty: Empty) -> CellResult:
+    process, board = empty
+    with EmulatedLine(board, process.tty, CELL.baud) as line:
+        return run_cell(TEST, CELL, line)
+
+
+def test_avrdude_says_which_it_is() -> None:
+    assert avrdude_version().startswith("avrdude version ")
+
+
+def test_how_an_upload_went_leaves_no_trace(builder: Builder, empty: Empty) -> None:
+    process, board = empty
+    product = builder.build(TEST, CELL.baud, 0.0)
+    upload_paused(product.hex, process.tty, board, Stop())
+    first = run_there(empty)
+    assert first.rate == 1.0
+    upload_paused(product.hex, process.tty, board, Stop())
+    board.run(0.3)  # the sketch runs, and counts its start in the EEPROM
+    upload_paused(product.hex, process.tty, board, Stop())
+    again = run_there(empty)
+    assert again == first
+
+
+def test_a_host_that_thinks_for_long_finds_the_boot_loader_waiting(
+    builder: Builder, empty: Empty, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Much longer between two looks than between two of avrdude's commands.
+    monkeypatch.setattr(module, "LOOK", 0.05)
+    process, board = empty
+    upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Stop())
+    assert board.stats()["time"] < 3.0
+    assert run_there(empty).rate == 1.0
+
+
+def test_a_board_without_a_boot_loader_is_told_in_avrdudes_words(
+    builder: Builder, program: Path, tmp_path: Path
+) -> None:
+    product = builder.build(TEST, CELL.baud, 0.0)
+    with (
+        BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+        process.connect() as board,
+        pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: .*not in sync") as told,
+    ):
+        upload_paused(product.hex, process.tty, board, Stop())
+    assert "\n" not in str(told.value)
+
+
+def test_an_upload_can_be_cancelled(builder: Builder, empty: Empty) -> None:
+    process, board = empty
+    stop = Stop()
+    stop.set()
+    with pytest.raises(StoppedError):
+        upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, stop)
+
+
+def test_without_avrdude_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(UploadError, match="install the package avrdude"):
+        avrdude_version()

@@ -1,0 +1,78 @@
+"""A scenario as a test writes it, run in simulated time, and what it told."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from robot_runtime.contract.topics import Kind, read_blocks, read_rows
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from robot_runtime.experiments.scenario.run import Run
+
+ROOT = Path(__file__).resolve().parents[4]
+POOL = 'kind = "pool"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0'
+
+
+def document(seconds: float, *events: str, seed: int = 7, scene: str = POOL, more: str = "") -> str:
+    """A scenario of so many seconds; each event is the inside of an inline table."""
+    happens = "".join(f"\n[[events]]\n{event.replace('; ', chr(10))}\n" for event in events)
+    head = f'name = "test"\ntitle = "Test"\nduration = {seconds}\nseed = {seed}\n'
+    control = '[control]\ncontroller = "pid"\nset_point = 0.6\n'
+    return f"{head}\n[scene]\n{scene}\n\n{control}\n{more}\n{happens}"
+
+
+class Told:
+    """All that a run told."""
+
+    def __init__(self) -> None:
+        self.on_event: Callable[[dict[str, Any]], None] = lambda _: None
+        self.events: list[dict[str, Any]] = []
+        self.rows: dict[str, list[tuple[float, Any]]] = {}
+        self.documents: dict[str, list[dict[str, Any]]] = {}
+        self.bytes = b""
+
+    def blocks(self, data: bytes) -> None:
+        """Take blocks apart."""
+        self.bytes += data
+        for block in read_blocks(data):
+            if block.topic.kind is Kind.ROWS:
+                self.rows.setdefault(block.topic.name, []).extend(read_rows(block))
+            elif block.topic.kind is Kind.DOCUMENTS:
+                self.documents.setdefault(block.topic.name, []).extend(json.loads(block.payload))
+
+    def event(self, event: str, **more: Any) -> None:
+        """Keep it."""
+        self.events.append({"event": event, **more})
+        self.on_event(self.events[-1])
+
+    def texts(self, topic: str) -> list[str]:
+        """The words of all the topic's documents."""
+        return [document["text"] for document in self.documents.get(topic, [])]
+
+    def time_of(self, topic: str, words: str) -> float:
+        """When the first document of this topic with these words came, s."""
+        return float(next(one["time"] for one in self.documents[topic] if words in one["text"]))
+
+    @property
+    def markers(self) -> list[tuple[float, str]]:
+        """Times and words of what was pointed out."""
+        return [(one["time"], one["text"]) for one in self.events if one["event"] == "marker"]
+
+    @property
+    def ended(self) -> dict[str, Any]:
+        """How it ended."""
+        assert self.events[-1]["event"] == "ended"
+        return self.events[-1]
+
+    def between(self, topic: str, start: float, end: float) -> list[Any]:
+        """The topic's records of this time."""
+        return [record for time, record in self.rows[topic] if start <= time < end]
+
+
+def perform(scenario: str | Scenario, board: str = "host", told: Told | None = None) -> Told:
+    """Run it to its end."""
+    told = told or Told()
+    read = read_scenario(scenario) if isinstance(scenario, str) else scenario
+    Run(read, boards()[board], told).perform(lambda firmware: {"firmware": str(len(firmware))})
+    return told

@@ -1,0 +1,238 @@
+"""Scenarios in simulated time, with the firmware that the robot has."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from math import dist
+from pathlib import Path
+from struct import Struct
+from typing import Any
+
+import pytest
+
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.run import AFTERWARDS, Run
+from robot_runtime.simulation.scene.availability import missing
+from tests.runtime.experiments.scenario.staging import ROOT, Told, document, perform
+
+SHIPPED = sorted((ROOT / "robot_runtime/experiments/scenario/shipped").glob("*.toml"))
+ARM = 'at = 0.5; do = "arm"'
+HEADER = Struct("<IB")
+
+
+def run_process(text: str, *options: str, hashes: str = "0") -> tuple[int, bytes]:
+    """The exit status and what the process wrote."""
+    command = [sys.executable, "-m", "robot_runtime.experiments.scenario", *options]
+    environment = {**os.environ, "PYTHONHASHSEED": hashes}
+    done = subprocess.run(command, cwd=ROOT, input=text.encode(), stdout=subprocess.PIPE, env=environment)
+    return done.returncode, done.stdout
+
+
+def read_messages(data: bytes) -> Iterator[tuple[int, bytes]]:
+    """Each message's kind and bytes."""
+    at = 0
+    while at < len(data):
+        size, kind = HEADER.unpack_from(data, at)
+        at += HEADER.size + size
+        yield kind, data[at - size : at]
+    assert at == len(data)
+
+
+def read_events(data: bytes) -> list[dict[str, Any]]:
+    """What was told beside blocks."""
+    return [json.loads(message) for kind, message in read_messages(data) if kind == 0]
+
+
+def read_blocks_of(data: bytes) -> bytes:
+    """All blocks, one after the other."""
+    return b"".join(message for kind, message in read_messages(data) if kind == 1)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_what_ships_arms_and_dives_towards_its_set_point(path: Path) -> None:
+    whole = read_scenario(path.read_text())
+    events = tuple(event for event in whole.events if event.at <= 8)
+    told = perform(replace(whole, duration=8.0, events=events))
+    assert told.ended == {"event": "ended", "time": 8 + AFTERWARDS, "state": "complete", "problem": None}
+    assert told.time_of("event", "Armed.") < 1.3
+    depths = [record.depth for record in told.between("depth", 7, 8)]
+    assert min(depths) > 0.3
+    assert len(told.between("imu", 1, 8)) == pytest.approx(700, abs=2)
+    assert len(told.between("truth", 1, 8)) == pytest.approx(140, abs=1)
+    assert told.documents["state"][-1]["armed"] is False
+
+
+def test_the_beacon_approach_reaches_both_lights() -> None:
+    told = perform((ROOT / "robot_runtime/experiments/scenario/shipped/beacon_approach.toml").read_text())
+    for light, start, end in (((-1.0, 3.0), 0.0, 45.0), ((3.0, 0.0), 45.0, 119.0)):
+        nearest = min(dist(light, one.position[:2]) for one in told.between("truth", start, end))
+        assert nearest < 0.3
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_gives_others() -> None:
+    events = (
+        ARM,
+        'at = 1; do = "card"; colour = "yellow"',
+        'at = 1.5; do = "line"; direction = "from_board"; kind = "bit_errors"; rate = 0.001',
+        'at = 2; do = "fault"; sensor = "gyroscope"; kind = "spike"; share = 0.1; size = 1.0',
+    )
+    once = run_process(document(3, *events), hashes="1")
+    assert once[0] == 0
+    assert len(once[1]) > 30_000
+    assert run_process(document(3, *events), hashes="2") == once
+    first, second = (perform(document(3, *events, seed=seed)).bytes for seed in (7, 8))
+    assert first != second
+    assert first == read_blocks_of(once[1])
+
+
+def test_the_emulated_board_gives_the_same_bytes_too() -> None:
+    first, second = (perform(document(1, ARM), "emulated").bytes for _ in range(2))
+    assert first == second
+
+
+def test_the_two_boards_agree() -> None:
+    text = document(8, ARM, 'at = 6; do = "set_points"; default = 0.4')
+    host, emulated = perform(text), perform(text, "emulated")
+    assert host.texts("event") == emulated.texts("event")
+    assert host.time_of("event", "Armed.") == pytest.approx(emulated.time_of("event", "Armed."), abs=0.11)
+    for (time, here), (same, there) in zip(host.rows["truth"], emulated.rows["truth"], strict=True):
+        assert time == same
+        assert here.position[2] == pytest.approx(there.position[2], abs=0.06), time
+    for topic in ("imu", "depth", "motor", "status", "beacon"):
+        assert len(host.rows[topic]) == pytest.approx(len(emulated.rows[topic]), abs=2), topic
+
+
+def test_arming_is_refused_while_a_sensor_fails() -> None:
+    told = perform(
+        document(3, 'at = 0.2; do = "fault"; sensor = "pressure"; kind = "bus"', 'at = 2; do = "arm"')
+    )
+    assert told.markers[-1][1].startswith("Arm: refused. The pressure sensor does not answer.")
+    assert "At 2 s: Arm: refused." in told.ended["problem"]
+    assert told.ended["state"] == "complete"
+    assert "navigation" not in told.rows
+
+
+def test_a_cut_line_stops_the_fins_and_disarms() -> None:
+    cut = [
+        f'at = 3; do = "line"; direction = "{way}"; kind = "cut"; on = true'
+        for way in ("to_board", "from_board")
+    ]
+    whole = [one.replace("at = 3", "at = 5").replace("true", "false") for one in cut]
+    told = perform(document(7, ARM, *cut, *whole))
+    assert any(any(record.drive) for record in told.between("motor", 2, 3))
+    assert told.between("motor", 3.1, 4.9) == []
+    assert 3.4 < told.time_of("event", "The depth is too old") < 3.7
+    assert not any(any(record.drive) for record in told.between("motor", 5.1, 7))
+    assert any("disarmed" in text for text in told.texts("debug"))
+    # What the water saw of it while nobody could say: at rest half a second after the last command.
+    fins = [record.fins for record in told.between("truth", 3.8, 7)]
+    assert max(abs(one[0] - fins[0][0]) for one in fins) < 0.01
+
+
+def test_the_water_and_the_trim_change_as_events_say() -> None:
+    told = perform(
+        document(
+            6,
+            'at = 1; do = "current"; north = 0.3',
+            'at = 2; do = "trim"; buoyancy = 0.98; forward = 0.0; right = 0.0; above = 0.01',
+            'at = 2; do = "beacons"; positions = [[1.5, 1.0, 0.2]]',
+            'at = 3; do = "marker"; text = "Here"',
+        )
+    )
+    first, last = told.rows["truth"][0][1], told.rows["truth"][-1][1]
+    assert last.position[0] > first.position[0] + 0.2
+    assert last.position[2] > first.position[2] + 0.2
+    assert not any(record.right for record in told.between("beacon", 0, 2))
+    assert any(record.right for record in told.between("beacon", 2.2, 3))
+    assert told.markers == [
+        (1.0, "Current of 0.3 m/s"),
+        (2.0, "Trim: buoyancy 0.98"),
+        (2.0, "A light beacon"),
+        (3.0, "Here"),
+    ]
+
+
+def test_a_start_under_water_is_a_dive_from_the_surface() -> None:
+    told = perform(document(2, more="[start]\ndown = 1.0\nnorth = -1.5\nheading = 1.0"))
+    depths = [record.depth for record in told.between("depth", 0.5, 0.7)]
+    # The pressure sensor is on the back, 5 cm above the centre of mass.
+    assert sum(depths) / len(depths) == pytest.approx(0.95, abs=0.03)
+    assert told.rows["truth"][0][1].position[0] == pytest.approx(-1.5, abs=0.01)
+
+
+def test_a_card_before_the_camera_changes_the_set_point() -> None:
+    told = perform(document(4, ARM, 'at = 2; do = "card"; colour = "yellow"', 'at = 3; do = "card"'))
+    seen = [one["taken"] for one in told.documents["detection"] if one["colour"] == "yellow"]
+    assert 2.0 <= seen[0] <= 2.3
+    assert 2.7 <= seen[-1] <= 3.0
+    assert "Set point 1.00 m: yellow is seen." in told.texts("event")
+
+
+@pytest.mark.skipif(missing() is not None, reason="the scene cannot be rendered here")
+def test_the_rendered_scene_is_seen() -> None:
+    target = '\n[[scene.targets]]\ncolour = "red"\nposition = [0.9, 0.0, 0.2]\nsize = 0.3'
+    vision = '[vision]\ncamera = "scene"\ncolour = "red"\nrate = 2'
+    told = perform(document(1, scene='kind = "natural"\ndepth = 3.0' + target, more=vision))
+    assert [one["colour"] for one in told.documents["detection"]] == ["red"] * 3
+    assert told.documents["state"][-1]["camera"] == "rendered scene"
+
+
+def test_a_cancelled_run_disarms_and_ends_in_order() -> None:
+    told = Told()
+    run = Run(read_scenario(document(60, ARM)), boards()["host"], told)
+    told.on_event = lambda event: run.cancel() if event.get("time") == 3.0 else None
+    run.perform(lambda _: {})
+    assert told.ended["state"] == "cancelled"
+    assert told.ended["time"] == pytest.approx(3 + AFTERWARDS, abs=0.2)
+    assert "The scenario was cancelled." in told.texts("event")
+    assert any("disarmed: STOP" in text for text in told.texts("debug"))
+
+
+def test_sigterm_cancels_the_process() -> None:
+    command = [sys.executable, "-m", "robot_runtime.experiments.scenario", "--board", "host"]
+    with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(document(3000, ARM).encode())
+        process.stdin.close()
+        head = process.stdout.read(HEADER.size)
+        process.send_signal(signal.SIGTERM)
+        data = head + process.stdout.read()
+    assert process.returncode == 0
+    assert read_events(data)[-1]["state"] == "cancelled"
+
+
+def test_a_bad_scenario_is_refused_with_all_problems() -> None:
+    text = (
+        document(5, 'at = 9; do = "arm"').replace('kind = "pool"', 'kind = "bath"') + "[robot]\nmass = -3.0\n"
+    )
+    status, data = run_process(text)
+    (event,) = read_events(data)
+    assert status == 2
+    assert event["event"] == "refused"
+    for words in ("bath", "mass", "9 s"):
+        assert any(words in problem for problem in event["problems"]), words
+
+
+def test_what_ran_is_told(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    status, nothing = run_process(document(1), "--out", str(out))
+    assert (status, nothing) == (0, b"")
+    started = read_events(out.read_bytes())[0]
+    assert started.pop("firmware") != started.pop("software")
+    assert started == {"event": "started", "time": 0.0, "scenario": "test", "seed": 7, "board": "host"}
+
+
+def test_a_board_that_was_not_built_is_said(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "robot_runtime.experiments.scenario"]
+    environment = {**os.environ, "MUCAT_BUILD": str(tmp_path)}
+    done = subprocess.run(
+        command, cwd=ROOT, input=document(1), capture_output=True, text=True, env=environment
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "`make firmware` builds it" in done.stderr

@@ -1,0 +1,41 @@
+"""The firmware for each speed of the line: a place of its own, and built where it is missing."""
+
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.simulation.boards.firmware import BuildError, build_firmware, firmware_path
+
+BUILD = Path(__file__).resolve().parents[4] / "build"
+
+
+def test_each_speed_has_a_place_of_its_own() -> None:
+    assert firmware_path(BUILD, 250_000, ".hex") == BUILD / "firmware/robot.hex"
+    assert firmware_path(BUILD, 9600, ".elf") == BUILD / "firmware/9600/robot.elf"
+
+
+def test_another_speed_is_built_beside_the_default() -> None:
+    build_firmware(BUILD, 250_000)
+    default = firmware_path(BUILD, 250_000, ".elf")
+    before = default.read_bytes()
+    build_firmware(BUILD, 9600)
+    assert firmware_path(BUILD, 9600, ".hex").read_text().startswith(":")
+    assert firmware_path(BUILD, 9600, ".elf").read_bytes() != before
+    assert default.read_bytes() == before
+
+
+def test_without_a_compiler_it_takes_what_is_there_or_says_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BuildError, match=r"no firmware for 4800 baud .*Install make, gcc-avr"):
+        build_firmware(tmp_path, 4800)
+    product = firmware_path(tmp_path, 4800, ".elf")
+    product.parent.mkdir(parents=True)
+    product.touch()
+    build_firmware(tmp_path, 4800)
+
+
+def test_what_the_compiler_refuses_is_told(tmp_path: Path) -> None:
+    with pytest.raises(BuildError, match=r"could not be built: .*2\.5 % off"):
+        build_firmware(tmp_path, 460_800)

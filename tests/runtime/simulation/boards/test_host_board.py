@@ -1,0 +1,143 @@
+"""The firmware compiled for this computer, on the emulated board's devices."""
+
+from collections.abc import Iterator
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.contract.packets import (
+    DEFINITIONS_HASH,
+    Hello,
+    Imu,
+    Motor,
+    ResetCause,
+    SensorFault,
+    Status,
+)
+from robot_runtime.experiments.scenario.boards import BUILD
+from robot_runtime.link.framing import Decoder
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, BoardError
+from robot_runtime.simulation.boards.host_board import HostBoard
+from robot_runtime.simulation.boards.stepped_board import PERIOD
+from robot_runtime.simulation.water.sensors import Reading
+from robot_runtime.simulation.water.simulator import FinMotion
+
+LIBRARY = BUILD / "libhost_board.so"
+
+
+class Rig:
+    """A board with nobody greeting it, and the water in the test's hand."""
+
+    def __init__(self) -> None:
+        self.reading = STILL_WATER
+        self.fins: list[FinMotion] = []
+        self.board = HostBoard(LIBRARY, self._feel)
+        self._decoder = Decoder()
+
+    def run(self, seconds: float) -> dict[int, list[bytes]]:
+        """What the board said meanwhile, by type."""
+        said: dict[int, list[bytes]] = {}
+        for frame in self._decoder.feed(self.board.run(round(seconds / PERIOD))):
+            for type_, payload in frame.messages:
+                said.setdefault(type_, []).append(payload)
+        return said
+
+    def _feel(self, fins: FinMotion) -> Reading:
+        self.fins.append(fins)
+        return self.reading
+
+
+@pytest.fixture
+def rig() -> Iterator[Rig]:
+    rig = Rig()
+    with rig.board:
+        yield rig
+
+
+def test_it_says_hello_and_what_its_sensors_feel(rig: Rig) -> None:
+    rig.reading = STILL_WATER._replace(force=(1.0, -2.0, -9.0), battery=7.0)
+    said = rig.run(1.0)
+    assert Hello.from_bytes(said[Hello.type][0]).definitions == DEFINITIONS_HASH
+    assert Imu.from_bytes(said[Imu.type][-1]).force == pytest.approx((1.0, -2.0, -9.0), abs=0.01)
+    status = Status.from_bytes(said[Status.type][-1])
+    assert status.battery == pytest.approx(7.0, abs=0.02)
+    assert status.faults == 0
+    assert (status.missed_ticks, status.bytes_lost, status.frames_invalid) == (0, 0, 0)
+    assert len(rig.fins) == round(1 / PERIOD)
+    assert Motor.from_bytes(said[Motor.type][-1]).angle == pytest.approx(rig.fins[-1].angles, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("device", "fault"),
+    [
+        ("imu", SensorFault.IMU),
+        ("pressure", SensorFault.PRESSURE),
+        ("encoder2", SensorFault.FIN_BACK_LEFT),
+    ],
+)
+def test_a_device_that_does_not_answer_is_reported_until_it_does(
+    rig: Rig, device: str, fault: SensorFault
+) -> None:
+    rig.board.fault(device, "absent")
+    assert Status.from_bytes(rig.run(1.0)[Status.type][-1]).faults == fault
+    rig.board.fault(device, "none")
+    assert Status.from_bytes(rig.run(1.0)[Status.type][-1]).faults == 0
+
+
+def test_a_reset_is_another_boot(rig: Rig) -> None:
+    first = Hello.from_bytes(rig.run(0.1)[Hello.type][0])
+    rig.board.reset()
+    status = Status.from_bytes(rig.run(0.3)[Status.type][-1])
+    assert status.epoch == first.epoch + 1
+    assert status.reset_cause == ResetCause.EXTERNAL
+
+
+def test_the_line_can_be_cut_stalled_and_disturbed(rig: Rig) -> None:
+    rig.board.line("line from_board cut on")
+    assert rig.board.run(100) == b""
+    rig.board.line("line from_board cut off")
+    rig.board.line("line from_board stall 0.2")
+    assert rig.board.run(39) == b""
+    assert len(rig.board.run(20)) > 1000
+    rig.board.seed_line(3)
+    rig.board.line("line from_board bit_errors 0.001")
+    assert len(rig.run(1.0)[Imu.type]) < 95
+    rig.board.line("line from_board clean")
+    rig.run(0.1)
+    assert len(rig.run(1.0)[Imu.type]) >= 99
+
+
+def test_the_line_carries_no_more_than_its_speed(rig: Rig) -> None:
+    rig.run(0.2)
+    rig.board.write(bytes(1000))
+    lost = Status.from_bytes(rig.run(0.5)[Status.type][-1])
+    assert lost.bytes_lost == 0
+    assert lost.frames_invalid == 0
+
+
+def test_what_makes_no_sense_is_refused(rig: Rig) -> None:
+    with pytest.raises(BoardError, match="no device 'rudder'"):
+        rig.board.fault("rudder", "absent")
+    with pytest.raises(BoardError, match="no such command"):
+        rig.board.line("line to_board cut perhaps")
+    with pytest.raises(BoardError, match="no such command"):
+        rig.board.line("line to_board stall 4000")
+    rig.reading = STILL_WATER._replace(pressure=inf)
+    with pytest.raises(BoardError, match="refused what its sensors"):
+        rig.board.run(1)
+
+
+def test_two_boards_do_not_know_of_each_other(rig: Rig) -> None:
+    other = Rig()
+    with other.board:
+        other.board.fault("imu", "absent")
+        for _ in range(20):
+            mine, its = rig.run(0.1), other.run(0.1)
+        assert Status.from_bytes(mine[Status.type][-1]).faults == 0
+        assert Status.from_bytes(its[Status.type][-1]).faults == SensorFault.IMU
+
+
+def test_a_library_that_is_not_there_is_said(tmp_path: Path) -> None:
+    with pytest.raises(BoardError, match="`make firmware` builds it"):
+        HostBoard(tmp_path / "libhost_board.so", lambda _: STILL_WATER)

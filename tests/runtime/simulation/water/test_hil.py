@@ -1,0 +1,120 @@
+"""The water of a board in the loop, with Zenoh as it is and fins that the test moves."""
+
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from math import sin
+
+import pytest
+
+from robot_runtime.contract.packets import Motor, Sense
+from robot_runtime.contract.topics import BY_NAME, Block, row
+from robot_runtime.errors import Refused
+from robot_runtime.simulation.water.hil import GAP_MAX, Loop
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.simulator import FinMotion, Simulator
+from robot_runtime.transport.zenoh_transport import Messages
+
+DEADLINE = 10.0
+PERIOD = 0.02
+
+
+class Robot:
+    """The runtime's end: fins out, words in."""
+
+    def __init__(self, messages: Messages) -> None:
+        self.words: list[Sense] = []
+        self._messages = messages
+        self._number = 0
+        messages.subscribe("sense", lambda _, data: self.words.append(Sense.from_bytes(data)))
+
+    def move(self, *motions: tuple[float, Motor]) -> None:
+        payload = b"".join(row(time, motor.to_bytes()) for time, motor in motions)
+        block = Block.of(BY_NAME["motor"], len(motions), self._number, payload)
+        self._number += len(motions)
+        self._messages.publish("motor", block.data)
+
+    def hear(self, count: int) -> Sense:
+        """Wait until so many words have come; the last."""
+        wait_for(lambda: len(self.words) >= count, f"{count} words")
+        return self.words[-1]
+
+
+def wait_for(condition: Callable[[], object], what: str) -> None:
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.002)
+
+
+def motor(angle: float, drive: int = 0) -> Motor:
+    return Motor(time=0, wanted=(angle,) * 4, angle=(angle,) * 4, drive=(drive,) * 4)
+
+
+@pytest.fixture
+def simulator() -> Simulator:
+    return Simulator(Parameters(), seed=3)
+
+
+@pytest.fixture
+def robot(simulator: Simulator) -> Iterator[Robot]:
+    with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
+        robot = Robot(here)
+        with Messages("turtle", connect=[f"unixsock-stream/{folder}/z"], client=True) as there:
+            loop = Loop(simulator, there)
+            thread = threading.Thread(target=loop.run)
+            thread.start()
+            try:
+                wait_for(lambda: here.watched("motor"), "the water's ears")
+                yield robot
+            finally:
+                loop.end()
+                thread.join()
+
+
+def test_the_water_moves_by_the_boards_time_and_nothing_else(robot: Robot) -> None:
+    swing = [(100 + n * PERIOD, motor(round(1.2 * sin(n / 6), 3), drive=40)) for n in range(200)]
+    for batch in range(4):
+        robot.move(*swing[50 * batch : 50 * (batch + 1)])
+        last = robot.hear(batch + 1)
+    alike = Simulator(Parameters(), seed=3)
+    for (_, before), (_, now) in pairwise(swing):
+        speed = (now.angle[0] - before.angle[0]) / PERIOD
+        reading = alike.advance(PERIOD, FinMotion(now.angle, (speed,) * 4, now.drive, powered=True))
+    assert last.pressure == pytest.approx(reading.pressure, abs=20)
+    assert last.force == pytest.approx(reading.force, abs=0.05)
+    assert last.battery == pytest.approx(reading.battery, abs=0.01)
+
+
+def test_fins_that_were_not_heard_for_a_while_are_taken_to_have_rested(
+    robot: Robot, simulator: Simulator
+) -> None:
+    robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
+    robot.hear(1)
+    before = simulator.truth()
+    robot.move((100.02 + GAP_MAX + 5.0, motor(3.0)))
+    robot.hear(2)
+    after = simulator.truth()
+    assert max(map(abs, after.velocity)) < 0.05
+    assert after.position[0] == pytest.approx(before.position[0], abs=0.01)
+
+
+def test_a_clock_that_stands_or_runs_back_moves_nothing(robot: Robot, simulator: Simulator) -> None:
+    robot.move((100.0, motor(0.0)), (100.02, motor(0.0)))
+    robot.hear(1)
+    before = simulator.truth()
+    robot.move((100.02, motor(1.0)), (99.0, motor(2.0)))
+    robot.move((99.02, motor(2.0)))
+    robot.hear(2)
+    moved = max(abs(a - b) for a, b in zip(simulator.truth().position, before.position, strict=True))
+    assert moved < 0.001
+
+
+def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simulator) -> None:
+    with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
+        Loop(simulator, here)
+        here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
+        with pytest.raises(Refused, match="has no buses"):
+            here.ask("simulator/fault", {"sensor": "pressure", "kind": "bus"})

@@ -1,0 +1,343 @@
+"""The process of the water: with a board that a test plays, and with Zenoh as it is."""
+
+import fcntl
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract import documents
+from robot_runtime.contract.topics import read_blocks, read_rows
+from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.simulation.water.process import PERIOD, Process
+from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.zenoh_transport import Messages
+from tests.runtime.simulation.water.harness import QUIET
+
+DEADLINE = 10.0
+RESTING = b"fins 0 0 0 0 0 0 0 0 0 0 0 0 0 1 1\n"
+DIVING = b"fins 0 -1.57 -1.57 -1.57 -1.57 12 12 12 12 40 40 40 40 1 1\n"
+
+
+def wait_for(condition: Callable[[], bool], what: str) -> None:
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < end, f"no {what} within {DEADLINE} s"
+        time.sleep(0.005)
+
+
+class Board:
+    """The board's end of the socket, played by the test."""
+
+    def __init__(self, path: Path) -> None:
+        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._listener.bind(str(path))
+        self._listener.listen(1)
+        self._listener.settimeout(DEADLINE)
+
+    def accept(self) -> str:
+        """Wait for the water to come, or to come anew; the first line that it says."""
+        self.hang_up()
+        self.line, _ = self._listener.accept()
+        self.line.settimeout(DEADLINE)
+        self._reader = self.line.makefile("r")
+        return self.hear()
+
+    def hear(self) -> str:
+        return self._reader.readline().strip()
+
+    def exchange(self, fins: bytes = RESTING) -> list[float]:
+        """The numbers with which the water answers a line."""
+        self.line.sendall(fins)
+        word, *numbers = self.hear().split()
+        assert word == "sense"
+        assert len(numbers) == 15
+        return [float(number) for number in numbers]
+
+    def hang_up(self) -> None:
+        if hasattr(self, "line"):
+            self._reader.close()
+            self.line.close()
+
+    def close(self) -> None:
+        self.hang_up()
+        self._listener.close()
+
+
+@pytest.fixture
+def folder() -> Iterator[Path]:
+    """Short enough for the name of a Unix socket."""
+    with tempfile.TemporaryDirectory() as name:
+        yield Path(name)
+
+
+@pytest.fixture
+def board(folder: Path) -> Iterator[Board]:
+    made = Board(folder / "board")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def messages(folder: Path) -> Iterator[Messages]:
+    with Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made:
+        yield made
+
+
+@pytest.fixture
+def clock() -> SimulatedClock:
+    return SimulatedClock(100.0)
+
+
+@pytest.fixture
+def process(folder: Path, board: Board, messages: Messages, clock: SimulatedClock) -> Iterator[Process]:
+    del board
+    made = Process(Simulator(QUIET, seed=1), folder / "board", messages, clock)
+    thread = threading.Thread(target=made.run)
+    thread.start()
+    yield made
+    made.end()
+    thread.join(DEADLINE)
+    assert not thread.is_alive()
+
+
+@pytest.mark.usefixtures("process")
+class TestAttached:
+    def test_attaches_and_answers_every_line(self, board: Board) -> None:
+        assert board.accept() == f"attach {PERIOD}"
+        pressures = [board.exchange()[0] for _ in range(20)]
+        assert all(pressure == 101325 for pressure in pressures)
+
+    def test_swims_as_the_fins_say(self, board: Board) -> None:
+        board.accept()
+        first = board.exchange()[0]
+        for _ in range(200):
+            last = board.exchange(DIVING)[0]
+        assert last > first + 500
+
+    def test_lines_that_come_in_pieces_or_together(self, board: Board) -> None:
+        board.accept()
+        for piece in (RESTING[:9], RESTING[9:20], RESTING[20:] + RESTING):
+            board.line.sendall(piece)
+        assert board.hear().startswith("sense ")
+        assert board.hear().startswith("sense ")
+
+    def test_error_lines_are_told_and_not_answered(
+        self, board: Board, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        board.accept()
+        with caplog.at_level(logging.WARNING):
+            board.line.sendall(b"error no such thing\n")
+            board.exchange()
+        assert "no such thing" in caplog.text
+
+    @pytest.mark.parametrize("garbage", [b"fins 1 2 3\n", b"hello\n", b"x" * 2000])
+    def test_after_garbage_it_attaches_anew(self, board: Board, garbage: bytes) -> None:
+        board.accept()
+        board.line.sendall(garbage)
+        assert board.hear() == ""
+        assert board.accept() == f"attach {PERIOD}"
+        board.exchange()
+
+    def test_comes_back_when_the_board_does_and_goes_on_swimming(
+        self, board: Board, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        board.accept()
+        for _ in range(200):
+            deep = board.exchange(DIVING)[0]
+        with caplog.at_level(logging.INFO):
+            board.hang_up()
+            board.accept()
+            assert board.exchange()[0] > deep - 200
+            # It answers first, and tells of it then.
+            wait_for(lambda: len(caplog.records) >= 2, "word of both")
+        assert [record.levelname for record in caplog.records] == ["WARNING", "INFO"]
+
+    def test_a_board_that_stays_away_is_told_of_once(
+        self, board: Board, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        for _ in range(3):
+            board.accept()
+        board.exchange()
+        assert caplog.text.count("no board at") == 1
+
+    def test_truth_comes_twenty_times_a_second(
+        self, board: Board, messages: Messages, clock: SimulatedClock
+    ) -> None:
+        received: list[bytes] = []
+        subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
+        board.accept()
+        for _ in range(201):
+            board.exchange(DIVING)
+            clock.forward(PERIOD)
+        wait_for(lambda: len(received) >= 20, "truth")
+        subscription.close()
+        blocks = [block for payload in received for block in read_blocks(payload)]
+        rows = [row for block in blocks for row in read_rows(block)]
+        assert [block.first for block in blocks] == list(range(len(blocks)))
+        times = [time for time, _ in rows]
+        assert len(times) in (20, 21)
+        assert times == pytest.approx([100 + 0.05 * index for index in range(len(times))], abs=PERIOD)
+        last = rows[-1][1]
+        assert isinstance(last, documents.Truth)
+        assert last.position[2] > 0.06
+        assert last.fins == pytest.approx((-1.57,) * 4)
+
+    def test_a_board_that_was_away_leaves_no_truth_to_catch_up_with(
+        self, board: Board, messages: Messages, clock: SimulatedClock
+    ) -> None:
+        received: list[bytes] = []
+        subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
+        board.accept()
+        board.exchange()
+        clock.forward(60)
+        for _ in range(5):
+            board.exchange()
+        clock.forward(0.05)
+        board.exchange()
+        wait_for(lambda: len(received) >= 3, "truth")
+        board.exchange()
+        subscription.close()
+        assert len(received) == 3
+
+    def test_reset_brings_it_back_to_the_surface(self, board: Board, messages: Messages) -> None:
+        board.accept()
+        surface = board.exchange()[0]
+        for _ in range(200):
+            board.exchange(DIVING)
+        assert messages.ask("simulator/reset", {}) == {"accepted": True}
+        assert board.exchange()[0] == pytest.approx(surface, abs=5)
+
+    def test_current_carries_it_away(self, board: Board, messages: Messages) -> None:
+        answer = messages.ask("simulator/current", {"north": 1, "east": -0.5, "down": 0.0})
+        assert answer == {"accepted": True}
+        board.accept()
+        forces = [board.exchange()[2] for _ in range(5)]
+        assert min(forces) > 1.0
+
+    @pytest.mark.parametrize(
+        "question",
+        [
+            {},
+            {"north": 1, "east": 0},
+            {"north": 1, "east": 0, "down": 0, "up": 1},
+            {"north": "1", "east": 0, "down": 0},
+            {"north": True, "east": 0, "down": 0},
+            {"north": None, "east": 0, "down": 0},
+            {"north": 3, "east": 0, "down": 0},
+            {"north": 10**400, "east": 0, "down": 0},
+        ],
+    )
+    def test_impossible_currents_are_refused(self, messages: Messages, question: dict[str, object]) -> None:
+        with pytest.raises(Refused, match=r"takes|number|at most 2 m/s"):
+            messages.ask("simulator/current", question)
+
+    def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
+        self, board: Board, messages: Messages
+    ) -> None:
+        board.accept()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
+        messages.ask("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear() == "fault imu absent"
+        assert board.hear().startswith("sense ")
+        board.line.sendall(b"ok\nok\n")
+        board.exchange()
+        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault imu none"
+        assert board.hear().startswith("sense ")
+        board.accept()
+        board.line.sendall(RESTING)
+        assert board.hear() == "fault encoder1 absent"
+        assert board.hear().startswith("sense ")
+
+    @pytest.mark.parametrize(
+        ("name", "question"),
+        [
+            ("waves", {"amplitude": 0.1, "period": 3, "direction": 0.5}),
+            ("trim", {"buoyancy": 1.01, "forward": 0, "right": 0, "above": 0.01}),
+            ("world", {"depth": 2, "length": 8, "width": 4}),
+            ("beacons", {"positions": [[2, 0, 0.5]]}),
+            ("fault", {"sensor": "battery", "kind": "drift", "speed": -0.1}),
+        ],
+    )
+    def test_everything_can_be_asked_for_over_zenoh(
+        self, messages: Messages, name: str, question: dict[str, object]
+    ) -> None:
+        assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
+        with pytest.raises(Refused, match="takes"):
+            messages.ask(f"simulator/{name}", {})
+
+    def test_reset_takes_no_depth(self, messages: Messages) -> None:
+        with pytest.raises(Refused, match="not depth"):
+            messages.ask("simulator/reset", {"depth": 1})
+
+
+def command(folder: Path, *more: str) -> list[str]:
+    endpoint = f"unixsock-stream/{folder}/zenoh"
+    program = [sys.executable, "-m", "robot_runtime.simulation"]
+    return [*program, "--board", str(folder / "board"), "--connect", endpoint, "--robot", "turtle", *more]
+
+
+def accepted(messages: Messages) -> bool:
+    try:
+        return messages.ask("simulator/reset", {}, timeout=0.5) == {"accepted": True}
+    except NoAnswer:
+        return False
+
+
+def test_program_swims_and_ends_when_asked(folder: Path, board: Board, messages: Messages) -> None:
+    with subprocess.Popen(command(folder, "--seed", "2")) as program:
+        assert board.accept() == f"attach {PERIOD}"
+        board.exchange()
+        wait_for(lambda: accepted(messages), "answer")
+        program.send_signal(signal.SIGTERM)
+        assert program.wait(DEADLINE) == 0
+
+
+def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> None:
+    with subprocess.Popen(command(folder), stderr=subprocess.PIPE, text=True) as program:
+        assert program.stderr is not None
+        assert "no board at" in program.stderr.readline()
+        late = Board(folder / "board")
+        late.accept()
+        late.exchange()
+        late.close()
+        with Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as messages:
+            wait_for(lambda: accepted(messages), "answer")
+        program.send_signal(signal.SIGTERM)
+        assert program.wait(DEADLINE) == 0
+
+
+def test_program_ends_some_time_after_its_server(folder: Path, board: Board) -> None:
+    lock = folder / "server.lock"
+    with lock.open("w") as server:
+        fcntl.flock(server, fcntl.LOCK_EX)
+        with subprocess.Popen(command(folder, "--server-lock", str(lock), "--linger", "0")) as program:
+            board.accept()
+            board.exchange()
+            assert program.poll() is None
+            server.close()
+            assert board.hear() == ""
+            assert program.wait(DEADLINE) == 0
+
+
+def test_program_ends_with_its_parent(folder: Path, board: Board) -> None:
+    parent = "import subprocess, sys; subprocess.Popen(sys.argv[1:]); sys.stdin.read()"
+    arguments = [sys.executable, "-c", parent, *command(folder, "--with-parent")]
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE) as started:
+        board.accept()
+        os.kill(started.pid, signal.SIGKILL)
+    assert board.hear() == ""

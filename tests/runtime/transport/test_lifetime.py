@@ -1,0 +1,79 @@
+import fcntl
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+import robot_runtime.transport.lifetime as lifetime_module
+from robot_runtime.transport.lifetime import is_served, watch_server
+
+DEADLINE = 10.0
+
+
+class Clock:
+    """Stands still, and knows how often it was looked at."""
+
+    def __init__(self) -> None:
+        self.time = 100.0
+        self._looks = 0
+        self._looked = threading.Condition()
+
+    def now(self) -> float:
+        with self._looked:
+            self._looks += 1
+            self._looked.notify_all()
+            return self.time
+
+    def wait_for_looks(self, count: int) -> None:
+        with self._looked:
+            wanted = self._looks + count
+            assert self._looked.wait_for(lambda: self._looks >= wanted, DEADLINE)
+
+
+@contextmanager
+def serving(lock: Path) -> Iterator[None]:
+    with lock.open("w") as handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lifetime_module, "_LOOK_SECONDS", 0.001)
+
+
+def test_a_lock_is_looked_at_without_being_kept(tmp_path: Path) -> None:
+    lock = tmp_path / "server.lock"
+    assert not is_served(lock)
+    with serving(lock):
+        assert is_served(lock)
+    assert not is_served(lock)
+    with serving(lock):
+        assert is_served(lock)
+
+
+def test_it_outlives_a_server_for_a_while(tmp_path: Path) -> None:
+    lock, clock, ended = tmp_path / "server.lock", Clock(), threading.Event()
+    with serving(lock):
+        watch_server(lock, 30.0, clock, ended.set)
+        clock.time += 1000
+        clock.wait_for_looks(5)
+    clock.time += 29
+    clock.wait_for_looks(5)
+    with serving(lock):
+        clock.wait_for_looks(5)
+        clock.time += 1000
+        clock.wait_for_looks(5)
+    assert not ended.is_set()
+    clock.time += 31
+    assert ended.wait(DEADLINE)
+
+
+def test_where_the_folder_is_gone_nothing_is_waited_for(tmp_path: Path) -> None:
+    lock, ended = tmp_path / "server.lock", threading.Event()
+    lock.touch()
+    watch_server(lock, 30.0, Clock(), ended.set)
+    lock.unlink()
+    assert ended.wait(DEADLINE)

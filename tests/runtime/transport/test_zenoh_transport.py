@@ -1,0 +1,71 @@
+import tempfile
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.transport.zenoh_transport import Messages
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[Messages, Messages]]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        endpoint = f"unixsock-stream/{folder}/zenoh"
+        with (
+            Messages("turtle", listen=[endpoint]) as answering,
+            Messages("turtle", connect=[endpoint]) as asking,
+        ):
+            yield answering, asking
+
+
+def ask(asking: Messages, name: str, payload: bytes) -> bytes:
+    """Zenoh tells of new answerers in its own time."""
+    while True:
+        try:
+            return asking.ask_bytes(name, payload)
+        except NoAnswer:
+            continue
+
+
+@pytest.mark.parametrize("payload", [b"", b"{}", b"\0\xff" * 1_000_000])
+def test_bytes_are_answered_with_bytes(ends: tuple[Messages, Messages], payload: bytes) -> None:
+    answering, asking = ends
+    answering.answer_bytes("picture", lambda question: question[::-1])
+    assert ask(asking, "picture", payload) == payload[::-1]
+
+
+def test_a_refusal_is_told_in_its_words(ends: tuple[Messages, Messages]) -> None:
+    answering, asking = ends
+
+    def refuse(question: bytes) -> bytes:
+        raise Refused(f"no picture {question.decode()} µm wide")
+
+    answering.answer_bytes("picture", refuse)
+    with pytest.raises(Refused, match="no picture 3 µm wide"):
+        ask(asking, "picture", b"3")
+
+
+def test_an_error_inside_is_no_detail_for_others(
+    ends: tuple[Messages, Messages], caplog: pytest.LogCaptureFixture
+) -> None:
+    answering, asking = ends
+
+    def fail(_: bytes) -> bytes:
+        raise RuntimeError("secret")
+
+    answering.answer_bytes("picture", fail)
+    with pytest.raises(Refused, match="its log says more"):
+        ask(asking, "picture", b"")
+    assert "secret" in caplog.text
+
+
+def test_who_does_not_answer_in_time_is_given_up(ends: tuple[Messages, Messages]) -> None:
+    answering, asking = ends
+    gate = threading.Event()
+    answering.answer_bytes("there", lambda _: b"")
+    answering.answer_bytes("picture", lambda _: b"late" if gate.wait(30) else b"")
+    ask(asking, "there", b"")
+    with pytest.raises(NoAnswer, match="nobody answered picture within"):
+        asking.ask_bytes("picture", b"", timeout=0.2)
+    gate.set()

@@ -1,0 +1,158 @@
+"""A colour from a place in the picture: on cards, round the circle of hues, and where there is none."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange
+from robot_runtime.errors import Refused
+from robot_runtime.vision.camera import CameraError
+from robot_runtime.vision.colour_picker import Place, propose, range_of
+from robot_runtime.vision.node import Vision
+from robot_runtime.vision.patches import find_colour
+from robot_runtime.vision.picture import Picture
+from tests.runtime.vision.harness import ShakyCamera, drawn, find
+
+MIDDLE = Place(x=0.5, y=0.5)
+
+
+def circle(low: int, span: int) -> list[int]:
+    return [(low + step) % 180 for step in range(span + 1)]
+
+
+@given(st.integers(0, 179), st.integers(0, 30), st.integers(60, 255), st.integers(40, 255))
+def test_a_range_holds_its_own_pixels_wherever_on_the_circle(
+    low: int, span: int, saturation: int, value: int
+) -> None:
+    pixels = np.array([(hue, saturation, value) for hue in circle(low, span)], np.uint8)
+    found = range_of(pixels)
+    assert find_colour(pixels[np.newaxis], found).all()
+    # And no more of the circle than its margins, rounding included.
+    held = (found.hue[1] - found.hue[0]) % 180
+    assert held <= span + 2 * 5 + 2
+
+
+@given(st.integers(0, 179), st.lists(st.integers(-8, 8), min_size=20, max_size=60), st.integers(0, 179))
+def test_the_circle_has_no_beginning(middle: int, beside: list[int], turn: int) -> None:
+    def picked(start: int) -> ColourRange:
+        hues = [(start + one) % 180 for one in beside]
+        return range_of(np.array([(hue, 200, 200) for hue in hues], np.uint8))
+
+    one, turned = picked(middle), picked(middle + turn)
+    # A hue may fall to either side where rounding decides.
+    for before, after in zip(one.hue, turned.hue, strict=True):
+        assert (after - before - turn + 1) % 180 <= 2
+    assert one.saturation == turned.saturation
+
+
+@pytest.mark.parametrize("card", sorted(COLOURS))
+def test_a_drawn_card_is_found_by_what_was_picked_on_it_and_water_is_not(card: str) -> None:
+    proposal = propose(drawn(3.0, card), MIDDLE)
+    assert proposal.share == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.15)
+    picked = {"picked": proposal.colour}
+    for time in (3.0, 20.0, 777.7):
+        assert find(drawn(time, card), "picked", colours=picked) is not None
+        assert find(drawn(time, None), "picked", colours=picked) is None
+
+
+@pytest.mark.parametrize("card", sorted(COLOURS))
+def test_what_was_picked_in_the_brightest_light_holds_in_any(card: str) -> None:
+    brightest = max(
+        (drawn(0.5 * step, card) for step in range(200)), key=lambda one: one[116:125, 156:165].sum()
+    )
+    picked = propose(brightest, MIDDLE).colour
+    for time in range(0, 100, 4):
+        found = find(drawn(time, card), "picked", colours={"picked": picked})
+        assert found is not None
+        assert found.area == pytest.approx(0.26 * 0.36 * 3 / 4, rel=0.1)
+        assert find(drawn(time, None), "picked", colours={"picked": picked}) is None
+
+
+def one_colour(blue: int, green: int, red: int) -> Picture:
+    return np.full((120, 160, 3), (blue, green, red), np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("picture", "why"),
+    [
+        (one_colour(128, 128, 128), "it is grey"),
+        (one_colour(140, 128, 120), "it is grey"),
+        (one_colour(255, 255, 255), "it is grey"),
+        (one_colour(0, 0, 0), "it is too dark"),
+        (one_colour(25, 2, 2), "it is too dark"),
+    ],
+)
+def test_where_there_is_no_colour_none_is_picked(picture: Picture, why: str) -> None:
+    with pytest.raises(Refused, match=f"no colour at this place: {why}.*nothing was changed"):
+        propose(picture, MIDDLE)
+
+
+def test_several_colours_are_not_picked_as_one() -> None:
+    picture = one_colour(20, 20, 220)
+    picture[:, 80:] = (20, 220, 20)
+    with pytest.raises(Refused, match="several colours"):
+        propose(picture, Place(x=0.5, y=0.5, radius=0.1))
+    assert propose(picture, Place(x=0.2, y=0.5)).share == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("corner", [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
+def test_the_edges_of_the_picture_can_be_picked(corner: tuple[float, float]) -> None:
+    proposal = propose(one_colour(20, 220, 220), Place(x=corner[0], y=corner[1]))
+    assert proposal.share == 1.0
+
+
+def test_some_glare_and_noise_do_not_widen_it() -> None:
+    picture = one_colour(20, 200, 220)
+    clean = propose(picture, MIDDLE).colour
+    picture[60, 78:82] = 255
+    assert propose(picture, MIDDLE).colour == clean
+
+
+class TestNode:
+    def vision(self, picture: Picture, clock: SimulatedClock) -> tuple[Vision, ShakyCamera]:
+        camera = ShakyCamera(picture, clock)
+        config = VisionConfig()
+        node = Vision(
+            config, clock, lambda _: None, lambda *_: None, lambda _: False, lambda _: None, camera.open
+        )
+        return node, camera
+
+    def test_picks_in_the_newest_picture_and_changes_nothing(self) -> None:
+        clock = SimulatedClock(1.0)
+        node, _ = self.vision(drawn(1.0, "blue"), clock)
+        node.look()
+        before = node.settings
+        proposal = node.pick({"x": 0.5, "y": 0.5})
+        assert find(drawn(1.0, "blue"), "picked", colours={"picked": proposal.colour}) is not None
+        assert node.settings is before
+
+    def test_without_a_picture_it_says_why(self) -> None:
+        clock = SimulatedClock(1.0)
+        node, camera = self.vision(drawn(1.0, "blue"), clock)
+        with pytest.raises(Refused, match=r"no picture to pick a colour in\. Camera: starting"):
+            node.pick({"x": 0.5, "y": 0.5})
+        node.look()
+        camera.failure = CameraError("the lens cap is on")
+        node.look()
+        with pytest.raises(Refused, match="the lens cap is on"):
+            node.pick({"x": 0.5, "y": 0.5})
+
+    @pytest.mark.parametrize(
+        ("question", "why"),
+        [
+            ({"x": 0.5}, "y is missing"),
+            ({"x": 1.5, "y": 0.5}, "between 0 and 1"),
+            ({"x": float("nan"), "y": 0.5}, "must be a number"),
+            ({"x": "left", "y": 0.5}, "must be a number"),
+            ({"x": 0.5, "y": 0.5, "radius": 0.5}, "between 0.005 and 0.2"),
+            ({"x": 0.5, "y": 0.5, "colour": "red"}, "not known"),
+        ],
+    )
+    def test_bad_places_are_refused(self, question: dict[str, object], why: str) -> None:
+        node, _ = self.vision(drawn(1.0, "blue"), SimulatedClock(1.0))
+        node.look()
+        with pytest.raises(ConfigError, match=why):
+            node.pick(question)

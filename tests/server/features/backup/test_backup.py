@@ -1,0 +1,240 @@
+"""The database copied while it is written, and put back."""
+
+import asyncio
+import fcntl
+import hashlib
+import os
+import re
+import sqlite3
+import stat
+import threading
+import time
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from migrations import HEAD
+from server.cli import main
+from server.features.backup import backup
+from server.features.backup import command as backup_command
+from server.features.sessions.catalogue import Listing
+from server.platform.schema import prepare, read_revision
+from server.platform.settings import Settings
+from server.platform.store import Reader, Store
+from tests.server.blocks import depth_block
+from tests.server.features.exports.test_tables import record
+from tests.server.older import ROWS, make_session, upgrade_to
+from tests.stack import ROOT
+
+
+def run(settings: Settings, *arguments: str) -> int:
+    return main([*arguments, "--data", str(settings.data.path), "--config", str(settings.config)])
+
+
+def fill(settings: Settings, *names: str) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        for name in names:
+            record(store, settings, [depth_block(0, 100)], name=name)
+
+
+def names(database: Path) -> list[str]:
+    with closing(Reader(database)) as reader:
+        return [session.name for session in Listing(reader).list()]
+
+
+def test_a_backup_is_whole_private_and_has_a_checksum(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one", "two")
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    checksum = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert f"2 sessions, SHA-256 {checksum}" in capsys.readouterr().out
+    assert path.with_name("copy.db.sha256").read_text() == f"{checksum}  copy.db\n"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["copy.db", "copy.db.sha256"]
+    assert names(path) == ["two", "one"]
+    assert run(settings, "backup", str(path)) == 1
+    assert "is there already" in capsys.readouterr().err
+
+
+def test_a_backup_is_of_one_moment_while_it_is_written(settings: Settings, tmp_path: Path) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        record(store, settings, [depth_block(0, 100)], name="0")
+        ended = threading.Event()
+
+        def write() -> None:
+            for number in range(1, 1000):
+                if ended.is_set():
+                    break
+                record(store, settings, [depth_block(0, 100)], name=str(number))
+
+        writing = threading.Thread(target=write)
+        writing.start()
+        try:
+            for number in range(5):
+                path = tmp_path / f"{number}.db"
+                backup.copy_database(settings.data.database, path)
+                with closing(sqlite3.connect(path)) as copy:
+                    found = copy.execute(
+                        "SELECT session.samples, coalesce(sum(count), 0) FROM session "
+                        "LEFT JOIN chunk ON session_id = session.id GROUP BY session.id"
+                    ).fetchall()
+                assert found
+                assert all(said == stored for said, stored in found)
+        finally:
+            ended.set()
+            writing.join()
+
+
+def test_what_is_restored_is_what_was_backed_up_and_the_other_is_put_aside(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    fill(settings, "two")
+    assert run(settings, "restore", str(path)) == 0
+    (aside,) = settings.data.backups.glob("mucat-replaced-*.db")
+    assert str(aside) in capsys.readouterr().out
+    assert names(settings.data.database) == ["one"]
+    assert names(aside) == ["two", "one"]
+    fill(settings, "three")
+    assert names(settings.data.database) == ["three", "one"]
+
+
+def test_a_damaged_database_is_replaced_with_all_that_lay_beside_it(
+    settings: Settings, tmp_path: Path
+) -> None:
+    fill(settings, "one")
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    settings.data.database.write_bytes(b"not a database any more" * 100)
+    log = settings.data.database.with_name("mucat.db-wal")
+    log.write_bytes(b"its log")
+    assert run(settings, "restore", str(path)) == 0
+    assert not log.exists()
+    assert names(settings.data.database) == ["one"]
+    (kept,) = settings.data.backups.glob("mucat-replaced-*.db-wal")
+    assert kept.read_bytes() == b"its log"
+
+
+def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(
+    settings: Settings, tmp_path: Path
+) -> None:
+    upgrade_to(settings, "0003")
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+    path = tmp_path / "old.db"
+    assert run(settings, "backup", str(path)) == 0
+    assert read_revision(path) == "0003"
+    fill(settings, "new")
+    assert run(settings, "restore", str(path)) == 0
+    prepare(settings.data)
+    assert read_revision(settings.data.database) == HEAD
+    assert names(settings.data.database) == ["old"]
+    assert ROWS
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        ("missing", "There is no file"),
+        ("changed", "checksum"),
+        ("no database", "file is not a database"),
+        ("newer", "newer version"),
+        ("damaged", "damaged|malformed"),
+    ],
+)
+def test_what_cannot_be_restored_changes_nothing(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: str, words: str
+) -> None:
+    fill(settings, "one")
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    if spoil not in ("missing", "changed"):
+        path.with_name("copy.db.sha256").unlink()
+    SPOILS[spoil](path)
+    before = settings.data.database.read_bytes()
+    assert run(settings, "restore", str(path)) == 1
+    assert re.search(words, capsys.readouterr().err)
+    assert settings.data.database.read_bytes() == before
+    assert not settings.data.backups.exists()
+
+
+def rewrite(path: Path, revision: str) -> None:
+    with closing(sqlite3.connect(path)) as database:
+        database.execute("UPDATE alembic_version SET version_num = ?", (revision,))
+        database.commit()
+
+
+def damage(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    for page in range(3, len(content) // 4096):
+        content[page * 4096 : page * 4096 + 200] = os.urandom(200)
+    path.write_bytes(content)
+
+
+def change(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-1] + b"x")
+
+
+def overwrite(path: Path) -> None:
+    path.write_bytes(b"no database" * 1000)
+
+
+SPOILS: dict[str, Callable[[Path], None]] = {
+    "missing": Path.unlink,
+    "changed": change,
+    "no database": overwrite,
+    "newer": lambda path: rewrite(path, "9999"),
+    "damaged": damage,
+}
+
+
+def test_nothing_is_restored_beside_a_server(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fill(settings, "one")
+    path = tmp_path / "copy.db"
+    assert run(settings, "backup", str(path)) == 0
+    with settings.data.lock.open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert run(settings, "restore", str(path)) == 1
+    assert "Another server works on" in capsys.readouterr().err
+
+
+def test_the_newest_backups_are_kept(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    fill(settings, "one")
+    moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
+    monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
+    for _ in range(backup.KEPT + 2):
+        backup_command.back_up(settings.data, None)
+    kept = sorted(path.name for path in settings.data.backups.glob("*.db"))
+    assert kept == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
+    assert len(list(settings.data.backups.iterdir())) == 2 * backup.KEPT
+
+
+def test_a_second_writer_is_refused(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        with pytest.raises(Exception, match="another program writes"):
+            Store(settings.data.database)
+        asyncio.run(store.probe())
+    Store(settings.data.database).close()
+
+
+def test_the_documented_commands_do_what_they_say(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill(settings, "one")
+    text = (ROOT / "docs/durability.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^\.venv/bin/mucat (.*)$", text, re.MULTILINE)
+    assert len(commands) == 3
+    monkeypatch.chdir(tmp_path)
+    assert [run(settings, *command.split()) for command in commands] == [0, 0, 0]
+    assert names(settings.data.database) == ["one"]

@@ -1,0 +1,118 @@
+"""A copy of the database over the network."""
+
+import asyncio
+import shutil
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from server.cli import main
+from server.features.backup import download
+from server.features.backup.download import Downloads
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from tests.server.serving import Served, play
+from tests.server.waiting import until
+
+
+def names(database: Path) -> list[str]:
+    with closing(sqlite3.connect(database)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        return [name for (name,) in connection.execute("SELECT name FROM session ORDER BY id")]
+
+
+def test_what_is_downloaded_is_whole_and_can_be_put_back(
+    settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / "copy.db"
+
+    async def scenario(served: Served) -> None:
+        for name in ("one", "two"):
+            session = (await served.api.post("/sessions", json={"name": name, "note": ""})).json()["id"]
+            if name == "one":
+                await served.api.post(f"/sessions/{session}/stop")
+        answer = await served.api.get("/backup")
+        assert answer.status_code == 200
+        assert answer.headers["content-disposition"].startswith('attachment; filename="mucat-backup-')
+        assert int(answer.headers["content-length"]) == len(answer.content)
+        copy.write_bytes(answer.content)
+        assert [*served.settings.data.backups.iterdir()] == []
+
+    play(settings, scenario)
+    assert names(copy) == ["one", "two"]
+    options = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert main(["restore", str(copy), *options]) == 0
+    capsys.readouterr()
+
+
+def test_there_is_one_at_a_time_and_a_broken_off_one_makes_room(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(download, "PIECE_BYTES", 16)
+
+    async def scenario(served: Served) -> None:
+        downloads = served.assembly.downloads
+        async with served.api.stream("GET", "/backup") as first:
+            assert first.status_code == 200
+            second = await served.api.get("/backup")
+            assert (second.status_code, "already" in second.json()["detail"]) == (409, True)
+        await until(lambda: not downloads._busy, "the end of the first")
+        assert (await served.api.get("/storage")).status_code == 200
+
+    play(settings, scenario)
+
+
+def test_who_takes_nothing_is_cut_off(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(download, "STALLED_SECONDS", 0.01)
+    prepare(settings.data)
+
+    async def scenario() -> None:
+        downloads = Downloads(settings.data)
+        request = SimpleNamespace(is_disconnected=lambda: asyncio.sleep(0, False))
+        answer = await downloads.begin(request)  # type: ignore[arg-type]
+
+        async def send(message: object) -> None:
+            if "body" in str(message):
+                await asyncio.Event().wait()
+
+        with pytest.raises(TimeoutError):
+            await answer({}, asyncio.Event().wait, send)  # type: ignore[arg-type]
+        assert not downloads._busy
+
+    asyncio.run(scenario())
+
+
+def test_a_full_disk_is_told_and_nothing_is_left(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario(served: Served) -> None:
+        with monkeypatch.context() as full:
+            full.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1_000_000, total=10**9))
+            answer = await served.api.get("/backup")
+            assert (answer.status_code, answer.json()["detail"][:26]) == (507, "There is no room for a cop")
+        with monkeypatch.context() as broken:
+            broken.setattr(sqlite3, "connect", fail)
+            answer = await served.api.get("/backup")
+            assert answer.status_code == 507
+        assert (await served.api.get("/backup")).status_code == 200
+        assert [*served.settings.data.backups.iterdir()] == []
+
+    play(settings, scenario)
+
+
+def fail(*_: object, **__: object) -> None:
+    raise sqlite3.OperationalError("disk I/O error")
+
+
+def test_what_a_killed_server_has_left_goes_with_the_next_start(settings: Settings) -> None:
+    settings.data.backups.mkdir()
+    left = settings.data.backups / "download.db.part"
+    left.write_bytes(b"half")
+    kept = settings.data.backups / "mucat-backup-2026-01-01_00-00-00.db"
+    kept.write_bytes(b"whole")
+
+    async def scenario(served: Served) -> None:
+        assert [*served.settings.data.backups.iterdir()] == [kept]
+
+    play(settings, scenario)

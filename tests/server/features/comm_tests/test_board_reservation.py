@@ -1,0 +1,225 @@
+"""The robot's board between the runtime and the lab. Uploads to a real one are in test_lent_board.py."""
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import server.features.comm_tests.board_reservation as handover_module
+import server.stream.bridge as bridge_module
+from robot_runtime.config import LinkConfig
+from robot_runtime.errors import Refused
+from server.platform.settings import Settings
+from server.processes.supervisor import Command
+from tests.server.blocks import state_block
+from tests.server.serving import Served, serve
+from tests.server.waiting import until
+
+pytestmark = pytest.mark.stack
+
+
+class Robot:
+    """A real robot's settings, with a port that is there, and what uploads to it."""
+
+    def __init__(self, settings: Settings, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.uploads, self.started = folder / "uploads", folder / "started"
+        port = folder / "port"
+        port.touch()
+        self.settings = replace(settings, mode="robot", link=LinkConfig(port=str(port), reset="dtr"))
+        code = f"import pathlib, time; p = pathlib.Path({str(self.started)!r})\n"
+        code += f"p.write_text(str(pathlib.Path({str(self.uploads)!r}).exists()))\ntime.sleep(600)"
+        self.runtime = Command("runtime", "robot's runtime", (sys.executable, "-c", code))
+        self._script = folder / "upload"
+        self.upload_does("exit 0")
+        monkeypatch.setattr(sys, "executable", str(self._script))
+
+    def upload_does(self, program: str) -> None:
+        self._script.write_text(f'#!/bin/sh\necho "$*" >> {self.uploads}\n{program}\n', encoding="utf-8")
+        self._script.chmod(0o755)
+
+    @property
+    def marker(self) -> Path:
+        return self.settings.data.firmware_away
+
+    def play(self, scenario: Callable[[Served], Awaitable[None]]) -> None:
+        async def run() -> None:
+            async with serve(self.settings, [self.runtime]) as served:
+                await scenario(served)
+
+        asyncio.run(run())
+
+
+@pytest.fixture
+def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Robot:
+    return Robot(settings, tmp_path, monkeypatch)
+
+
+def runtime_state(served: Served) -> str:
+    part = served.assembly.parts.get("runtime")
+    assert part is not None
+    return part.state
+
+
+async def health(served: Served) -> dict[str, tuple[str, str]]:
+    parts = (await served.api.get("/health")).json()["parts"]
+    return {part["name"]: (part["state"], part["text"]) for part in parts}
+
+
+@asynccontextmanager
+async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]:
+    """The board, with a runtime that says after STOP that the robot is disarmed."""
+    asked = len(served.runtime.asked)
+
+    async def disarm() -> None:
+        await until(lambda: len(served.runtime.asked) > asked, "STOP")
+        now = served.assembly.clock.now()
+        served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
+
+    disarming = asyncio.create_task(disarm())
+    async with served.assembly.handover.lend(name) as arguments:
+        yield arguments
+    await disarming
+
+
+def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        await until(robot.started.exists, "the runtime")
+        async with lent(served, "grid") as arguments:
+            assert served.runtime.asked == [("stop", {})]
+            assert arguments[:2] == ["--port", robot.settings.link.port]
+            assert arguments[-2:] == ["--reset", "dtr"]
+            assert (runtime_state(served), robot.marker.exists(), robot.uploads.exists()) == (
+                *("paused", True),
+                False,
+            )
+            parts = await health(served)
+            for name in ("runtime", "link", "board"):
+                assert parts[name][0] == "absent"
+                assert "lent to the communication test “grid”" in parts[name][1]
+            for path, body in (("robot/arm", None), ("sessions", {})):
+                answer = await served.api.post(f"/{path}", json=body)
+                assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
+            assert (await served.api.post("/robot/stop")).status_code == 204
+            with pytest.raises(Refused, match="grid"):
+                async with served.assembly.handover.lend("another"):
+                    pass
+            assert runtime_state(served) == "paused"
+        assert "--restore" in robot.uploads.read_text()
+        assert not robot.marker.exists()
+        await until(lambda: runtime_state(served) == "running", "the runtime again")
+        assert (await served.api.post("/robot/arm")).status_code == 204
+        assert (await served.api.post("/sessions", json={})).status_code == 201
+
+    robot.play(scenario)
+
+
+def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
+        with pytest.raises(Refused, match="“dive” is being recorded"):
+            async with served.assembly.handover.lend("tested"):
+                pass
+        assert served.runtime.asked == []
+
+    robot.play(scenario)
+
+
+@pytest.mark.parametrize("state", [{"armed": True}, {"armed": False, "time": 0.0}, None])
+def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch, state: dict[str, Any] | None
+) -> None:
+    monkeypatch.setattr(handover_module, "DISARM_SECONDS", 0.3)
+
+    async def scenario(served: Served) -> None:
+        await until(robot.started.exists, "the runtime")
+        if state is not None:
+            served.runtime.publish(state_block(0, **{"time": served.assembly.clock.now() + 60} | state))
+            await until(served.assembly.watch.state, "the state")
+        with pytest.raises(Refused, match="was not disarmed within"):
+            async with served.assembly.handover.lend("tested"):
+                pass
+        assert (runtime_state(served), robot.marker.exists()) == ("running", False)
+        assert (await served.api.post("/robot/arm")).status_code == 204
+
+    robot.play(scenario)
+
+
+def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bridge_module, "ANSWER_SECONDS", 0.3)
+
+    async def scenario(served: Served) -> None:
+        served.runtime.gates["stop"].clear()
+        with pytest.raises(Refused, match="could not be disarmed before the test"):
+            async with served.assembly.handover.lend("tested"):
+                pass
+        served.runtime.gates["stop"].set()
+        assert not robot.marker.exists()
+
+    robot.play(scenario)
+
+
+def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        robot.marker.mkdir()
+        with pytest.raises(Refused, match="firmware-away cannot be written"):
+            async with lent(served):
+                pass
+        assert not robot.uploads.exists()
+        await until(lambda: runtime_state(served) == "running", "the runtime again")
+
+    robot.play(scenario)
+
+
+def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_again(robot: Robot) -> None:
+    async def scenario(served: Served) -> None:
+        robot.upload_does("echo avrdude: not in sync; exit 1")
+        async with lent(served):
+            pass
+        assert robot.marker.exists()
+        served.runtime.publish(state_block(1500, connected=False, connection="no answer"))
+        await until(lambda: (served.assembly.watch.state() or {}).get("connected") is False, "the state")
+        state, words = (await health(served))["link"]
+        assert state == "failed"
+        assert "not in sync" in words
+        assert "start the server again" in words
+        await until(lambda: runtime_state(served) == "running", "the runtime all the same")
+        robot.upload_does("exit 0")
+        async with lent(served):
+            pass
+        assert not robot.marker.exists()
+        assert "not in sync" not in (await health(served))["link"][1]
+
+    robot.play(scenario)
+
+
+def test_an_interrupted_test_s_firmware_is_brought_back_before_the_runtime_starts(robot: Robot) -> None:
+    robot.marker.touch()
+
+    async def scenario(served: Served) -> None:
+        await until(robot.started.exists, "the runtime")
+        assert robot.started.read_text() == "True"
+        assert not robot.marker.exists()
+        assert (await served.api.post("/robot/arm")).status_code == 204
+
+    robot.play(scenario)
+
+
+def test_without_a_port_the_runtime_starts_all_the_same_and_the_note_stays(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(handover_module, "PORT_SECONDS", 0.1)
+    Path(robot.settings.link.port).unlink()
+    robot.marker.touch()
+
+    async def scenario(served: Served) -> None:
+        await until(robot.started.exists, "the runtime")
+        assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
+        assert served.assembly.watch.firmware_away is not None
+        assert f"there is no {robot.settings.link.port}" in served.assembly.watch.firmware_away
+
+    robot.play(scenario)

@@ -1,0 +1,303 @@
+"""Communication tests over HTTP, with the lab's own process on emulated boards."""
+
+import asyncio
+import csv
+import io
+import json
+import signal
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from websockets.asyncio.client import ClientConnection
+
+from server.platform.settings import Settings
+from tests.board.rig import ROOT, build
+from tests.server.serving import Served, next_text, serve
+from tests.server.waiting import until
+
+pytestmark = pytest.mark.stack
+
+QUICK: dict[str, Any] = {
+    "id": 1,
+    "name": "two delays",
+    "ino_path": "comm_test/comm_test.ino",
+    "delay": [0.0, 0.01],
+    "baud_rate": [115200],
+    "from_val": 1,
+    "to_val": 13,
+    "expected": 12,
+    "arduinodelay": [0.0],
+    "framing": "plain",
+}
+ENDLESS = QUICK | {"name": "endless", "delay": [0.0, 10.0], "to_val": 201, "expected": 200}
+"""Its second cell is half an hour of emulated time."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _board() -> None:
+    build(ROOT / "firmware/emulator")
+
+
+def text(*tests: dict[str, Any]) -> str:
+    return json.dumps(tests)
+
+
+@asynccontextmanager
+async def watching(served: Served) -> AsyncIterator[ClientConnection]:
+    async with served.connect() as socket:
+        yield socket
+
+
+async def start(served: Served, *tests: dict[str, Any]) -> int:
+    answer = await served.api.post("/comm-tests/runs", json={"text": text(*tests), "place": "emulated"})
+    assert answer.status_code == 201, answer.text
+    number: int = answer.json()["run"]
+    return number
+
+
+async def news_until(socket: ClientConnection, *, cell: int | None = None) -> list[dict[str, Any]]:
+    """What is told of the tests up to this cell, or until nothing runs any longer."""
+    told: list[dict[str, Any]] = []
+    async with asyncio.timeout(90):
+        while True:
+            told.append(await next_text(socket, "comm_test"))
+            if cell is None and len(told) > 1 and told[-1]["active"] is None:
+                return told
+            if cell is not None and (told[-1]["cell"] or {}).get("number") == cell:
+                return told
+
+
+async def get(served: Served, path: str) -> Any:
+    answer = await served.api.get(f"/comm-tests/{path}")
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served, watching(served) as socket:
+            first = await start(served, QUICK, QUICK | {"direction": "both", "framing": "robot"})
+            busy = await served.api.post("/comm-tests/runs", json={"text": text(QUICK), "place": "emulated"})
+            assert (busy.status_code, "A communication test is running" in busy.json()["detail"]) == (
+                409,
+                True,
+            )
+            told = await news_until(socket, cell=1)
+            active = told[-1]["active"]
+            assert (active["run"], active["name"], active["place"]) == (first, "two delays", "emulated")
+            assert (active["test"], active["tests"], active["cells"], active["done"]) == (0, 2, 2, 2)
+            assert active["remaining"] > 0
+            assert told[-1]["cell"]["run"] == first
+            await until(lambda: not served.assembly.lab.busy, "the end", 90)
+
+            second, one = [run for run in await get(served, "runs") if not run["sample"]]
+            assert (one["id"], one["state"], one["cells"], one["cells_done"]) == (first, "complete", 2, 2)
+            assert (one["framing"], one["place"], one["rate_mean"], one["rate_min"]) == (
+                "plain",
+                "emulated",
+                1,
+                1,
+            )
+            assert (second["framing"], second["direction"], second["state"]) == ("robot", "both", "complete")
+            run = await get(served, f"runs/{first}")
+            assert run["document"]["delay"] == [0.0, 0.01]
+            assert run["tools"]["emulated board"]
+            assert [cell["pi_delay"] for cell in run["results"]] == [0.0, 0.01]
+            assert run["results"][1] == {
+                name: value for name, value in told[-1]["cell"].items() if name != "run"
+            }
+            table = await served.api.get(f"/comm-tests/runs/{first}/csv")
+            assert "attachment" in table.headers["content-disposition"]
+            assert [row["rate"] for row in csv.DictReader(io.StringIO(table.text))] == ["1.0", "1.0"]
+            whole = (await served.api.get(f"/comm-tests/runs/{first}/json")).json()
+            assert (whole["place"], len(whole["cells"])) == ("emulated", 2)
+        async with serve(settings) as served, watching(served) as socket:
+            assert (await get(served, "runs"))[0] == second
+
+    asyncio.run(scenario())
+
+
+def test_cancelled_in_the_middle_of_a_cell_it_keeps_the_others(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served, watching(served) as socket:
+            assert (await served.api.post("/comm-tests/cancel")).status_code == 204
+            number = await start(served, ENDLESS, QUICK)
+            await news_until(socket, cell=0)
+            assert (await served.api.post("/comm-tests/cancel")).status_code == 204
+            await until(lambda: not served.assembly.lab.busy, "the end", 30)
+            async with watching(served) as late:
+                assert (await next_text(late, "comm_test"))["active"] is None
+            run, *others = [run for run in await get(served, "runs") if not run["sample"]]
+            assert (run["id"], run["state"], run["problem"], run["cells_done"]) == (
+                number,
+                "cancelled",
+                "",
+                1,
+            )
+            assert run["ended"]
+            assert others == []
+
+    asyncio.run(scenario())
+
+
+def test_a_lab_that_is_killed_costs_the_run_and_nothing_else(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served, watching(served) as socket:
+            number = await start(served, ENDLESS)
+            await news_until(socket, cell=0)
+            (lab,) = [
+                child
+                for child in psutil.Process().children()
+                if "robot_runtime.experiments.comm_test" in " ".join(child.cmdline())
+            ]
+            boards = lab.children(recursive=True)
+            lab.send_signal(signal.SIGKILL)
+            await until(lambda: not served.assembly.lab.busy, "the end", 30)
+            run = await get(served, f"runs/{number}")
+            assert (run["state"], run["cells_done"]) == ("failed", 1)
+            assert "was ended by signal SIGKILL" in run["problem"]
+            assert boards
+            await until(lambda: not any(board.is_running() for board in boards), "the boards' end")
+            await start(served, QUICK)
+            await until(lambda: not served.assembly.lab.busy, "the next run's end", 60)
+            assert (await get(served, "runs"))[0]["state"] == "complete"
+
+    asyncio.run(scenario())
+
+
+def test_the_server_s_end_cancels_what_runs(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served, watching(served) as socket:
+            number = await start(served, ENDLESS)
+            await news_until(socket, cell=0)
+        async with serve(settings) as served:
+            assert (await get(served, f"runs/{number}"))["state"] == "cancelled"
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        ("echo out of oil >&2; exit 3", "has ended with exit status 3"),
+        ("""echo '{"event": "phase", "test": 0}'""", "cannot be understood"),
+        ("""echo '{"event": "cell", "test": 0, "number": 0, "values": {}}'""", "cannot be understood"),
+        ("""echo '{"event": "cell", "test": 0, "number": 9, "values": 3}'""", "cannot be understood"),
+        ("head -c 300000 /dev/zero; exit 0", "It broke off"),
+    ],
+)
+def test_what_a_broken_lab_says_is_told_and_bounded(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str, words: str
+) -> None:
+    started = '{"event": "started", "test": 0, "firmware": "f", "tools": {}, "host": "h"}'
+    script = tmp_path / "lab"
+    script.write_text(f"#!/bin/sh\necho '{started}'\n{program}\n", encoding="utf-8")
+    script.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(script))
+
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            number = await start(served, QUICK)
+            await until(lambda: not served.assembly.lab.busy, "the end")
+            run = await get(served, f"runs/{number}")
+            assert run["state"] == "failed"
+            assert words in run["problem"]
+            assert len(run["problem"]) < 200_000
+
+    asyncio.run(scenario())
+
+
+def test_a_lab_that_cannot_begin_says_why(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            body = {"text": text(QUICK), "place": "emulated"}
+            answer = await served.api.post("/comm-tests/runs", json=body)
+            assert answer.status_code == 409
+            assert "could not begin. It has ended with exit status 1" in answer.json()["detail"]
+            assert not any(not run["sample"] for run in await get(served, "runs"))
+
+    asyncio.run(scenario())
+
+
+REFUSED: list[tuple[dict[str, Any], str]] = [
+    ({"delay": [-1]}, "test 1: delay[0]: -1 is not a delay"),
+    ({"delay": []}, "test 1: delay"),
+    ({"baud_rate": [230400]}, "test 1: baud_rate[0]"),
+    ({"arduinodelay": ["a"]}, "test 1: arduinodelay[0]"),
+    ({"from_val": 20}, "test 1: "),
+    ({"expected": 3}, "test 1: expected"),
+    ({"framing": "none"}, "test 1: framing"),
+    ({"direction": "up"}, "test 1: direction"),
+    ({"ino_path": "../../etc/passwd"}, "test 1: ino_path"),
+    ({"name": ""}, "test 1: name"),
+    ({"speed": 3}, "test 1: speed: there is no such field"),
+    ({"delay": [number / 1000 for number in range(501)]}, "at most 500 cells"),
+]
+
+
+def test_a_document_is_checked_field_by_field(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+
+            async def check(content: str) -> Any:
+                answer = await served.api.post("/comm-tests/check", json={"text": content})
+                assert answer.status_code == 200
+                return answer.json()
+
+            for changes, words in REFUSED:
+                found = await check(text(QUICK | changes))
+                assert found["tests"] == []
+                assert any(words in problem for problem in found["problems"]), (changes, found)
+                body = {"text": text(QUICK | changes), "place": "emulated"}
+                answer = await served.api.post("/comm-tests/runs", json=body)
+                assert (answer.status_code, words in answer.json()["detail"]) == (422, True)
+            for content in ("", "nonsense", "{}", "[]", "[3]", "[" * 50_000):
+                assert (await check(content))["problems"]
+            (good,) = (await check(text(QUICK)))["tests"]
+            assert (good["cells"], good["bauds"], good["pi_delays"]) == (2, [115200], [0.0, 0.01])
+            assert 0 < good["seconds"] < 5
+
+    asyncio.run(scenario())
+
+
+def test_what_is_no_request_is_refused(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            api = served.api
+            for body in (
+                {"text": text(QUICK)},
+                {"text": text(QUICK), "place": "moon"},
+                {"text": text(QUICK), "place": "emulated", "speed": 3},
+                {"text": 3, "place": "emulated"},
+                {"text": " " * 61_000, "place": "emulated"},
+            ):
+                assert (await api.post("/comm-tests/runs", json=body)).status_code == 422
+            large = await api.post("/comm-tests/check", json={"text": " " * 70_000})
+            assert large.status_code == 413
+            for path in ("runs/99", "runs/99/csv", "runs/99/json"):
+                answer = await api.get(f"/comm-tests/{path}")
+                assert (answer.status_code, "There is no run 99" in answer.json()["detail"]) == (404, True)
+            for path in ("runs/0", "runs/x", f"runs/{2**63}"):
+                assert (await api.get(f"/comm-tests/{path}")).status_code == 422
+
+    asyncio.run(scenario())
+
+
+def test_documents_and_the_thesis_s_tables_are_shown(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            documents = await get(served, "documents")
+            assert documents[0]["name"] == "figure10"
+            assert all(document["title"] and document["text"] for document in documents)
+            table5, table6 = await get(served, "tables")
+            assert (table5["name"], table5["framing"], len(table5["cells"])) == ("table5", "plain", 15)
+            assert (table6["name"], table6["framing"], len(table6["cells"])) == ("table6", "thesis", 75)
+
+    asyncio.run(scenario())

@@ -1,0 +1,97 @@
+"""The whole stack: a test on the robot's own board, here the emulated one, cut off and carried through."""
+
+import json
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.waiting import alive
+from tests.stack import Stack
+
+pytestmark = pytest.mark.stack
+
+TEST: dict[str, Any] = {
+    "id": 1,
+    "name": "on the robot",
+    "ino_path": "comm_test/comm_test.ino",
+    "delay": [0.0],
+    "baud_rate": [115200],
+    "from_val": 1,
+    "to_val": 21,
+    "expected": 20,
+    "arduinodelay": [0.0],
+    "framing": "plain",
+}
+LONG = TEST | {"delay": [0.0, 10.0]}
+"""Its second cell takes more than three minutes."""
+SECONDS = 90.0
+
+
+@pytest.fixture
+def data() -> Iterator[Path]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        yield Path(name) / "data"
+
+
+def wait(condition: Callable[[], object], what: str) -> None:
+    end = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.1)
+
+
+def run(stack: Stack, *tests: dict[str, Any]) -> int:
+    body = {"text": json.dumps(tests), "place": "robot"}
+    answer = stack.api.post("/comm-tests/runs", json=body, timeout=SECONDS)
+    assert answer.status_code == 201, answer.text
+    number: int = answer.json()["run"]
+    return number
+
+
+def get(stack: Stack, number: int) -> dict[str, Any]:
+    found: dict[str, Any] = stack.api.get(f"/comm-tests/runs/{number}").json()
+    return found
+
+
+def is_back(stack: Stack) -> bool:
+    """The robot's firmware answers the runtime, and is disarmed."""
+    answer = stack.api.get("/robot")
+    parts = {part["name"]: part["state"] for part in stack.api.get("/health").json()["parts"]}
+    if answer.status_code != 200 or not parts["runtime"] == parts["link"] == parts["board"] == "ok":
+        return False
+    assert answer.json()["armed"] is False
+    return answer.json()["connected"] is True
+
+
+@pytest.mark.timeout(400)
+def test_a_server_killed_in_the_middle_brings_the_firmware_back_at_its_next_start(data: Path) -> None:
+    away = data / "firmware-away"
+    with Stack(data) as stack:
+        number = run(stack, LONG)
+        wait(lambda: get(stack, number)["cells_done"] == 1, "the first cell")
+        assert away.exists()
+        link = next(part for part in stack.api.get("/health").json()["parts"] if part["name"] == "link")
+        assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
+        assert stack.api.post("/robot/arm").status_code == 409
+        assert stack.api.post("/sessions", json={}).status_code == 409
+        lab = stack.child("robot_runtime.experiments.comm_test")
+        board = stack.child("build/board")
+        stack.kill()
+        wait(lambda: not alive(lab.pid), "the test's process to end with its server")
+        stack.wait_ready()
+        assert alive(board.pid)
+        wait(lambda: is_back(stack), "the robot")
+        assert not away.exists()
+        interrupted = get(stack, number)
+        assert (interrupted["state"], interrupted["cells_done"]) == ("interrupted", 1)
+        assert [cell["rate"] for cell in interrupted["results"]] == [1.0]
+
+        number = run(stack, TEST)
+        wait(lambda: get(stack, number)["state"] != "running", "the end")
+        done = get(stack, number)
+        assert (done["state"], done["problem"], done["place"]) == ("complete", "", "robot")
+        wait(lambda: is_back(stack) and not away.exists(), "the robot")

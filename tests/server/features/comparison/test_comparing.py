@@ -1,0 +1,222 @@
+"""Whole comparisons of recorded sessions, as the interface gives them."""
+
+import asyncio
+from contextlib import closing
+from typing import Any
+
+import pytest
+from sqlalchemy import insert
+
+from server.features.comparison.comparer import Comparer
+from server.features.comparison.definitions import FIGURES
+from server.features.comparison.schemas import Comparison, WantedComparison
+from server.platform.models import Gap, Marker
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import debug_block
+from tests.server.features.comparison.dives import (
+    ARMED,
+    DISARMED,
+    FLAPS,
+    STARTED_STEADY,
+    STEPPED,
+    WN,
+    dive,
+    record,
+)
+from tests.server.serving import Served, play
+
+DEPTH = ["depth.depth", "control.set_point"]
+RISE = (3.889720 - 0.531812) / WN
+"""s, see test_step_response."""
+
+
+def compare(store: Store, *sessions: int, **wanted: Any) -> Comparison:
+    values = {"sessions": list(sessions), "signals": DEPTH} | wanted
+    return Comparer(store).compare(WantedComparison.model_validate(values))
+
+
+def mark(store: Store, session: int, time: float, text: str) -> None:
+    values = {"session_id": session, "time": time, "text": text, "made": 0.0}
+    asyncio.run(store.write(lambda connection: connection.execute(insert(Marker).values(values))))
+
+
+@pytest.fixture
+def session(store: Store, settings: Settings) -> int:
+    return record(store, settings, dive(), name="one")
+
+
+def test_figures_of_a_known_dive(store: Store, session: int) -> None:
+    (one,) = compare(store, session).sessions
+    values = {name: figure.value for name, figure in one.figures.items()}
+    assert list(values) == [meaning.name for meaning in FIGURES]
+    assert values["rise_time"] == pytest.approx(RISE, abs=0.01)
+    assert values["settling_time"] == pytest.approx(4.743865 / WN, abs=0.03)
+    assert values["overshoot"] == 0
+    assert values["steady_error"] == pytest.approx(0, abs=1e-3)
+    assert values["cycle_amplitude"] is None
+    assert values["cycle_period"] is None
+    # The integral of ((1 + x) exp(-x))² from 0 on is 5/4; both steps are 0.5 m.
+    mean = 2 * 0.5**2 * 1.25 / WN / (DISARMED - ARMED)
+    assert values["rmse"] == pytest.approx(mean**0.5, rel=0.01)
+    assert values["fin_strokes"] == pytest.approx(4 * FLAPS * (DISARMED - ARMED), abs=4)
+    assert values["effort"] == pytest.approx(50.0)
+    assert (values["frames_lost"], values["gaps"]) == (0, 0)
+    assert one.range == [(ARMED - STARTED_STEADY, DISARMED - STARTED_STEADY)]
+    mark = one.figures["rise_time"].mark
+    assert mark is not None
+    assert (mark.low, mark.high) == (pytest.approx(0.05, abs=1e-3), pytest.approx(0.45, abs=1e-3))
+
+
+def test_the_step_that_is_aligned_is_the_one_that_is_measured(store: Store, session: int) -> None:
+    (first,) = compare(store, session, align={"by": "armed"}).sessions
+    (second,) = compare(store, session, align={"by": "set_point"}).sessions
+    assert first.figures["rise_time"].words.startswith("Step from 0.00 m to 0.50 m")
+    assert second.figures["rise_time"].words.startswith("Step from 0.50 m to 1.00 m")
+    assert second.figures["rise_time"].value == pytest.approx(RISE, abs=0.01)
+
+
+def test_a_chosen_range_is_all_that_counts(store: Store, session: int) -> None:
+    (one,) = compare(store, session, align={"by": "set_point"}, range={"start": -2.0, "end": 8.0}).sessions
+    assert one.range == [pytest.approx((STEPPED - STARTED_STEADY - 2, STEPPED - STARTED_STEADY + 8))]
+    assert one.figures["rise_time"].words.startswith("Step from 0.50 m to 1.00 m")
+    assert one.figures["rmse"].value == pytest.approx((0.5**2 * 1.25 / WN / 10) ** 0.5, rel=0.01)
+    assert one.figures["fin_strokes"].value == pytest.approx(4 * FLAPS * 10, abs=4)
+    (calm,) = compare(store, session, align={"by": "set_point"}, range={"start": 10.0, "end": 15.0}).sessions
+    assert calm.figures["rise_time"].value is None
+    assert "no step" in calm.figures["rise_time"].words
+
+
+def test_losses_and_gaps_are_counted(store: Store, settings: Settings) -> None:
+    session = record(store, settings, dive(lost=7))
+    values = {"session_id": session, "topic": "depth", "kind": "missed", "time": ARMED + 1, "missed": 30}
+    asyncio.run(store.write(lambda connection: connection.execute(insert(Gap).values(values))))
+    (one,) = compare(store, session).sessions
+    assert one.figures["frames_lost"].value == 7
+    assert one.figures["gaps"].value == 1
+    assert one.figures["gaps"].words == "Samples that are missing: 30 of depth."
+
+
+def test_moments_are_where_they_are(store: Store, session: int) -> None:
+    mark(store, session, 120.25, "Here it turned")
+    moments = [
+        ({"by": "start"}, 0.0),
+        ({"by": "armed"}, ARMED - STARTED_STEADY),
+        ({"by": "set_point", "number": 1}, STEPPED - STARTED_STEADY),
+        ({"by": "marker", "marker": "here it turned "}, 120.25 - STARTED_STEADY),
+    ]
+    for align, offset in moments:
+        (one,) = compare(store, session, align=align).sessions
+        assert (one.offset, one.problem) == (pytest.approx(offset), ""), align
+    assert one.markers[0].text == "Here it turned"
+    assert [event.text for event in one.events] == ["Armed."]
+
+
+def test_a_recording_that_begins_armed(store: Store, settings: Settings) -> None:
+    """The state documents say since when, even before it; what was not recorded is not measured."""
+    for before, measured in ((0.2, True), (20.0, False)):
+        started = ARMED + before
+        one = record(store, settings, dive(begin=started), started=started)
+        (found,) = compare(store, one, align={"by": "armed"}).sessions
+        assert (found.offset, found.problem) == (pytest.approx(-before), "")
+        assert found.armed[0][0] == pytest.approx(-before)
+        assert (found.figures["rise_time"].value is not None) == measured
+
+
+def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, session: int) -> None:
+    never = record(store, settings, dive(arms=False), name="never")
+    problems = {
+        "armed": "The robot was never armed in this session.",
+        "set_point": "The set point never changed while the robot was armed.",
+        "marker": "This session has no marker “turn”.",
+    }
+    for by, words in problems.items():
+        one = compare(store, never, align={"by": by, "marker": "turn"}).sessions[0]
+        assert (one.offset, one.problem, one.series) == (None, words, {}), by
+    both = compare(store, session, never, align={"by": "armed"})
+    assert [bool(one.series) for one in both.sessions] == [True, False]
+    assert both.sessions[1].figures["rise_time"].words == "The robot was never armed in this session."
+    part = compare(store, never, align={"by": "armed"}, range={"start": 0, "end": 5}).sessions[0]
+    assert {(one.value, one.words) for one in part.figures.values()} == {(None, problems["armed"])}
+    second = compare(store, session, align={"by": "set_point", "number": 2}).sessions[0]
+    assert second.problem == (
+        "The set point changed only once while the robot was armed, so there is no step 2."
+    )
+
+
+def test_what_was_different(store: Store, settings: Settings, session: int) -> None:
+    settings.config.write_text('[robot]\nname = "tested"\n[control]\nrate = 20.0\n', encoding="utf-8")
+    other = record(store, settings, dive("pid", {"kp": 6.0}), name="other")
+    differences = {(one.group, one.name): one.values for one in compare(store, session, other).differences}
+    assert differences == {
+        ("In force", "pid: kp"): ["3", "6"],
+        ("robot.toml", "control.rate"): ["", "20"],
+    }
+    assert compare(store, session, session).sessions[0].id == session
+
+
+def test_lines_are_of_the_signals_that_a_session_has(store: Store, settings: Settings, session: int) -> None:
+    bare = record(store, settings, [debug_block(0, "a")])
+    both = compare(store, session, bare, signals=[*DEPTH, "state.set_point", "truth.position_2"], points=100)
+    assert [signal.name for signal in both.signals] == [*DEPTH, "state.set_point"]
+    assert both.signals[0].unit == "m"
+    one, other = both.sessions
+    assert other.series == {}
+    line = one.series["depth.depth"]
+    assert 95 <= len(line.time) <= 102
+    assert line.time[0] == pytest.approx(0.5, abs=1e-3)
+    assert max(high for high in line.high if high is not None) == pytest.approx(1.0, abs=1e-3)
+    assert one.series["state.set_point"].high == [0.5, 0.5, 0.5]
+
+
+def test_over_http(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, dive(), name="one")
+
+    async def scenario(served: Served) -> None:
+        signals = (await served.api.get(f"/sessions/{session}/signals")).json()
+        names = [one["name"] for one in signals]
+        assert {"depth.depth", "control.set_point", "motor.angle_3", "state.set_point"} <= set(names)
+        assert not any(name.startswith(("imu.", "truth.", "detection.")) for name in names)
+        wanted = {"sessions": [session], "signals": DEPTH, "align": {"by": "armed"}, "points": 200}
+        answer = await served.api.post("/compare", json=wanted)
+        assert answer.status_code == 200
+        whole = answer.json()["sessions"][0]
+        assert whole["figures"]["rise_time"]["value"] == pytest.approx(RISE, abs=0.01)
+        part = await served.api.post("/compare/lines", json=wanted | {"view": {"start": 0, "end": 2}})
+        line = part.json()["sessions"][0]["series"]["depth.depth"]
+        assert len(line["time"]) == pytest.approx(102, abs=2)
+        assert line["time"][0] >= whole["offset"] - 0.03
+
+    play(settings, scenario)
+
+
+BAD: list[tuple[dict[str, Any], int, str]] = [
+    ({"sessions": [99], "signals": DEPTH}, 404, "There is no session 99"),
+    ({"sessions": [], "signals": DEPTH}, 422, "sessions"),
+    ({"sessions": [1] * 13, "signals": DEPTH}, 422, "sessions"),
+    ({"sessions": [1], "signals": ["depth"]}, 422, "signals"),
+    ({"sessions": [1], "signals": DEPTH, "align": {"by": "guess"}}, 422, "align"),
+    ({"sessions": [1], "signals": DEPTH, "points": 1}, 422, "points"),
+    ({"sessions": [1], "signals": DEPTH, "colour": "red"}, 422, "colour"),
+]
+
+
+def test_bad_questions_are_refused(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        record(store, settings, dive(), name="one")
+
+    async def scenario(served: Served) -> None:
+        for wanted, status, words in BAD:
+            answer = await served.api.post("/compare", json=wanted)
+            assert (answer.status_code, words in answer.json()["detail"]) == (status, True), answer.text
+        answer = await served.api.get("/compare/report", params={"sessions": "1", "by": "guess"})
+        assert (answer.status_code, "by" in answer.json()["detail"]) == (422, True)
+        answer = await served.api.get("/compare/report", params={"sessions": "1,x"})
+        assert answer.status_code == 422
+        assert (await served.api.get("/sessions/99/signals")).status_code == 404
+
+    play(settings, scenario)

@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from server.features.comparison.decimation import decimate
+from server.features.comparison.samples import Series
+
+
+def test_few_samples_are_passed_on_as_they_are() -> None:
+    series = Series(np.array([0.0, 0.5, 1.0]), np.array([3.0, 1.0, 2.0]))
+    drawn = decimate(series, 0.0, 1.0, 10)
+    assert drawn.time.tolist() == [0.0, 0.5, 1.0]
+    assert drawn.low.tolist() == drawn.high.tolist() == [3.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize("at", [0, 1, 77_777, 179_998, 179_999])
+def test_no_spike_is_lost(at: int) -> None:
+    times = np.arange(180_000) / 50
+    values = np.sin(times)
+    values[at] = 9.0
+    drawn = decimate(Series(times, values), 0.0, 3600.0, 500)
+    assert 500 <= drawn.time.size <= 502
+    column = int(np.flatnonzero(drawn.high == 9.0)[0])
+    assert drawn.time[column] <= times[at]
+    assert column == drawn.time.size - 1 or times[at] < drawn.time[column + 1]
+    assert drawn.low.min() == values.min()
+
+
+def test_a_part_comes_finer_and_with_its_neighbours() -> None:
+    times = np.arange(180_000) / 50
+    drawn = decimate(Series(times, times.copy()), 100.0, 101.0, 500)
+    assert drawn.time.tolist() == [one / 50 for one in range(4999, 5052)]
+    assert drawn.low.tolist() == drawn.high.tolist() == drawn.time.tolist()
+
+
+@pytest.mark.parametrize("points", [50, 10_000])
+def test_a_pause_breaks_the_line(points: int) -> None:
+    times = np.concatenate([np.arange(0, 100, 0.02), np.arange(160, 200, 0.02)])
+    drawn = decimate(Series(times, np.ones(times.size)), 0.0, 200.0, points)
+    (broken,) = np.flatnonzero(np.isnan(drawn.low))
+    assert drawn.time[broken - 1] < 100 < drawn.time[broken] < 160 <= drawn.time[broken + 1] + 4
+    assert np.flatnonzero(np.isnan(drawn.high)).tolist() == [broken]
+
+
+def test_slow_signals_are_not_broken() -> None:
+    times = np.arange(0, 600, 1.0)
+    assert not np.isnan(decimate(Series(times, times), 0.0, 600.0, 5000).low).any()
+
+
+def test_nothing_gives_nothing() -> None:
+    empty = np.empty(0)
+    assert decimate(Series(empty, empty), 0.0, 10.0, 100).time.size == 0
+
+
+def test_numbers_that_are_none_do_not_hide_others() -> None:
+    times = np.arange(1000) / 50
+    values = np.ones(1000)
+    values[::3] = np.nan
+    drawn = decimate(Series(times, values), 0.0, 20.0, 20)
+    assert drawn.low.tolist() == drawn.high.tolist() == [1.0] * drawn.time.size

@@ -1,0 +1,38 @@
+"""What was different about sessions: the parameters that were in force while armed."""
+
+from server.features.comparison.differences import CHANGED, find_differences
+from server.features.comparison.moments import History, Span, Tuned
+from server.platform.models import SessionRow
+
+
+def history(*tuned: tuple[float, float], armed: tuple[Span, ...] = (Span(10, 20),)) -> History:
+    """With these values of one parameter from these times on."""
+    parameters = tuple(
+        Tuned(time, {"depth.pid.kp": kp, "vision.colour": "red", "loud": True}) for time, kp in tuned
+    )
+    return History(armed, armed_at_start=False, controls=(), state={}, parameters=parameters)
+
+
+def differing(*histories: History) -> dict[str, list[str]]:
+    row = SessionRow(configuration="", scenario="")  # type: ignore[call-arg]
+    found = find_differences([(row, one) for one in histories])
+    return {one.name: one.values for one in found if one.group == "Parameters"}
+
+
+def test_only_what_differs_is_told() -> None:
+    assert differing(history((0, 3)), history((0, 4))) == {"depth.pid.kp": ["3", "4"]}
+
+
+def test_what_changed_while_armed_is_told_in_order_and_what_did_before_and_after_is_not() -> None:
+    one = history((0, 1), (5, 3), (12, 4), (25, 9))
+    assert differing(one, history((0, 3))) == {"depth.pid.kp": [CHANGED + "3, 4", "3"]}
+
+
+def test_of_a_session_that_was_never_armed_what_it_began_with_counts() -> None:
+    assert differing(history((0, 3), (5, 4), armed=()), history((0, 4), armed=())) == {
+        "depth.pid.kp": ["3", "4"]
+    }
+
+
+def test_older_recordings_have_none() -> None:
+    assert differing(history(), history((0, 3)))["loud"] == ["", "yes"]

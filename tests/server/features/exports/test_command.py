@@ -1,0 +1,94 @@
+import asyncio
+import hashlib
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from server.cli import main
+from server.features.exports.options import FORMATS
+from server.features.exports.schemas import Format
+from server.platform.running_server import announce
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import depth_block
+from tests.server.features.exports.test_tables import record
+from tests.server.serving import serve
+
+
+@pytest.fixture
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, [depth_block(0, 20)])
+
+
+def run(settings: Settings, *arguments: str, data: Path | None = None) -> int:
+    where = ["--data", str(data or settings.data.path), "--config", str(settings.config)]
+    return main([*arguments, *where])
+
+
+def test_a_session_goes_through_a_shell_and_back(
+    settings: Settings, session: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "dive.zip"
+    assert run(settings, "export", str(session), "--format", "archive", "-o", str(path)) == 0
+    assert hashlib.sha256(path.read_bytes()).hexdigest() in capsys.readouterr().out
+    assert [one.name for one in tmp_path.iterdir()] == ["dive.zip"]
+    assert run(settings, "import", str(path), data=tmp_path / "other") == 0
+    assert capsys.readouterr().out == "session 1: Dive no. 1: Öresund/../x\n"
+    assert run(settings, "import", str(path), data=tmp_path / "other") == 1
+    assert "is here already, as number 1" in capsys.readouterr().err
+    lines = tmp_path / "lines.jsonl"
+    wanted = ["--format", "jsonl", "--topics", "depth", "--start", "0.6", "--end", "0.7"]
+    assert run(settings, "export", "1", *wanted, "-o", str(lines), data=tmp_path / "other") == 0
+    assert len(lines.read_text().splitlines()) == 6
+
+
+def test_beside_a_running_server_the_server_imports(
+    settings: Settings, session: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "dive.zip"
+    assert run(settings, "export", str(session), "--format", "archive", "-o", str(path)) == 0
+
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            lock = settings.data.lock.open("w")
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            announce(served.settings)
+            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
+            assert "is here already, as number 1" in capsys.readouterr().err
+            announce(replace(settings, port=1))
+            assert await asyncio.to_thread(run, settings, "import", str(path)) == 1
+            assert "does not answer at http://127.0.0.1:1" in capsys.readouterr().err
+            lock.close()
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["export", "9"], "There is no session 9"),
+        (["export", "1", "--topics", "x"], "no topic x"),
+        (["export", "1", "--format", "csv-grid", "--period", "0"], "period: "),
+        (["export", "1", "-o", "/nowhere/x"], "/nowhere cannot be written"),
+        (["import", "/nowhere"], "There is no file /nowhere"),
+        (["import", "robot.toml"], "It is no zip file"),
+    ],
+)
+def test_what_cannot_be_done_is_told(
+    settings: Settings, session: int, arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert session == 1
+    assert run(settings, *arguments) == 1
+    assert words in capsys.readouterr().err
+
+
+def test_the_shell_knows_every_format() -> None:
+    assert set(FORMATS) == set(get_args(Format))

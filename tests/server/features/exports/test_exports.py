@@ -1,0 +1,350 @@
+"""Each format read back, as somebody at home does."""
+
+import asyncio
+import base64
+import io
+import json
+import math
+import re
+import struct
+import sys
+import zipfile
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pandas
+import pyarrow.parquet
+import pytest
+from mcap.reader import make_reader
+from sqlalchemy import insert
+
+from robot_runtime.contract.documents import Control, Event, Truth
+from robot_runtime.contract.packets import Imu
+from robot_runtime.contract.packets.layout import Record
+from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from server.features.exports.archive_reader import examine
+from server.features.exports.formats import KINDS, check
+from server.features.exports.mcap_schemas import WELL_KNOWN
+from server.features.exports.schemas import Wanted
+from server.features.exports.selection import ExportRefused, Source
+from server.features.sessions.session import find_row
+from server.platform.models import Marker
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import debug_block, depth_block, state_block
+from tests.server.features.exports.test_tables import record
+
+AWKWARD = 'say "hi", then\nbreak; é, nan'
+
+
+def rows_block(topic: str, period: float, *records: Record) -> Block:
+    rows = b"".join(row(100 + period * place, one.to_bytes()) for place, one in enumerate(records))
+    return Block.of(BY_NAME[topic], len(records), 0, rows)
+
+
+def imu(number: int) -> Imu:
+    return Imu(time=number, attitude=(1, 0, 0, 0), rate=(0, 0, 0), force=(0, 0, -9.8))
+
+
+def truth(depth: float) -> Truth:
+    return Truth(
+        position=(1, 2, depth),
+        attitude=(1, 0, 0, 0),
+        velocity=(0, 0, 0),
+        rate=(0, 0, 0),
+        fins=(0, 0, 0, 0),
+    )
+
+
+def control(latency: float) -> Control:
+    return Control(set_point=0.5, depth=0.25, error=0.25, output=-1, latency=latency)
+
+
+@pytest.fixture
+def session(store: Store, settings: Settings) -> int:
+    """Two seconds with every kind of topic, and a marker."""
+    alarm = Event(time=100.25, kind="leak", severity="alarm", text="water in the hull")
+    number = record(
+        store,
+        settings,
+        [
+            depth_block(0, 50),
+            rows_block("imu", 0.01, *map(imu, range(100))),
+            rows_block("truth", 0.05, *(truth(place / 10) for place in range(20))),
+        ],
+        [
+            depth_block(50, 50),
+            rows_block("control", 0.1, control(0.01), control(math.nan), control(math.inf)),
+            debug_block(0, AWKWARD, "b"),
+            state_block(0),
+            Block.of(BY_NAME["event"], 1, 0, pack_documents([alarm])),
+        ],
+    )
+    marker = {"session_id": number, "time": 100.5, "text": "here it turned", "made": 1.0}
+    asyncio.run(store.write(lambda connection: connection.execute(insert(Marker).values(marker))))
+    return number
+
+
+def write(store: Store, session: int, **wanted: Any) -> io.BytesIO:
+    row = find_row(store, session)
+    assert row is not None
+    chosen, output = Wanted(**wanted), io.BytesIO()
+    check(chosen).write(store, Source(store, row, chosen), output)
+    output.seek(0)
+    return output
+
+
+def test_json_lines_are_in_order_and_in_si_units(store: Store, session: int) -> None:
+    lines = write(store, session, format="jsonl").getvalue().decode().splitlines()
+    samples = [json.loads(line) for line in lines]
+    row = find_row(store, session)
+    assert row is not None
+    assert Counter(one["topic"] for one in samples) == Source(store, row, Wanted(format="csv")).counts()
+    assert [one["time"] for one in samples] == sorted(one["time"] for one in samples)
+    depth = [one for one in samples if one["topic"] == "depth"]
+    assert [one["depth"] for one in depth] == pytest.approx([n / 1000 for n in range(100)], abs=1e-12)
+    assert depth[7]["board_time"] == pytest.approx(7e-6)
+    assert depth[0]["time"] == 0.5
+    assert depth[0]["utc"].endswith("Z")
+    assert [one["latency"] for one in samples if one["topic"] == "control"][1:] == [None, None]
+    assert next(one for one in samples if one["topic"] == "debug")["text"] == AWKWARD
+    assert next(one for one in samples if one["topic"] == "imu")["attitude"] == [1, 0, 0, 0]
+
+
+def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> None:
+    archive = zipfile.ZipFile(write(store, session, format="parquet"))
+    tables = {
+        name.removesuffix(".parquet"): pyarrow.parquet.read_table(io.BytesIO(archive.read(name)))
+        for name in archive.namelist()
+        if name.endswith(".parquet")
+    }
+    assert {name: table.num_rows for name, table in tables.items()} == {
+        "imu": 100,
+        "depth": 100,
+        "control": 3,
+        "truth": 20,
+        "state": 1,
+        "debug": 2,
+        "event": 1,
+    }
+    depth = tables["depth"]
+    assert depth.column("pressure").to_pylist() == [101_325 + n for n in range(100)]
+    assert depth.column("depth").to_pylist() == [n * 0.001 for n in range(100)]
+    assert str(depth.schema.field("pressure").type) == "uint32"
+    assert depth.schema.field("depth").metadata[b"unit"] == b"m"
+    latency = tables["control"].column("latency").to_pylist()
+    assert struct.pack("<3f", *latency) == struct.pack("<3f", 0.01, math.nan, math.inf)
+    assert tables["debug"].column("text").to_pylist() == [AWKWARD, "b"]
+    assert json.loads(tables["state"].column("colours").to_pylist()[0]) == ["yellow"]
+    utc = pandas.Timestamp(depth.column("utc")[0].as_py())
+    row = find_row(store, session)
+    assert row is not None
+    assert utc.timestamp() == pytest.approx(row.started + 0.5, abs=1e-5)
+
+
+def test_parquet_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    with pytest.raises(ExportRefused, match=r"pip install mucat\[parquet\]"):
+        check(Wanted(format="parquet"))
+
+
+def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session: int) -> None:
+    reader = make_reader(write(store, session, format="mcap"), validate_crcs=True)
+    summary = reader.get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    channels = {channel.topic: channel for channel in summary.channels.values()}
+    counts = {
+        topic: summary.statistics.channel_message_counts[channel.id] for topic, channel in channels.items()
+    }
+    row = find_row(store, session)
+    assert row is not None
+    stored = Source(store, row, Wanted(format="csv")).counts()
+    assert {topic: counts[f"/{topic}"] for topic in stored} == stored
+    schemas = {topic: summary.schemas[channel.schema_id] for topic, channel in channels.items()}
+    assert {topic: schema.name for topic, schema in schemas.items()} == {
+        **{f"/{topic}": f"mucat.{topic}" for topic in stored},
+        "/log": "foxglove.Log",
+        "/tf": "foxglove.FrameTransform",
+        "/tf_static": "foxglove.FrameTransform",
+        "/pose": "foxglove.PoseInFrame",
+    }
+    messages: dict[str, list[dict[str, Any]]] = {}
+    last = 0
+    for schema, channel, message in reader.iter_messages(log_time_order=False):
+        assert schema is not None
+        told = json.loads(message.data)
+        assert set(json.loads(schema.data).get("required", [])) <= set(told)
+        assert message.log_time >= last
+        last = message.log_time
+        messages.setdefault(channel.topic, []).append(told)
+    assert [one["depth"] for one in messages["/depth"]] == pytest.approx([n / 1000 for n in range(100)])
+    assert messages["/imu"][0]["attitude"] == [1, 0, 0, 0]
+    assert [one["latency"] for one in messages["/control"]] == [pytest.approx(0.01), None, None]
+    log = {one["message"]: (one["name"], one["level"]) for one in messages["/log"]}
+    assert log == {
+        AWKWARD: ("debug", 2),
+        "b": ("debug", 2),
+        "water in the hull": ("leak", 4),
+        "here it turned": ("marker", 2),
+    }
+    assert 9 <= counts["/tf"] == counts["/pose"] <= 10
+    assert messages["/tf"][0]["translation"] == {"x": 1, "y": 2, "z": 0}
+    assert messages["/pose"][-1]["pose"]["position"]["z"] > 1
+    about = {record.name: record.metadata for record in reader.iter_metadata()}
+    assert about["session"]["identifier"] == row.identifier
+    assert about["configuration"]["robot.toml"] == row.configuration
+    (attached,) = reader.iter_attachments()
+    assert json.loads(attached.data)["marks"][0]["text"] == "here it turned"
+
+
+def test_mcap_has_schemas_that_foxglove_can_read(store: Store, session: int) -> None:
+    summary = make_reader(write(store, session, format="mcap")).get_summary()
+    assert summary is not None
+    for schema in summary.schemas.values():
+        assert schema.encoding == "jsonschema"
+        _look_at(json.loads(schema.data))
+    for well_known in WELL_KNOWN.values():
+        _look_at(well_known)
+
+
+def _look_at(schema: dict[str, Any]) -> None:
+    """What Foxglove's parser of JSON Schema takes, and no more."""
+    if "oneOf" in schema:
+        assert all(isinstance(one["const"], int) for one in schema["oneOf"])
+        return
+    assert schema["type"] in ("boolean", "string", "number", "integer", "array", "object")
+    if schema["type"] == "array":
+        assert schema["items"]["type"] != "array"
+        _look_at(schema["items"])
+    if schema["type"] == "object":
+        for member in schema["properties"].values():
+            _look_at(member)
+
+
+def test_mcap_without_truth_has_depth_and_attitude(store: Store, settings: Settings) -> None:
+    number = record(
+        store, settings, [depth_block(5, 10, start=99.9), rows_block("imu", 0.05, imu(0), imu(1))]
+    )
+    reader = make_reader(write(store, number, format="mcap"))
+    places = [json.loads(message.data) for _, _, message in reader.iter_messages(topics=["/tf"])]
+    assert [place["translation"] for place in places] == [{"x": 0, "y": 0, "z": 0.007}]
+
+
+def test_the_grid_has_the_newest_value_or_none(store: Store, settings: Settings) -> None:
+    number = record(
+        store,
+        settings,
+        [depth_block(0, 50), rows_block("control", 0.25, control(0.1), control(0.2))],
+        [depth_block(100, 50)],
+    )
+    wanted = ["control.latency", "depth.depth"]
+    output = write(store, number, format="csv-grid", columns=wanted, period=0.1, start=0.5, end=3.5)
+    archive = zipfile.ZipFile(output)
+    table = pandas.read_csv(archive.open("grid.csv"))
+    assert list(table) == ["time [s]", "utc", "control.latency [s]", "depth.depth [m]"]
+    assert len(table) == 31
+    depth = table["depth.depth [m]"].tolist()
+    # Samples every 0.02 s from 0.5 to 1.48 s and from 2.5 to 3.48 s; older than 0.04 s is too old.
+    assert depth[:10] == pytest.approx([place * 0.005 for place in range(10)])
+    assert all(map(math.isnan, depth[11:20]))
+    assert depth[20:30] == pytest.approx([0.1 + place * 0.005 for place in range(10)])
+    assert table["control.latency [s]"].tolist()[:9] == pytest.approx(
+        [0.1] * 3 + [0.2] * 5 + [math.nan], nan_ok=True
+    )
+    readme = archive.read("README.txt").decode()
+    assert "depth: 0.04 s" in readme
+    assert "control: 0.5 s" in readme
+
+
+def test_a_range_and_topics_are_kept_to(store: Store, session: int) -> None:
+    chosen = {"topics": ["depth", "debug"], "start": 0.7, "end": 0.9}
+    lines = write(store, session, format="jsonl", **chosen).getvalue().decode().splitlines()
+    assert {json.loads(line)["topic"] for line in lines} == {"depth"}
+    assert [json.loads(line)["board_time"] for line in lines] == pytest.approx(
+        [n * 1e-6 for n in range(10, 21)]
+    )
+    archive = zipfile.ZipFile(write(store, session, format="csv", **chosen))
+    assert len(archive.read("depth.csv").splitlines()) == 12
+
+
+@pytest.mark.parametrize(
+    ("wanted", "words"),
+    [
+        ({"format": "csv", "topics": ["dephts"]}, "no topic dephts; it has imu, depth"),
+        ({"format": "csv", "start": 2, "end": 1}, "ends before it starts"),
+        ({"format": "csv", "columns": ["depth.depth"]}, "for csv-grid alone"),
+        ({"format": "csv-grid", "topics": ["depth"]}, "choose columns"),
+        ({"format": "csv-grid", "columns": ["depth.dep"]}, "no column depth.dep; there are depth.time"),
+        ({"format": "csv-grid", "columns": ["beacon.left"]}, "beacon has no numbers in this range"),
+        ({"format": "csv-grid", "period": 0.001, "end": 1e6}, "most are 10000000"),
+        ({"format": "archive", "start": 1}, "holds the whole session"),
+    ],
+)
+def test_what_cannot_be_made_is_told(store: Store, session: int, wanted: dict[str, Any], words: str) -> None:
+    with pytest.raises(ExportRefused, match=words):
+        write(store, session, **wanted)
+
+
+# Parquet's writer and the report say when they wrote.
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("parquet", "report")])
+def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind: str) -> None:
+    assert write(store, session, format=kind).getvalue() == write(store, session, format=kind).getvalue()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_empty_session_gives_a_file(store: Store, settings: Settings, kind: str) -> None:
+    number = record(store, settings)
+    if kind == "csv-grid":
+        with pytest.raises(ExportRefused, match="No topic has numbers"):
+            write(store, number, format=kind)
+    else:
+        write(store, number, format=kind)
+
+
+def test_the_report_needs_no_network_and_names_its_figures(store: Store, session: int) -> None:
+    text = write(store, session, format="report").getvalue().decode()
+    assert "Plotly.newPlot" in text
+    assert "RMSE" in text
+    assert re.search(r"<(script|link)[^>]+(src|href)=", text) is None
+
+
+def test_pictures_go_along(store: Store, settings: Settings, tmp_path: Path) -> None:
+    topic = BY_NAME["thumbnail"]
+    blocks = [Block.of(topic, 1, place, row(100 + place, b"jpeg %d" % place)) for place in range(3)]
+    number = record(store, settings, [depth_block(0, 1)], blocks)
+    archive = zipfile.ZipFile(write(store, number, format="csv"))
+    assert archive.read("thumbnail/000001.500.jpg") == b"jpeg 1"
+    lines = [json.loads(line) for line in write(store, number, format="jsonl").getvalue().splitlines()]
+    assert base64.b64decode(lines[-1]["jpeg"]) == b"jpeg 2"
+    tables = zipfile.ZipFile(write(store, number, format="parquet"))
+    table = pyarrow.parquet.read_table(io.BytesIO(tables.read("thumbnail.parquet")))
+    assert table.column("jpeg").to_pylist() == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
+    reader = make_reader(write(store, number, format="mcap"))
+    found = [
+        (schema, json.loads(message.data)) for schema, _, message in reader.iter_messages(topics="/camera")
+    ]
+    assert [base64.b64decode(image["data"]) for _, image in found] == [b"jpeg 0", b"jpeg 1", b"jpeg 2"]
+    schema, image = found[0]
+    assert schema is not None
+    assert (schema.name, image["format"]) == ("foxglove.CompressedImage", "jpeg")
+    whole = tmp_path / "whole"
+    whole.write_bytes(write(store, number, format="archive").getvalue())
+    examine(whole)
+
+
+def test_the_example_of_the_docs_runs(
+    store: Store,
+    session: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = (Path(__file__).parents[4] / "docs/export.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "dive.zip").write_bytes(write(store, session, format="csv").getvalue())
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example, "docs/export.md", "exec"), {})
+    assert "count    100.0" in capsys.readouterr().out

@@ -1,0 +1,267 @@
+"""Archives brought back: whole ones, and all others."""
+
+import asyncio
+import io
+import json
+import math
+import zipfile
+import zlib
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import Connection, insert, text
+from sqlmodel import col, select
+
+from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
+from server.features.exports.archive_reader import ArchiveRefused, examine
+from server.features.exports.imports import Imports
+from server.features.exports.schemas import Wanted
+from server.features.exports.selection import ExportRefused, Source
+from server.features.sessions.session import IMPORTING, REMOVING, find_row
+from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Reader, Store, StoreError
+from tests.server.blocks import debug_block, depth_block, state_block
+from tests.server.features.exports.test_tables import record
+from tests.server.serving import serve
+
+Members = dict[str, bytes]
+
+
+@pytest.fixture
+def session(store: Store, settings: Settings) -> int:
+    number = record(
+        store, settings, [depth_block(0, 50), state_block(0)], [depth_block(60, 50), debug_block(0, "é")]
+    )
+
+    def add(connection: Connection) -> None:
+        marker = {"session_id": number, "time": 100.5, "text": "here", "made": 1e9}
+        connection.execute(insert(Marker).values(marker))
+        connection.execute(insert(SessionTag).values({"session_id": number, "tag": "pool"}))
+
+    asyncio.run(store.write(add))
+    return number
+
+
+@pytest.fixture
+def archive(store: Store, session: int, tmp_path: Path) -> Path:
+    row = find_row(store, session)
+    assert row is not None
+    path = tmp_path / "dive.mucat.zip"
+    with path.open("wb") as file:
+        write_archive(store, Source(store, row, Wanted(format="archive")), file)
+    return path
+
+
+def contents(store: Reader, number: int) -> dict[str, Any]:
+    """Everything that a session is, but its number and where it came from."""
+    with store.read() as database:
+        row = database.get(SessionRow, number)
+        assert row is not None
+        told = row.model_dump(exclude={"id", "origin"})
+        told["topics"], told["robot_state"] = json.loads(row.topics), json.loads(row.robot_state)
+        for table in (Chunk, Gap, Marker, SessionTag):
+            rows = database.exec(select(table).where(col(table.session_id) == number))
+            values = [one.model_dump(exclude={"id", "session_id"}) for one in rows]
+            told[table.__name__] = sorted(values, key=repr)
+    return told
+
+
+def test_a_session_goes_to_another_machine_and_stays_the_same(
+    store: Store, settings: Settings, session: int, archive: Path, tmp_path: Path
+) -> None:
+    folder = DataFolder(tmp_path / "other")
+    make_folders(folder)
+    prepare(folder)
+    with closing(Store(folder.database)) as elsewhere:
+        record(elsewhere, settings, [depth_block(0, 1)])
+
+    async def scenario() -> None:
+        async with serve(replace(settings, data=folder)) as served:
+            answer = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+            assert answer.status_code == 201, answer.text
+            assert (answer.json()["id"], answer.json()["samples"]) == (2, 102)
+            again = await served.api.post("/imports", content=archive.read_bytes(), timeout=60)
+            assert again.status_code == 409
+            assert "is here already, as number 2" in again.json()["detail"]
+            bad = await served.api.post("/imports", content=archive.read_bytes()[:-100], timeout=60)
+            assert (bad.status_code, "cut off" in bad.json()["detail"]) == (422, True)
+            assert len((await served.api.get("/sessions")).json()) == 2
+            assert list(folder.imports.iterdir()) == []
+
+    asyncio.run(scenario())
+    with closing(Reader(folder.database)) as brought:
+        assert contents(brought, 2) == contents(store, session)
+        row = find_row(brought, 2)
+    assert row is not None
+    assert row.origin == "import"
+
+
+def change(path: Path, edit: Callable[[Members], None], *, summed: bool = True) -> None:
+    """Write the archive again with other members; with the checksums that they then have."""
+    with zipfile.ZipFile(path) as zipped:
+        members = {name: zipped.read(name) for name in zipped.namelist() if name != CHECKSUMS}
+        sums = zipped.read(CHECKSUMS)
+    edit(members)
+    if summed:
+        sums = json.dumps({name: sha256(data).hexdigest() for name, data in members.items()}).encode()
+    with zipfile.ZipFile(path, "w") as zipped:
+        for name, data in members.items():
+            zipped.writestr(name, data)
+        zipped.writestr(CHECKSUMS, sums)
+
+
+def tell(**changes: Any) -> Callable[[Members], None]:
+    """Change what `session.json` says of the whole, or of the session."""
+
+    def edit(members: Members) -> None:
+        told = json.loads(members[SESSION])
+        for name, value in changes.items():
+            (told if name in told else told["session"])[name] = value
+        members[SESSION] = json.dumps(told).encode()
+
+    return edit
+
+
+def rename(old: str, new: str) -> Callable[[Members], None]:
+    return lambda members: members.update({new: members.pop(old)})
+
+
+def flip(members: Members) -> None:
+    data = bytearray(members["chunks/depth"])
+    data[HEAD.size + 30] ^= 0xFF
+    members["chunks/depth"] = bytes(data)
+
+
+def cut(members: Members) -> None:
+    members["chunks/depth"] = members["chunks/depth"][:-7]
+
+
+def count(members: Members) -> None:
+    """A chunk that says that it has one sample more."""
+    values = list(HEAD.unpack_from(members["chunks/depth"]))
+    values[4] += 1
+    members["chunks/depth"] = HEAD.pack(*values) + members["chunks/depth"][HEAD.size :]
+
+
+def bomb(members: Members) -> None:
+    data = zlib.compress(bytes(200_000_000), 9)
+    members["chunks/debug"] = HEAD.pack(0, 1.0, 2.0, 0, 1, len(data), b"lines-zlib") + data
+
+
+def nonsense(members: Members) -> None:
+    data = zlib.compress(b'{"time": 1}\n{"time": null}\n')
+    members["chunks/debug"] = HEAD.pack(0, 1.0, 2.0, 0, 2, len(data), b"lines-zlib") + data
+
+
+def endless(members: Members) -> None:
+    data = members["chunks/debug"]
+    values = list(HEAD.unpack_from(data))
+    values[1] = math.inf
+    members["chunks/debug"] = HEAD.pack(*values) + data[HEAD.size :]
+
+
+BAD = {
+    "a checksum that is another": (flip, False, "chunks/depth is damaged: its checksum"),
+    "a chunk that does not unpack": (flip, True, "Chunk 0 of depth (is damaged|does not)"),
+    "a chunk that is cut": (cut, True, "Chunk 1 of depth is cut off"),
+    "too many samples": (count, True, "Chunk 0 of depth has 1000 bytes, which are not 51 samples"),
+    "a bomb": (bomb, True, "Chunk 0 of debug does not unpack"),
+    "documents that are none": (nonsense, True, "Chunk 0 of debug does not hold documents"),
+    "a time that is none": (endless, True, "Chunk 0 of debug has a time"),
+    "a newer format": (tell(version=2), True, "It is of format 2, and this version of µ-CAT reads format 1"),
+    "another program's": (tell(format="x"), True, "does not say that it is an archive"),
+    "no JSON": (lambda members: members.update({SESSION: b"{"}), True, "session.json is not JSON"),
+    "no session": (lambda members: members.pop(SESSION), True, "no archive of a session"),
+    "a path upwards": (rename("chunks/depth", "chunks/../../x"), True, "'chunks/../../x', which no archive"),
+    "an absolute path": (rename("chunks/depth", "/etc/passwd"), True, "'/etc/passwd', which no archive"),
+    "a topic that is not told": (rename("chunks/depth", "chunks/other"), True, "chunks of other, which"),
+    "an identifier that is none": (tell(identifier="../x"), True, "session.identifier"),
+    "a state that is none": (tell(state="recording"), True, "session.state"),
+    "a start that is none": (tell(started="now"), True, "session.started"),
+    "rows of another size": (
+        tell(topics={"depth": {"meaning": "", "kind": "rows", "row_bytes": 9, "fields": []}}),
+        True,
+        "not as long as its fields|which its session.json does not know",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_bad_archive_is_refused_in_words(archive: Path, name: str) -> None:
+    edit, summed, words = BAD[name]
+    change(archive, edit, summed=summed)
+    with pytest.raises(ArchiveRefused, match=words):
+        examine(archive)
+
+
+def test_what_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
+    whole = archive.read_bytes()
+    for data in (b"", b"time,depth\n", whole[:1000], whole[:-1], whole[:200] + b"\0" * 50 + whole[250:]):
+        other = tmp_path / "other"
+        other.write_bytes(data)
+        with pytest.raises(ArchiveRefused):
+            examine(other)
+    packed = tmp_path / "packed.zip"
+    with zipfile.ZipFile(archive) as old, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name))
+    with pytest.raises(ArchiveRefused, match="packed or encrypted"):
+        examine(packed)
+    examine(archive)
+
+
+def test_a_session_that_records_is_not_archived(store: Store, session: int) -> None:
+    row = find_row(store, session)
+    assert row is not None
+    row.state = "recording"
+    with pytest.raises(ExportRefused, match="Stop the recording"):
+        write_archive(store, Source(store, row, Wanted(format="archive")), io.BytesIO())
+
+
+def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(
+    store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    change(archive, tell(identifier="f" * 32))
+    seen: list[SessionRow | None] = []
+
+    async def scenario() -> None:
+        imports = Imports(settings.data, store)
+        real = imports._insert
+
+        async def failing(table: Any, rows: Any) -> None:
+            await real(table, rows)
+            seen.append(find_row(store, session + 1))
+            if table is Chunk:
+                raise StoreError("the disk is full")
+
+        monkeypatch.setattr(imports, "_insert", failing)
+        with pytest.raises(StoreError):
+            await imports.take(archive)
+
+    asyncio.run(scenario())
+    assert seen
+    assert set(seen) == {None}
+    with store.read() as database:
+        states = database.exec(select(SessionRow.state).order_by(col(SessionRow.id))).all()
+    assert states == ["complete", REMOVING]
+
+
+def test_what_a_killed_server_has_half_imported_is_removed(
+    store: Store, settings: Settings, session: int
+) -> None:
+    half = text(f"UPDATE session SET state = '{IMPORTING}'")
+    asyncio.run(store.write(lambda connection: connection.execute(half)))
+    assert find_row(store, session) is None
+    settings.data.imports.mkdir()
+    (settings.data.imports / "x.part").write_bytes(b"half")
+    asyncio.run(Imports(settings.data, store).recover())
+    assert list(settings.data.imports.iterdir()) == []
+    with store.read() as database:
+        assert database.exec(select(SessionRow.state)).all() == [REMOVING]

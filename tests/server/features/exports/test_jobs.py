@@ -1,0 +1,273 @@
+import hashlib
+import os
+import sys
+import zipfile
+from contextlib import closing
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from httpx import AsyncClient
+
+from server.features.exports import export_process as child_module
+from server.features.exports.jobs import JOBS_MAX, KEPT_DAYS
+from server.features.exports.schemas import Job, Wanted
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import debug_block, depth_block
+from tests.server.features.exports.test_tables import record
+from tests.server.serving import Served, play
+from tests.server.waiting import until
+
+
+@pytest.fixture
+def session(settings: Settings) -> int:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        return record(store, settings, [depth_block(0, 5000), debug_block(0, "a", "b")])
+
+
+async def start(api: AsyncClient, session: int, **wanted: Any) -> dict[str, Any]:
+    answer = await api.post("/exports", json={"session": session, "format": "csv", **wanted})
+    assert answer.status_code == 201, answer.text
+    job: dict[str, Any] = answer.json()
+    return job
+
+
+async def ended(served: Served, job: dict[str, Any]) -> dict[str, Any]:
+    found = served.assembly.jobs.find
+    await until(lambda: (one := found(job["id"])) and one.state in ("done", "failed"), "the file", 60)
+    answer: dict[str, Any] = (await served.api.get(f"/exports/{job['id']}")).json()
+    return answer
+
+
+def test_a_file_is_made_summed_downloaded_in_pieces_and_deleted(settings: Settings, session: int) -> None:
+    async def scenario(served: Served) -> None:
+        api = served.api
+        job = await start(api, session)
+        assert (job["session_name"], job["sha256"]) == ("Dive no. 1: Öresund/../x", None)
+        early = await api.get(f"/exports/{job['id']}/file")
+        assert (early.status_code, "not finished" in early.json()["detail"]) == (409, True)
+        job = await ended(served, job)
+        assert (job["state"], job["progress"], job["problem"]) == ("done", 1.0, "")
+        assert [one["id"] for one in (await api.get("/exports")).json()] == [job["id"]]
+
+        url = f"/exports/{job['id']}/file"
+        half = job["bytes"] // 2
+        async with api.stream("GET", url) as response:
+            assert response.headers["etag"] == f'"{job["sha256"]}"'
+            assert job["file"] in response.headers["content-disposition"]
+            first = b""
+            async for piece in response.aiter_raw(1000):
+                first += piece
+                if len(first) >= half:
+                    break
+        again = {"range": f"bytes={len(first)}-", "if-range": f'"{job["sha256"]}"'}
+        rest = await api.get(url, headers=again)
+        assert rest.status_code == 206
+        whole = first + rest.content
+        assert (len(whole), hashlib.sha256(whole).hexdigest()) == (job["bytes"], job["sha256"])
+        with zipfile.ZipFile(settings.data.exports / job["id"]) as archive:
+            assert set(archive.namelist()) == {"session.json", "depth.csv", "debug.csv"}
+        other = await api.get(url, headers={**again, "if-range": '"another file"'})
+        assert (other.status_code, other.content) == (200, whole)
+
+        assert (await api.delete(f"/exports/{job['id']}")).status_code == 204
+        assert (await api.get(url)).status_code == 404
+        assert list(settings.data.exports.iterdir()) == []
+
+    play(settings, scenario)
+
+
+def finished(settings: Settings, name: str, made: datetime) -> Job:
+    """A file that an earlier server made."""
+    content = name.encode()
+    job = Job(
+        id=name,
+        session=1,
+        session_name="dive",
+        wanted=Wanted(format="jsonl"),
+        state="done",
+        progress=1.0,
+        made=made,
+        file="dive.jsonl",
+        bytes=len(content),
+        sha256=hashlib.sha256(content).hexdigest(),
+    )
+    folder = settings.data.exports
+    folder.mkdir(exist_ok=True)
+    (folder / name).write_bytes(content)
+    (folder / f"{name}.json").write_text(job.model_dump_json())
+    return job
+
+
+def test_files_outlive_the_server_and_what_it_left_is_cleared_away(settings: Settings) -> None:
+    job = finished(settings, "e" * 16, datetime.now(UTC))
+    folder = settings.data.exports
+    (folder / ("a" * 16 + ".part")).write_bytes(b"half")
+    (folder / ("b" * 16 + ".json")).write_text(job.model_copy(update={"id": "b" * 16}).model_dump_json())
+    (folder / ("c" * 16)).write_bytes(b"without a description")
+    (folder / ("d" * 16 + ".json")).write_text("{")
+
+    async def scenario(served: Served) -> None:
+        assert (await served.api.get("/exports")).json() == [job.model_dump(mode="json")]
+        answer = await served.api.get(f"/exports/{job.id}/file")
+        assert (answer.content, answer.headers["etag"]) == (b"e" * 16, f'"{job.sha256}"')
+        assert {path.name for path in folder.iterdir()} == {job.id, f"{job.id}.json"}
+
+    play(settings, scenario)
+
+
+def test_old_files_go(settings: Settings) -> None:
+    limit = datetime.now(UTC) - timedelta(days=KEPT_DAYS)
+    finished(settings, "a" * 16, limit - timedelta(minutes=1))
+    young = finished(settings, "b" * 16, limit + timedelta(minutes=10))
+
+    async def scenario(served: Served) -> None:
+        jobs = served.assembly.jobs
+        await until(lambda: len(jobs.list()) == 1, "the old file to go")
+        names = {path.name for path in settings.data.exports.iterdir()}
+        assert names == {young.id, f"{young.id}.json"}
+
+    play(settings, scenario)
+
+
+SLOW = """
+import pathlib, sys, time
+pathlib.Path(sys.argv[-1]).write_bytes(b"half")
+print('{"progress": 0.25}', flush=True)
+time.sleep(60)
+"""
+
+
+def slow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """In place of the interpreter, one that makes half a file and then waits."""
+    script = tmp_path / "slow"
+    script.write_text(f"#!{sys.executable}\n{SLOW}")
+    script.chmod(0o755)
+
+    class System:
+        executable = str(script)
+
+    monkeypatch.setattr(child_module, "sys", System)
+
+
+def test_a_job_is_cancelled_and_the_next_one_comes(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+
+    async def scenario(served: Served) -> None:
+        jobs = served.assembly.jobs
+        first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
+        await until(lambda: (one := jobs.find(first["id"])) and one.progress == 0.25, "progress")
+        assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
+        monkeypatch.setattr(child_module, "sys", sys)
+        assert (await served.api.delete(f"/exports/{first['id']}")).status_code == 204
+        assert (await ended(served, second))["state"] == "done"
+        names = {path.name for path in settings.data.exports.iterdir()}
+        assert names == {second["id"], f"{second['id']}.json"}
+
+    play(settings, scenario)
+
+
+def test_a_process_that_is_killed_leaves_nothing(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    slow(monkeypatch, tmp_path)
+
+    async def scenario(served: Served) -> None:
+        jobs = served.assembly.jobs
+        job = await start(served.api, session)
+        await until(lambda: (one := jobs.find(job["id"])) and one.progress == 0.25, "progress")
+        assert jobs._running is not None
+        process = jobs._running[1]._process
+        assert process is not None
+        os.kill(process.pid, 9)
+        job = await ended(served, job)
+        assert (job["state"], job["problem"]) == ("failed", "The process for it was ended by signal SIGKILL.")
+        await until(lambda: not list(settings.data.exports.iterdir()), "the half file to go")
+
+    play(settings, scenario)
+
+
+LIMITED = """#!{python}
+import resource, runpy, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+import signal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+sys.argv[:] = ["server.features.exports", *sys.argv[3:]]
+runpy.run_module("server.features.exports", run_name="__main__")
+"""
+
+
+def test_a_disk_that_fills_up_is_told_and_nothing_is_lost(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    script = tmp_path / "limited"
+    script.write_text(LIMITED.format(python=sys.executable))
+    script.chmod(0o755)
+
+    class System:
+        executable = str(script)
+
+    monkeypatch.setattr(child_module, "sys", System)
+
+    async def scenario(served: Served) -> None:
+        job = await ended(served, await start(served.api, session, format="jsonl"))
+        assert job["state"] == "failed"
+        assert job["problem"].endswith("is full. Free some space, and try again.")
+        assert list(settings.data.exports.iterdir()) == []
+        assert (await served.api.get(f"/exports/{job['id']}/file")).status_code == 409
+        assert (await served.api.get(f"/sessions/{session}")).json()["samples"] == 5002
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "words"),
+    [
+        ({"format": "csv"}, 422, "session: Field required"),
+        ({"session": 1, "format": "xls"}, 422, "format"),
+        ({"session": 1, "format": "csv", "topics": []}, 422, "topics"),
+        ({"session": 1, "format": "csv", "topics": ["../x"]}, 422, "no topic ../x"),
+        ({"session": 1, "format": "csv-grid", "period": 0}, 422, "period"),
+        ({"session": 1, "format": "csv", "start": 2, "end": 1}, 422, "ends before it starts"),
+        ({"session": 1, "format": "csv", "path": "/etc"}, 422, "path"),
+        ({"session": 9, "format": "csv"}, 404, "no session 9"),
+    ],
+)
+def test_what_cannot_be_made_is_refused(
+    settings: Settings, session: int, body: dict[str, Any], status: int, words: str
+) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.post("/exports", json=body)
+        assert (answer.status_code, words in answer.json()["detail"]) == (status, True), answer.text
+        assert (await served.api.get("/exports")).json() == []
+
+    assert session == 1
+    play(settings, scenario)
+
+
+def test_exports_that_do_not_exist(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for path in ("/exports/" + "0" * 16, "/exports/" + "0" * 16 + "/file"):
+            answer = await served.api.get(path)
+            assert (answer.status_code, "There is no export" in answer.json()["detail"]) == (404, True)
+        for strange in ("x", "..%2f..%2fmucat.db", "0" * 17):
+            assert (await served.api.get(f"/exports/{strange}/file")).status_code in (404, 422)
+
+    play(settings, scenario)
+
+
+def test_too_many_are_refused(settings: Settings, session: int) -> None:
+    for number in range(JOBS_MAX):
+        finished(settings, f"{number:016x}", datetime.now(UTC))
+
+    async def scenario(served: Served) -> None:
+        answer = await served.api.post("/exports", json={"session": session, "format": "csv"})
+        assert (answer.status_code, "Delete some first" in answer.json()["detail"]) == (409, True)
+
+    play(settings, scenario)

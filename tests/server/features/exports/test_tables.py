@@ -1,0 +1,176 @@
+import asyncio
+import csv
+import io
+import json
+import struct
+import zipfile
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+from sqlalchemy import Connection, text
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.packets import Motor
+from robot_runtime.contract.topics import BY_NAME, Block, read_rows, row
+from server.features.exports.description import file_name
+from server.features.exports.schemas import Wanted
+from server.features.exports.selection import Source
+from server.features.exports.tables import stream_tables
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.recording import CHUNKS_AT_ONCE, RecordingError
+from server.features.sessions.session import find_row, new_row
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import debug_block, depth_block, state_block
+
+STARTED_STEADY = 99.5
+
+
+def record(
+    store: Store, settings: Settings, *batches: list[Block], name: str = "Dive no. 1: Öresund/../x"
+) -> int:
+    """Record these batches, each in a commit of its own. Returns the session's number."""
+
+    async def scenario() -> int:
+        clock = SimulatedClock(STARTED_STEADY)
+        recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+        session = await recorder.start(new_row(settings, clock, name, "calm", '{"mode": "disarmed"}'))
+        for batch in batches:
+            for block in batch:
+                recorder.add(block)
+            await recorder.flush()
+        await recorder.stop(session.id)
+        return session.id
+
+    return asyncio.run(scenario())
+
+
+def make(store: Store, session: int, **wanted: Any) -> Source:
+    row = find_row(store, session)
+    assert row is not None
+    return Source(store, row, Wanted(**{"format": "csv", **wanted}))
+
+
+def unpack(store: Store, source: Source) -> zipfile.ZipFile:
+    archive = zipfile.ZipFile(io.BytesIO(b"".join(stream_tables(store, source))))
+    assert archive.testzip() is None
+    return archive
+
+
+def table(archive: zipfile.ZipFile, name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(archive.read(f"{name}.csv").decode())))
+
+
+def test_numbers_are_the_very_ones_that_were_recorded(store: Store, settings: Settings) -> None:
+    motor = Motor(
+        time=2**32 - 1, wanted=(0.1, -0.2, 3.1, 0), angle=(1.234, 0, 0, -3.2), drive=(-63, 63, 0, 5)
+    )
+    truth = Truth(
+        position=(0.1, 1 / 3, 1e-9),
+        attitude=(1, 0, 0, 0),
+        velocity=(1e20, -0.0, 3),
+        rate=(0, 0, 0),
+        fins=(0.7, 0, 0, 0),
+    )
+    blocks = [
+        Block.of(BY_NAME["motor"], 1, 0, row(100.25, motor.to_bytes())),
+        Block.of(BY_NAME["truth"], 1, 0, row(100.5, truth.to_bytes())),
+        depth_block(0, 30),
+    ]
+    archive = unpack(store, make(store, record(store, settings, blocks)))
+    (line,) = table(archive, "motor")
+    (_, sent), *_ = read_rows(blocks[0])
+    assert isinstance(sent, Motor)
+    assert [float(line[f"angle_{fin} [rad]"]) for fin in range(4)] == list(sent.angle)
+    assert [int(line[f"drive_{fin}"]) for fin in range(4)] == list(sent.drive)
+    assert (line["time [µs]"], float(line["time [s]"])) == ("4294967295", 0.75)
+    (line,) = table(archive, "truth")
+    single = [struct.unpack("<f", struct.pack("<f", value))[0] for value in truth.position + truth.velocity]
+    columns = [f"position_{axis} [m]" for axis in range(3)] + [f"velocity_{axis} [m/s]" for axis in range(3)]
+    assert [struct.pack("<f", float(line[column])) for column in columns] == [
+        struct.pack("<f", value) for value in single
+    ]
+    lines = table(archive, "depth")
+    assert [int(one["time [µs]"]) for one in lines] == list(range(30))
+    assert [float(one["depth [m]"]) for one in lines] == pytest.approx(
+        [n / 1000 for n in range(30)], abs=1e-12
+    )
+    assert [int(one["pressure [Pa]"]) for one in lines] == [101_325 + n for n in range(30)]
+
+
+def test_the_header_gives_units_and_two_times(store: Store, settings: Settings) -> None:
+    source = make(store, record(store, settings, [depth_block(0, 1)]))
+    (line,) = table(unpack(store, source), "depth")
+    assert list(line) == ["time [s]", "utc", "time [µs]", "depth [m]", "pressure [Pa]", "temperature [°C]"]
+    started = source.row.started
+    assert float(line["time [s]"]) == 100 - STARTED_STEADY
+    utc = datetime.fromisoformat(line["utc"])
+    assert utc.timestamp() == pytest.approx(started + 0.5, abs=0.001)
+    assert line["utc"].endswith("Z")
+
+
+def test_documents_are_tables_too(store: Store, settings: Settings) -> None:
+    awkward = 'say "hi", then\nbreak; é'
+    archive = unpack(
+        store, make(store, record(store, settings, [debug_block(0, awkward, "b"), state_block(0)]))
+    )
+    assert [(one["level"], one["text"]) for one in table(archive, "debug")] == [("1", awkward), ("1", "b")]
+    (state,) = table(archive, "state")
+    assert (state["armed"], state["armed_since"], state["port"]) == ("false", "", "board.tty")
+    assert json.loads(state["colours"]) == ["yellow"]
+
+
+def test_many_chunks_come_out_once_each_and_in_order(store: Store, settings: Settings) -> None:
+    batches = [[depth_block(3 * number, 3)] for number in range(CHUNKS_AT_ONCE * 2 + 1)]
+    archive = unpack(store, make(store, record(store, settings, *batches)))
+    numbers = [int(one["time [µs]"]) for one in table(archive, "depth")]
+    assert numbers == list(range(3 * len(batches)))
+
+
+def test_only_topics_that_were_heard_and_everything_about_the_session(
+    store: Store, settings: Settings
+) -> None:
+    session = record(store, settings, [depth_block(0, 1), depth_block(5, 1)])
+    archive = unpack(store, make(store, session))
+    assert set(archive.namelist()) == {"session.json", "depth.csv"}
+    told: dict[str, Any] = json.loads(archive.read("session.json"))
+    assert (told["id"], told["note"], told["state"]) == (session, "calm", "complete")
+    assert told["configuration"] == settings.config.read_text()
+    assert told["robot_state"] == {"mode": "disarmed"}
+    assert told["gaps"] == [{"topic": "depth", "kind": "missed", "time": 0.0, "missed": 4}]
+    assert told["topics"]["depth"]["fields"][1]["unit"] == "m"
+    assert datetime.fromisoformat(told["started"]).tzinfo == UTC
+
+
+def test_a_recording_is_read_as_it_was_defined_then(store: Store, settings: Settings) -> None:
+    session = record(store, settings, [depth_block(0, 2)])
+
+    def rename(connection: Connection) -> None:
+        connection.execute(text("UPDATE session SET topics = replace(topics, 'temperature', 'warmth')"))
+
+    asyncio.run(store.write(rename))
+    assert "warmth [°C]" in table(unpack(store, make(store, session)), "depth")[0]
+
+
+def test_the_file_is_written_while_it_is_read(store: Store, settings: Settings) -> None:
+    batches = [[depth_block(1000 * number, 1000)] for number in range(CHUNKS_AT_ONCE * 4)]
+    source = make(store, record(store, settings, *batches))
+    pieces = list(stream_tables(store, source))
+    assert len(pieces) > 10
+    assert max(map(len, pieces)) < 0.2 * sum(map(len, pieces))
+
+
+def test_the_file_name_is_safe(store: Store, settings: Settings) -> None:
+    name = file_name(make(store, record(store, settings)), ".zip")
+    assert name.endswith("_Dive-no-1-resund-x.zip")
+    datetime.strptime(name[:19], "%Y-%m-%d_%H-%M-%S")
+
+
+def test_a_damaged_chunk_is_told(store: Store, settings: Settings) -> None:
+    session = record(store, settings, [depth_block(0, 2)])
+    asyncio.run(store.write(lambda connection: connection.execute(text("UPDATE chunk SET data = x'00'"))))
+    with pytest.raises(RecordingError, match="chunk 0 of depth is damaged"):
+        unpack(store, make(store, session))

@@ -1,0 +1,119 @@
+"""Layouts of panels: kept under names, and refused where they cannot be read."""
+
+import asyncio
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+from sqlmodel import insert
+
+from robot_runtime.errors import Refused
+from server.features.layouts.document import LayoutDocument
+from server.features.layouts.library import LAYOUTS_MOST, Layouts, UnknownLayout
+from server.platform.models import LayoutRow
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.serving import serve
+
+CAMERA = {"id": "camera", "panel": "camera", "x": 0, "y": 0, "width": 17, "height": 11}
+CHART = {
+    "id": "chart 2",
+    "panel": "chart",
+    "x": 17,
+    "y": 0,
+    "width": 7,
+    "height": 5,
+    "chart": {"signals": ["depth.depth", "motor.angle_2"], "seconds": 60},
+}
+
+
+def layout(*panels: dict[str, Any], **changes: Any) -> dict[str, Any]:
+    return {"format": "mucat-layout", "version": 1, "panels": list(panels)} | changes
+
+
+def document(*panels: dict[str, Any]) -> LayoutDocument:
+    return LayoutDocument.model_validate(layout(*panels))
+
+
+def test_a_layout_is_kept_and_found_again(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            whole = layout(CAMERA, CHART)
+            kept = await served.api.post("/layouts", json={"name": " Pool day ", "document": whole})
+            assert kept.status_code == 201
+            assert kept.json()["name"] == "Pool day"
+            assert (await served.api.get("/layouts")).json() == [kept.json()]
+            path = f"/layouts/{kept.json()['id']}"
+            assert (await served.api.get(path)).json() == kept.json() | {"document": whole}
+            assert (await served.api.delete(path)).status_code == 204
+            for gone in (await served.api.get(path), await served.api.delete(path)):
+                assert gone.status_code == 404
+                assert "no layout 1" in gone.json()["detail"]
+
+    asyncio.run(scenario())
+
+
+def test_saving_under_the_same_name_replaces(store: Store) -> None:
+    async def scenario() -> None:
+        layouts = Layouts(store)
+        first = await layouts.save("pool", document(CAMERA))
+        other = await layouts.save("Lab", document())
+        again = await layouts.save("pool", document(CHART))
+        assert again.id == first.id
+        assert [one.id for one in layouts.list()] == [other.id, first.id]
+        assert layouts.get(first.id).document["panels"] == [CHART]
+
+    asyncio.run(scenario())
+
+
+def test_there_may_be_so_many(store: Store) -> None:
+    async def scenario() -> None:
+        layouts = Layouts(store)
+        rows = [{"name": f"n{one}", "document": "{}", "saved": 0.0} for one in range(LAYOUTS_MOST)]
+        await store.write(lambda connection: connection.execute(insert(LayoutRow), rows))
+        with pytest.raises(Refused, match="Delete one"):
+            await layouts.save("one more", document())
+        assert (await layouts.save("n3", document())).name == "n3"
+        with pytest.raises(UnknownLayout):
+            await layouts.delete(LAYOUTS_MOST + 1)
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        (layout(CAMERA, version=2), "is of version 2; this program reads version 1"),
+        ({"format": "mucat-layout", "version": "{2}", "slots": []}, "is of version {2}"),
+        (layout(version=True), "is of version True"),
+        (layout(CAMERA, format="grafana"), "Input should be 'mucat-layout'"),
+        (layout(CAMERA, CAMERA), "the same id"),
+        (layout(CAMERA, CHART | {"x": 16}), "camera and chart lie over each other"),
+        (layout(CHART | {"x": 18}), "chart does not fit into 24 columns"),
+        (layout(CAMERA | {"y": 95}), "camera does not fit"),
+        (layout(CAMERA | {"x": -1}), "greater than or equal to 0"),
+        (layout(CAMERA | {"width": 2.5}), "valid integer"),
+        (layout(CAMERA | {"panel": "../../etc/passwd"}), "match pattern"),
+        (layout(CAMERA | {"colour": "red"}), "not permitted"),
+        (layout(CHART | {"chart": {"signals": [], "seconds": float("nan")}}), "finite number"),
+        (layout(CHART | {"chart": {"signals": ["a"] * 13, "seconds": 60}}), "at most 12"),
+        (layout(*({**CAMERA, "id": str(one)} for one in range(41))), "at most 40"),
+        ([], "valid dictionary"),
+    ],
+)
+def test_what_is_no_layout_is_refused_in_words(given: object, why: str) -> None:
+    with pytest.raises(ValidationError) as refused:
+        LayoutDocument.model_validate(given)
+    assert why in refused.value.errors()[0]["msg"]
+
+
+def test_another_version_changes_nothing(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            wanted = {"name": "pool", "document": layout(CAMERA, version=2)}
+            answer = await served.api.post("/layouts", json=wanted)
+            assert answer.status_code == 422
+            assert "This layout is of version 2; this program reads version 1." in answer.json()["detail"]
+            assert (await served.api.get("/layouts")).json() == []
+
+    asyncio.run(scenario())

@@ -1,0 +1,124 @@
+"""Driving by hand on the whole robot: from the page's socket to the board's fins, and what comes of a cut."""
+
+import json
+import socket as sockets
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
+
+from robot_runtime.contract.packets import Navigation
+from robot_runtime.contract.topics import BY_NAME, TIME, read_blocks
+from server.platform.settings import DataFolder
+from tests.proofs.watching import Fins, wait
+from tests.shell import shell_headers
+from tests.stack import Stack
+
+pytestmark = pytest.mark.stack
+
+TICK = 0.05
+REST_SECONDS, STOP_SECONDS = 0.5, 3.0
+NEUTRALS = 10
+"""Of the 25 that go out until the all-stop; when the first does is measured in simulated time elsewhere."""
+
+
+@pytest.fixture
+def stack() -> Iterator[Stack]:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        yield stack
+
+
+class Driver:
+    """A page that drives with the sticks held where they are."""
+
+    def __init__(self, stack: Stack, socket: ClientConnection) -> None:
+        self._stack = stack
+        self._socket = socket
+        self._sequence = 0
+        self.key = {"X-Mucat-Seat": self._next("hello")["seat_key"]}
+        self.lease = self.order("POST", "/control/take").json()["epoch"]
+
+    def order(self, method: str, path: str, body: Any = None) -> Any:
+        return self._stack.api.request(method, path, json=body, headers=self.key).raise_for_status()
+
+    def drive_until(self, condition: Callable[[], object], *axes: float) -> float:
+        """Hold the sticks there until that holds; when the last command was given."""
+        end = time.monotonic() + 20
+        while True:
+            self._sequence += 1
+            taken = time.monotonic()
+            said = {"op": "drive", "lease": self.lease, "sequence": self._sequence, "taken": taken}
+            self._socket.send(json.dumps(said | {"axes": axes}))
+            if condition():
+                return taken
+            assert time.monotonic() < end, "waited in vain"
+            time.sleep(TICK)
+
+    def cut(self) -> None:
+        """As if it were out of reach: not even the socket is closed in order."""
+        self._socket.socket.shutdown(sockets.SHUT_RDWR)
+
+    def _next(self, op: str) -> dict[str, Any]:
+        while True:
+            message = self._socket.recv(10)
+            if isinstance(message, str) and (found := json.loads(message))["op"] == op:
+                assert isinstance(found, dict)
+                return found
+
+
+def commands(blocks: bytes, since: float) -> list[tuple[float, Navigation]]:
+    """What the runtime sent to the board after that, and when (s, steady clock)."""
+    topic = BY_NAME["navigation"]
+    rows = [
+        block.payload[place : place + topic.row_bytes]
+        for block in read_blocks(blocks)
+        if block.topic is topic
+        for place in range(0, len(block.payload), topic.row_bytes)
+    ]
+    sent = [(TIME.unpack_from(row)[0], Navigation.from_bytes(row[TIME.size :])) for row in rows]
+    return [(time, command) for time, command in sent if time >= since]
+
+
+def test_a_driver_whose_line_is_cut_lets_the_fins_rest_and_then_the_robot_stops(stack: Stack) -> None:
+    folder = DataFolder(stack.data)
+    fins = Fins(folder.board_socket)
+    try:
+        with connect(
+            f"ws://127.0.0.1:{stack.port}/api/live",
+            origin=Origin(stack.url),
+            additional_headers=shell_headers(folder),
+            max_size=None,
+            proxy=None,
+        ) as socket:
+            session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
+            driver = Driver(stack, socket)
+            driver.order("POST", "/robot/arm", {"mode": "manual"})
+            moved: list[bool] = []
+
+            def swims() -> bool:
+                moved.append(fins.seen[-1].moving and fins.seen[-1].powered)
+                return moved.count(True) >= 20
+
+            since = driver.drive_until(swims, 0, 0, 1, 0, 0, 0)
+            driver.cut()
+        wait(lambda: fins.seen[-1].time > since and not fins.seen[-1].powered, "no power")
+    finally:
+        fins.close()
+    stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+    whole = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0, "end": 120}).raise_for_status()
+    sent = commands(whole.content, since)
+    steered = [time for time, command in sent if command.z]
+    neutral, rest, off = max(steered, default=since) - since, fins.moved_for(since), fins.powered_for(since)
+    told = f"steered for {neutral:.3f} s after the last command; by the board's time the fins moved for"
+    told += f" {rest:.3f} s and had power for {off:.3f} s"
+    assert len([time for time, _ in sent if time > since + neutral]) >= NEUTRALS, told
+    assert rest <= REST_SECONDS, told
+    assert off <= STOP_SECONDS, told
+    wait(lambda: stack.api.get("/robot").json()["mode"] == "failsafe", "the failsafe to be told")
+    control = stack.api.get("/control").json()
+    assert (control["holder"], control["driven"]["passed"] > 0) == (None, True)

@@ -1,0 +1,210 @@
+"""Control over HTTP and the live socket: who may what, who is told, what reaches the runtime."""
+
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import httpx
+from websockets.asyncio.client import ClientConnection
+
+from server.features.sessions.recording import Recording
+from server.platform.settings import Settings
+from tests.server.blocks import state_block
+from tests.server.serving import Served, next_text, play
+from tests.server.waiting import until
+
+SCENARIO = """
+name = "short"
+title = "A short one"
+duration = 3
+seed = 7
+"""
+
+
+class Page:
+    """A page: its socket, and requests with its seat."""
+
+    def __init__(self, served: Served, socket: ClientConnection, hello: dict[str, Any]) -> None:
+        self.served = served
+        self.socket = socket
+        self.seat: int = hello["you"]["seat"]
+        self.key: str = hello["seat_key"]
+
+    async def ask(self, path: str, body: Any = None) -> httpx.Response:
+        headers = {"X-Mucat-Seat": self.key}
+        return await self.served.api.post(path, json=body, headers=headers)
+
+    async def told(self, holder: int | None) -> dict[str, Any]:
+        """What it is told of the control, once this seat has it."""
+        while True:
+            message = await next_text(self.socket, "control")
+            if (message["holder"] or {"seat": None})["seat"] == holder:
+                return message
+
+    async def drive(self, **changes: Any) -> None:
+        await self.socket.send(json.dumps(self.command(**changes)))
+
+    def command(self, **changes: Any) -> dict[str, Any]:
+        whole = {
+            "op": "drive",
+            "lease": self.served.assembly.desk.lease.epoch,
+            "sequence": 1,
+            "taken": self.served.assembly.clock.now(),
+            "axes": [0, 0, 1, 0, 0, 0],
+        }
+        return whole | changes
+
+
+@asynccontextmanager
+async def open_page(served: Served) -> AsyncIterator[Page]:
+    async with served.connect() as socket:
+        yield Page(served, socket, await next_text(socket, "hello"))
+
+
+async def free(served: Served) -> None:
+    (await served.api.post("/control/release")).raise_for_status()
+
+
+def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        session = (await served.api.post("/sessions", json={"name": "x", "note": ""})).json()["id"]
+        async with open_page(served) as anna:
+            (await served.api.post("/control/hand-over", json={"seat": anna.seat})).raise_for_status()
+        (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
+        assembly = served.assembly
+        recording = Recording(assembly.store, assembly.catalogue.row(session))
+        texts = [one["text"] for one in recording.documents("notice")]
+        shell = "“the shell of this computer”"
+        assert texts[-2:] == [
+            f"{shell} handed control over to {shell}.",
+            f"{shell} left, and nobody has control now.",
+        ]
+
+    play(settings, scenario)
+
+
+def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await free(served)
+        async with open_page(served) as anna, open_page(served) as ben:
+            assert anna.seat != ben.seat
+            assert (await anna.told(None))["request"] is None
+            assert (await anna.ask("/control/take")).json()["holder"]["seat"] == anna.seat
+            first = (await ben.told(anna.seat))["epoch"]
+            asked = (await ben.ask("/control/take")).json()
+            assert (asked["holder"]["seat"], asked["request"]["seat"]) == (anna.seat, ben.seat)
+            assert 9 < asked["request"]["until"] - served.assembly.clock.now() <= 10
+            assert (await anna.ask("/control/refuse")).json()["refused"]["seat"] == ben.seat
+            again = await ben.ask("/control/take")
+            assert (again.status_code, "refused" in again.json()["detail"]) == (409, True)
+            given = (await anna.ask("/control/hand-over", {"seat": ben.seat})).json()
+            assert (await anna.told(ben.seat))["epoch"] == given["epoch"] == first + 1
+            assert (await served.api.get("/control")).json()["holder"]["seat"] == ben.seat
+            await until(lambda: served.runtime.epochs[-1:] == [first + 1], "the runtime to be told")
+            assert (await ben.ask("/control/release")).json()["holder"] is None
+            assert (await ben.told(None))["epoch"] == first + 2
+
+    play(settings, scenario)
+
+
+def test_with_the_socket_goes_the_seat_and_control_goes_to_who_has_asked(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await free(served)
+        async with open_page(served) as ben:
+            async with open_page(served) as anna:
+                await anna.ask("/control/take")
+                await ben.ask("/control/take")
+                # Not even a farewell: the computer went out of reach.
+                anna.socket.transport.abort()
+                await ben.told(ben.seat)
+            assert (await anna.ask("/control/take")).status_code == 409
+            refused = await anna.ask("/robot/arm")
+            assert (refused.status_code, served.runtime.asked) == (423, [])
+
+    play(settings, scenario)
+
+
+def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        bare = {"X-Mucat-Seat": ""}
+        robot = [
+            ("POST", "/robot/arm", None),
+            ("PUT", "/robot/controller", {"name": "pid"}),
+            ("PUT", "/robot/set-points", {"default": 0.4}),
+            ("PUT", "/robot/card", {"colour": "red"}),
+            ("PUT", "/robot/vision", {"rate": 4}),
+            ("PUT", "/simulator", {"here": False}),
+            ("POST", "/scenarios/runs", {"text": SCENARIO, "place": "live"}),
+            ("POST", "/comm-tests/runs", {"text": "[]", "place": "robot"}),
+            ("POST", "/control/refuse", None),
+            ("POST", "/control/hand-over", {"seat": 1}),
+        ]
+        name = served.assembly.desk.state().holder
+        assert name is not None
+        async with open_page(served) as page:
+            for key in (bare, {"X-Mucat-Seat": page.key}):
+                for method, path, body in robot:
+                    answer = await served.api.request(method, path, json=body, headers=key)
+                    assert answer.status_code == 423, path
+                    assert answer.json()["detail"] == f"Control is with {name.name}; ask for it."
+            assert served.runtime.asked == []
+            assert (await page.ask("/robot/stop")).status_code == 204
+        assert (await served.api.post("/robot/stop", headers=bare)).status_code == 204
+        assert served.runtime.asked == [("stop", {})] * 2
+        await free(served)
+        answer = await served.api.post("/robot/arm")
+        assert (answer.status_code, answer.json()["detail"][:19]) == (423, "Nobody has control.")
+
+    play(settings, scenario)
+
+
+def test_a_program_that_is_silent_loses_its_seat(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with open_page(served) as page:
+            desk = served.assembly.desk
+            seat = desk.seats.get(desk.lease.holder or 0)
+            assert seat is not None
+            # As if it had been silent for nearly all of its time.
+            seat.until = served.assembly.clock.now() + 0.05
+            desk.announce()
+            await page.told(None)
+            assert (await served.api.post("/control/renew")).status_code == 409
+
+    play(settings, scenario)
+
+
+def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await free(served)
+        async with open_page(served) as anna, open_page(served) as ben:
+            await anna.ask("/control/take")
+            await until(lambda: served.runtime.epochs, "the runtime to be told")
+            await anna.drive(sequence=1)
+            await anna.drive(sequence=2, taken=served.assembly.clock.now() - 0.4)
+            await ben.drive(sequence=3)
+            await anna.drive(sequence=4, lease=served.assembly.desk.lease.epoch - 1)
+            await anna.drive(sequence=1)
+            await anna.drive(sequence=5)
+            await until(lambda: len(served.runtime.driven) == 2, "two commands")
+            assert [one["sequence"] for one in served.runtime.driven] == [1, 5]
+            assert set(served.runtime.driven[0]) == {"lease", "sequence", "taken", "axes"}
+            counts = (await served.api.get("/control")).json()["driven"]
+            expected = {"passed": 2, "too_old": 1, "not_in_control": 1, "other_lease": 1, "not_newer": 1}
+            assert counts == expected | {"from_the_future": 0}
+            await anna.socket.send(json.dumps(anna.command(axes=[0, 0, 2, 0, 0, 0])))
+            assert "six axes" in (await next_text(anna.socket, "error"))["text"]
+
+    play(settings, scenario)
+
+
+def test_a_runtime_that_was_restarted_is_told_the_epoch_again(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        epoch = served.assembly.desk.lease.epoch
+        await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")
+        before = len(served.runtime.epochs)
+        served.runtime.publish(state_block(0))
+        await until(lambda: len(served.runtime.epochs) == before + 1, "the run that speaks to be told")
+        assert served.runtime.epochs[-1] == epoch
+
+    play(settings, scenario)

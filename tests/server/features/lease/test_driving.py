@@ -1,0 +1,86 @@
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from server.features.lease.driving import LATE_SECONDS
+from tests.server.features.lease.people import ANNA, BEN, Seen
+
+
+def test_the_driver_s_sticks_reach_the_robot() -> None:
+    seen = Seen()
+    with seen.desk.page(ANNA) as anna:
+        seen.desk.take(anna)
+        seen.desk.drive(anna, seen.drive(sequence=0))
+        seen.desk.drive(anna, seen.drive(sequence=5, axes=[-1, 1, 0, 0.5, 0, 0]))
+        assert seen.driven == [
+            {"lease": 1_000_001, "sequence": 0, "taken": 1000.0, "axes": [0, 0, 1, 0, 0, 0]},
+            {"lease": 1_000_001, "sequence": 5, "taken": 1000.0, "axes": [-1, 1, 0, 0.5, 0, 0]},
+        ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"lease": 1_000_000}, "other_lease"),
+        ({"lease": 1_000_002}, "other_lease"),
+        ({"sequence": 8}, "not_newer"),
+        ({"sequence": 7}, "not_newer"),
+        ({"taken": 1000.0 - LATE_SECONDS - 0.001}, "too_old"),
+        ({"taken": 1000.0 + LATE_SECONDS + 0.001}, "from_the_future"),
+    ],
+)
+def test_what_is_not_the_driver_s_newest_is_dropped_and_counted(changes: Any, reason: str) -> None:
+    seen = Seen()
+    with seen.desk.page(ANNA) as anna:
+        seen.desk.take(anna)
+        seen.desk.drive(anna, seen.drive(sequence=8))
+        seen.desk.drive(anna, seen.drive(**{"sequence": 9} | changes))
+        assert len(seen.driven) == 1
+        counts = seen.desk.driving.counts.model_dump()
+        assert {name: count for name, count in counts.items() if count} == {"passed": 1, reason: 1}
+        # What was dropped has no part in what counts as newer.
+        seen.desk.drive(anna, seen.drive(sequence=9))
+        assert len(seen.driven) == 2
+
+
+def test_only_who_has_control_drives_and_begins_with_any_number() -> None:
+    seen = Seen()
+    with seen.desk.page(ANNA) as anna, seen.desk.page(BEN) as ben:
+        seen.desk.drive(anna, seen.drive())
+        seen.desk.take(anna)
+        seen.desk.drive(ben, seen.drive())
+        assert (seen.driven, seen.desk.driving.counts.not_in_control) == ([], 2)
+        seen.desk.drive(anna, seen.drive(sequence=900))
+        seen.desk.hand_over(anna, ben.number)
+        seen.desk.drive(anna, seen.drive(sequence=901))
+        seen.desk.drive(ben, seen.drive(sequence=0))
+        assert [one["sequence"] for one in seen.driven] == [900, 0]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"axes": [0, 0, 0, 0, 0]},
+        {"axes": [0, 0, 0, 0, 0, 0, 0]},
+        {"axes": [0, 0, 0, 0, 0, 1.001]},
+        {"axes": [0, 0, 0, 0, 0, float("nan")]},
+        {"axes": [0, 0, 0, 0, 0, float("inf")]},
+        {"axes": [0, 0, 0, 0, 0, 10**400]},
+        {"axes": [0, 0, 0, 0, 0, True]},
+        {"axes": [0, 0, 0, 0, 0, "1"]},
+        {"axes": None},
+        {"lease": "1"},
+        {"lease": 1.5},
+        {"lease": -1},
+        {"lease": True},
+        {"sequence": None},
+        {"sequence": 2**53 + 1},
+        {"taken": float("inf")},
+        {"taken": "now"},
+        {"taken": 10**400},
+    ],
+)
+def test_what_is_no_driving_command_is_not_read_as_one(changes: Any) -> None:
+    with pytest.raises(ValidationError):
+        Seen().drive(**changes)

@@ -1,0 +1,87 @@
+"""One's own panels: which files of the data folder are panels, and the frame that shuts them in."""
+
+import asyncio
+import re
+from base64 import b64encode
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanel, list_panels, read_panel
+from server.platform.settings import Settings
+from tests.server.serving import serve
+
+
+def put(folder: Path, name: str, script: bytes = b"export default () => () => {}") -> None:
+    folder.mkdir(exist_ok=True)
+    (folder / name).write_bytes(script)
+
+
+def test_scripts_in_the_folder_are_panels(tmp_path: Path) -> None:
+    folder = tmp_path / "panels"
+    assert list_panels(folder) == []
+    for name in ("Climb rate.js", "no panel.txt", "ünï.js"):
+        put(folder, name)
+    put(folder, "large.js", b" " * (SCRIPT_BYTES_MAX + 1))
+    put(folder, "latin.js", "// °".encode("latin-1"))
+    (folder / "gone.js").symlink_to(folder / "nowhere")
+    found = {one.name: one.problem for one in list_panels(folder)}
+    assert found == {
+        "Climb rate": "",
+        "gone": "gone.js cannot be read: No such file or directory.",
+        "large": "large.js has more than 200 kB.",
+        "latin": "latin.js is not a text in UTF-8.",
+        "ünï": "ünï.js needs another name: up to 40 letters without accents, digits, spaces, - and _.",
+    }
+    assert "export default" in read_panel(folder, "Climb rate").script
+
+
+@pytest.mark.parametrize("name", ["../secret", "secret", "..", "Climb rate.js", "large", "\0"])
+def test_no_other_file_is_read(tmp_path: Path, name: str) -> None:
+    folder = tmp_path / "panels"
+    put(folder, "Climb rate.js")
+    put(folder, "large.js", b" " * (SCRIPT_BYTES_MAX + 1))
+    put(tmp_path, "secret.js")
+    with pytest.raises(UnknownPanel):
+        read_panel(folder, name)
+
+
+def test_panels_are_listed_and_handed_out(settings: Settings) -> None:
+    put(settings.data.panels, "Climb rate.js", b"// hello")
+
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            assert (await served.api.get("/panels")).json() == [{"name": "Climb rate", "problem": ""}]
+            script = await served.api.get("/panels/own/Climb%20rate")
+            assert script.json() == {"name": "Climb rate", "script": "// hello"}
+            gone = await served.api.get("/panels/own/nothing")
+            assert gone.status_code == 404
+            assert "There is no panel “nothing”" in gone.json()["detail"]
+
+    asyncio.run(scenario())
+
+
+def test_the_frame_has_a_policy_of_its_own_and_nothing_else_has(settings: Settings) -> None:
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            frame = await served.api.get("/panels/frame")
+            policy = frame.headers["content-security-policy"]
+            assert "sandbox allow-scripts;" in policy
+            assert "allow-same-origin" not in policy
+            assert "default-src 'none'" in policy
+            assert "frame-ancestors 'self'" in policy
+            assert "connect-src" not in policy  # as default-src says
+            (script,) = re.findall(r"<script>(.*?)</script>", frame.text, re.DOTALL)
+            assert f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" in policy
+            assert frame.headers["x-frame-options"] == "SAMEORIGIN"
+            assert frame.headers["x-content-type-options"] == "nosniff"
+            other = await served.api.get("/panels")
+            assert "frame-ancestors 'none'" in other.headers["content-security-policy"]
+            assert other.headers["x-frame-options"] == "DENY"
+            del served.api.headers["X-Mucat-Seat"]
+            nobody = await served.api.get("/panels/frame", auth=None, headers={"authorization": ""})
+            assert nobody.status_code == 401
+            assert "frame-ancestors 'none'" in nobody.headers["content-security-policy"]
+
+    asyncio.run(scenario())

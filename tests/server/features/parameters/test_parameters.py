@@ -1,0 +1,178 @@
+"""Parameters over HTTP: changes, who did, undo, profiles and their files."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+
+from server.features.parameters.profiles import ProfileError, read_file
+from server.platform.settings import Settings
+from tests.server.blocks import state_block
+from tests.server.serving import Served, serve
+from tests.server.waiting import until
+
+LISTED: list[dict[str, Any]] = [
+    {"name": "depth.pid.kp", "value": 3.0},
+    {"name": "vision.colour", "value": "red"},
+]
+
+
+def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            await served.heard("stream")
+            served.runtime.publish(state_block(0))
+            await until(served.assembly.watch.state, "the state")
+            await served.reached()
+            whole: dict[str, Any] = {
+                "type": "number",
+                "default": 0,
+                "minimum": 0,
+                "maximum": 9,
+                "unit": "",
+                "meaning": "",
+            }
+            whole |= {"choices": [], "where": "runtime", "while_armed": True, "pending": False}
+            served.runtime.parameters["parameters"] = [whole | one for one in LISTED]
+            await scenario(served)
+
+    asyncio.run(run())
+
+
+async def change(served: Served, before: float, after: float) -> None:
+    served.runtime.answer = {"changed": {"depth.pid.kp": [before, after]}}
+    answer = await served.api.patch("/parameters", json={"values": {"depth.pid.kp": after}})
+    assert answer.raise_for_status().json()["changed"] == [
+        {"name": "depth.pid.kp", "before": before, "after": after}
+    ]
+
+
+def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await change(served, 3.0, 4.0)
+        served.runtime.answer = {"changed": {"control.set_point": [0.5, 1.0]}}
+        (await served.api.put("/robot/set-points", json={"default": 1.0})).raise_for_status()
+        newest, first = (await served.api.get("/parameters/changes")).json()
+        assert [one["who"] for one in (newest, first)] == ["the shell of this computer"] * 2
+        assert (newest["undoable"], first["undoable"]) == (True, False)
+
+        # Only the newest, which the page has seen.
+        assert (await served.api.post("/parameters/undo", json={"change": first["id"]})).status_code == 409
+        (await served.api.post("/parameters/undo", json={"change": newest["id"]})).raise_for_status()
+        assert served.runtime.asked[-1] == (
+            "parameters",
+            {"values": {"control.set_point": 0.5}, "expected": {"control.set_point": 1.0}},
+        )
+        newest, first = (await served.api.get("/parameters/changes")).json()
+        assert (newest["undone"], newest["undoable"], first["undoable"]) == (
+            "the shell of this computer",
+            False,
+            True,
+        )
+
+        served.runtime.refusal = "depth.pid.kp is 7.0 now, and not 4.0 any more"
+        refused = await served.api.post("/parameters/undo", json={"change": first["id"]})
+        assert (refused.status_code, refused.json()["detail"]) == (409, served.runtime.refusal)
+        assert (await served.api.get("/parameters/changes")).json()[1]["undoable"]
+
+        served.runtime.refusal = None
+        (await served.api.post("/parameters/undo", json={"change": first["id"]})).raise_for_status()
+        over = await served.api.post("/parameters/undo", json={"change": first["id"]})
+        assert "Nothing is left" in over.json()["detail"]
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '{"values": {"depth.pid.kp": NaN}}',
+        '{"values": {"depth.pid.kp": Infinity}}',
+        '{"values": {"depth.pid.kp": null}}',
+        '{"values": {"depth.pid.kp": [1]}}',
+        '{"values": {}}',
+        '{"values": [1]}',
+        '{"values": {"depth.pid.kp": 1}, "partly": true}',
+        "{}",
+        "no JSON",
+    ],
+)
+def test_what_is_no_value_does_not_reach_the_runtime(settings: Settings, body: str) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.patch(
+            "/parameters", content=body, headers={"content-type": "application/json"}
+        )
+        assert answer.status_code == 422
+        assert [name for name, _ in served.runtime.asked] == []
+
+    play(settings, scenario)
+
+
+def test_a_profile_is_kept_carried_about_restored_and_deleted(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        saved = (await served.api.post("/profiles", json={"name": " calm ", "note": "pool"})).json()
+        assert (saved["name"], saved["values"]) == ("calm", {"depth.pid.kp": 3.0, "vision.colour": "red"})
+        again = await served.api.post("/profiles", json={"name": "calm"})
+        assert (again.status_code, "already" in again.json()["detail"]) == (409, True)
+
+        file = await served.api.get(f"/profiles/{saved['id']}/file")
+        assert 'filename="profile-calm.json"' in file.headers["content-disposition"]
+        text = file.text.replace('"calm"', '"from elsewhere"').replace("vision.colour", "vision.hue")
+        taken = (await served.api.post("/profiles/file", json={"text": text})).raise_for_status().json()
+        assert taken["unknown"] == ["vision.hue"]
+        assert [one["name"] for one in (await served.api.get("/profiles")).json()] == [
+            "calm",
+            "from elsewhere",
+        ]
+
+        served.runtime.answer = {
+            "changed": {"depth.pid.kp": [5.0, 3.0]},
+            "left_out": {"vision.hue": "there is no parameter 'vision.hue'"},
+        }
+        restored = await served.api.post(f"/profiles/{taken['profile']['id']}/restore")
+        assert restored.raise_for_status().json()["left_out"] == [
+            {"name": "vision.hue", "why": "there is no parameter 'vision.hue'"}
+        ]
+        assert served.runtime.asked[-1] == (
+            "parameters",
+            {"values": {"depth.pid.kp": 3.0, "vision.hue": "red"}, "partly": True},
+        )
+        assert (await served.api.get("/parameters/changes")).json()[0]["why"] == "Profile “from elsewhere”"
+
+        (await served.api.delete(f"/profiles/{saved['id']}")).raise_for_status()
+        assert (await served.api.delete(f"/profiles/{saved['id']}")).status_code == 404
+        assert (await served.api.post(f"/profiles/{saved['id']}/restore")).status_code == 404
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        ("no JSON", "it is not JSON"),
+        ("[1]", "does not say its format"),
+        ("{}", "does not say its format"),
+        ({"format": 2, "version": "9.1"}, "format 2, written by version '9.1'; this version reads format 1"),
+        ({"format": 1, "name": "a"}, "parameters: Field required"),
+        ({"format": 1, "name": "", "parameters": {}}, "name: String should have at least 1"),
+        ({"format": 1, "name": "a", "parameters": {"x": [1]}}, "parameters.x"),
+        ('{"format": 1, "name": "a", "parameters": {"x": NaN}}', "parameters.x"),
+        ("[" * 100_000, "it is not JSON"),
+    ],
+)
+def test_a_file_that_is_no_profile_of_this_version_is_refused_with_the_reason(
+    content: dict[str, Any] | str, why: str
+) -> None:
+    text = content if isinstance(content, str) else json.dumps(content)
+    with pytest.raises(ProfileError) as refused:
+        read_file(text)
+    assert why in str(refused.value)
+
+
+def test_what_a_newer_version_of_the_same_format_adds_is_passed_over() -> None:
+    text = json.dumps(
+        {"format": 1, "name": "a", "mood": "calm", "parameters": {"x": 1, "y": "red", "z": True}}
+    )
+    assert read_file(text).parameters == {"x": 1, "y": "red", "z": True}

@@ -1,0 +1,212 @@
+"""What a scenario sets up on water, line and robot, and that all of it is put back."""
+
+import asyncio
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from robot_runtime.control.controllers.angle import HeadingPid
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.firmware import firmware_path
+from robot_runtime.simulation.water.faults import Fault
+from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.requests import changes
+from robot_runtime.simulation.water.simulator import Simulator
+from server.features.scenarios.live_setup import Surroundings
+from server.stream.bridge import Bridge
+from tests.stack import ROOT
+
+pytestmark = pytest.mark.stack
+
+STATE = {
+    "controller": "bang_bang",
+    "controllers": [{"name": "pid", "gains": [{"name": "kp", "value": 7.0}]}],
+    "set_point_default": 0.9,
+    "set_point_detected": 1.1,
+    "steering": "beacons",
+    "loops": [
+        {"name": "depth", "on": False, "set_point": 0.9, "controller": "bang_bang", "controllers": []},
+        {
+            "name": "heading",
+            "on": True,
+            "set_point": 0.4,
+            "controller": "pid",
+            "controllers": [
+                {"name": "pid", "gains": [{"name": "kp", "value": 2.0}]},
+                {"name": "bang_bang_dead_zone", "gains": []},
+            ],
+        },
+    ],
+    "vision_rate": 4.0,
+    "vision_colour": "yellow",
+    "card": "red",
+}
+SCENARIO = read_scenario("""
+name = "all"
+title = "All of the water"
+duration = 9
+seed = 5
+[scene]
+kind = "pool"
+depth = 2
+length = 4
+width = 3
+beacons = [[1, 0, 0.5]]
+targets = [{ colour = "green", position = [2, 0, 1] }]
+[start]
+north = 1
+down = 0.7
+[water]
+current = { north = 0.1 }
+waves = { amplitude = 0.05 }
+[trim]
+buoyancy = 1.01
+forward = 0
+right = 0
+above = 0.02
+[control]
+gains.pid.kp = 4
+[[events]]
+at = 1
+do = "fault"
+sensor = "pressure"
+kind = "stuck"
+[[events]]
+at = 2
+do = "line"
+direction = "to_board"
+kind = "cut"
+on = true
+[[events]]
+at = 3
+do = "card"
+colour = "red"
+""")
+
+
+class DirectBridge:
+    """Asks a simulator at hand in place of one over Zenoh, and keeps what the runtime was told."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self.commands: list[tuple[str, Mapping[str, Any]]] = []
+        self.sight: dict[str, Any] = {"world": {"turbidity": 0.2}, "targets": {"targets": []}}
+        self._changes = changes(simulator)
+
+    async def command(self, name: str, payload: Mapping[str, Any]) -> None:
+        self.commands.append((name, payload))
+
+    async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        if name == "contents":
+            return dict(self.sight)
+        self.sight[name] = payload
+        return {}
+
+    async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        return self._changes[name](payload) or {}
+
+
+@pytest.fixture
+def simulator() -> Simulator:
+    return Simulator(Parameters(), seed=1)
+
+
+@pytest.fixture
+def bridge(simulator: Simulator) -> DirectBridge:
+    return DirectBridge(simulator)
+
+
+@pytest.fixture
+def board() -> Iterator[BoardProcess]:
+    build = ROOT / "build"
+    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+        tty, socket = Path(name) / "tty", Path(name) / "socket"
+        with BoardProcess(
+            build / "board", firmware_path(build, 250_000, ".elf"), tty, socket, "--paused"
+        ) as one:
+            yield one
+
+
+@pytest.fixture
+def surroundings(bridge: DirectBridge, board: BoardProcess) -> Surroundings:
+    return Surroundings(cast(Bridge, bridge), board.socket)
+
+
+def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge) -> None:
+    async def work() -> None:
+        await surroundings.prepare(SCENARIO, await surroundings.read(STATE))
+
+    simulator.set_fault("battery", Fault(kind="drift", speed=0.1))
+    asyncio.run(work())
+    now = simulator.surroundings()
+    assert (now.basin, now.current, now.waves) == (
+        SCENARIO.scene.basin,
+        SCENARIO.water.current,
+        SCENARIO.water.waves,
+    )
+    assert (now.trim, now.beacons) == (SCENARIO.trim, ((1.0, 0.0, 0.5),))
+    assert {fault.kind for fault in now.faults.values()} == {"none"}
+    assert simulator.truth().position == pytest.approx((1.0, 0.0, 0.7))
+    gains = [question["gains"] for _, question in bridge.commands if question.get("name") == "pid"]
+    assert gains == [{"kp": 4.0, "ki": 0.4, "kd": 2.0}]
+    loops = {question["name"]: question for name, question in bridge.commands if name == "loop"}
+    assert [(loop["on"], loop["set_point"]) for loop in loops.values()] == [(False, 0.0)] * 3
+    assert loops["heading"]["gains"] == HeadingPid().gains
+    assert bridge.commands[-1] == ("card", {"colour": None})
+    assert bridge.sight["world"] == {"kind": "pool", "turbidity": 0.1}
+    target = {"colour": "green", "position": [2.0, 0.0, 1.0], "size": 0.2}
+    assert bridge.sight["targets"] == {"targets": [target]}
+
+
+def test_everything_is_put_back(
+    surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge, board: BoardProcess
+) -> None:
+    async def work() -> list[str]:
+        before = await surroundings.read(STATE)
+        await surroundings.prepare(SCENARIO, before)
+        for event in SCENARIO.events:
+            await surroundings.apply(event)
+        bridge.commands.clear()
+        return await surroundings.put_back(before)
+
+    simulator.set_fault("battery", Fault(kind="drift", speed=0.1))
+    was, seen = simulator.surroundings(), dict(bridge.sight)
+    assert asyncio.run(work()) == []
+    assert bridge.sight == seen
+    assert simulator.surroundings() == was
+    assert bridge.commands == [
+        ("controller", {"name": "pid", "gains": {"kp": 7.0}}),
+        ("controller", {"name": "bang_bang"}),
+        ("set_points", {"default": 0.9, "detected": 1.1}),
+        ("loop", {"name": "heading", "controller": "pid", "gains": {"kp": 2.0}}),
+        ("loop", {"name": "heading", "controller": "bang_bang_dead_zone", "gains": {}}),
+        ("loop", {"name": "heading", "controller": "pid", "on": True, "set_point": 0.4}),
+        ("steering", {"by": "beacons"}),
+        ("vision", {"rate": 4.0, "colour": "yellow"}),
+        ("card", {"colour": "red"}),
+    ]
+    with board.connect() as line:
+        before_run = line.stats()["to_board_cuts"]
+        line.run(1.0)
+        assert line.stats()["to_board_cuts"] == before_run
+
+
+def test_what_cannot_be_put_back_is_told_and_the_rest_done(
+    simulator: Simulator, bridge: DirectBridge
+) -> None:
+    async def work() -> list[str]:
+        surroundings = Surroundings(cast(Bridge, bridge), Path("/nowhere/socket"))
+        before = await surroundings.read(STATE)
+        with pytest.raises(Refused, match="The emulated board: no emulated board answers"):
+            await surroundings.prepare(SCENARIO, before)
+        return await surroundings.put_back(before)
+
+    was = simulator.surroundings()
+    (problem,) = asyncio.run(work())
+    assert "no emulated board answers" in problem
+    assert simulator.surroundings() == was
+    assert bridge.commands[-1] == ("card", {"colour": "red"})

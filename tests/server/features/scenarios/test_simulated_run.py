@@ -1,0 +1,161 @@
+"""Scenarios in simulated time: recorded with a clock of their own, in a queue, cancelled, from the shell."""
+
+import asyncio
+import sqlite3
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.clock import SteadyClock
+from server.cli import main
+from server.features.scenarios.runs import Runs
+from server.features.scenarios.schemas import ScenarioState
+from server.features.scenarios.simulated_run import Simulated
+from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+
+SHORT = """
+name = "short"
+title = "A short one"
+duration = 4
+seed = 7
+[scene]
+kind = "natural"
+depth = 3.0
+[control]
+set_point = 0.2
+[[events]]
+at = 0.5
+do = "arm"
+[[events]]
+at = 2
+do = "card"
+colour = "yellow"
+"""
+LONG = SHORT.replace("duration = 4", "duration = 3600")
+Work = Callable[[Runs], Awaitable[None]]
+
+
+def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]:
+    """What was told while `work` used the runs of a server without a robot."""
+    told: list[ScenarioState] = []
+
+    async def whole() -> None:
+        simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
+        runs = Runs(simulated, simulated, lambda message: told.append(ScenarioState.model_validate(message)))
+        try:
+            await work(runs)
+        finally:
+            await runs.close()
+
+    asyncio.run(whole())
+    return told
+
+
+def samples(store: Store, session: int) -> list[Any]:
+    row = find_row(store, session)
+    assert row is not None
+    recording = Recording(store, row)
+    return [(topic, [one.data for one in recording.chunks(topic)]) for topic in sorted(recording.counts())]
+
+
+def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Settings, store: Store) -> None:
+    async def work(runs: Runs) -> None:
+        assert [runs.start(SHORT, "simulated", "host") for _ in range(2)] == [1, 2]
+        assert [one.run for one in runs.state().queued] == [2]
+        await runs.wait()
+
+    told = perform(settings, store, work)
+    ends = {one.last.run: one.last for one in told if one.last}
+    assert {number: (end.state, end.problem, end.before) for number, end in ends.items()} == {
+        1: ("complete", "", None),
+        2: ("complete", "", ends[1].session),
+    }
+    first, second = (find_row(store, ends[number].session or 0) for number in (1, 2))
+    assert first is not None
+    assert second is not None
+    assert (first.origin, first.scenario, first.scenario_name, first.seed) == ("simulated", SHORT, "short", 7)
+    assert (first.started_steady, first.state) == (0.0, "complete")
+    assert len(first.firmware) == len(first.software) == 16
+    assert samples(store, first.id or 0) == samples(store, second.id or 0)
+    times, columns = Recording(store, first).columns("control", ["set_point"])
+    assert times[0] < 0.2
+    assert 4.0 < times[-1] <= first.duration < 5.0
+    assert sorted({round(float(one), 1) for one in columns["set_point"]}) == [0.2, 1.0]
+    with sqlite3.connect(settings.data.database) as database:
+        marks = database.execute(f"SELECT time, text FROM marker WHERE session_id = {first.id}").fetchall()
+    assert [(round(time), text) for time, text in marks] == [(1, "Arm"), (2, "Yellow card")]
+
+
+def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
+    settings: Settings, store: Store
+) -> None:
+    async def work(runs: Runs) -> None:
+        runs.start(LONG, "simulated", "host")
+        runs.start(LONG, "simulated", "host")
+        while runs.active is None or runs.active.elapsed < 1:
+            await asyncio.sleep(0.02)
+        runs.cancel()
+        await runs.wait()
+
+    last = perform(settings, store, work)[-1]
+    assert (last.active, last.queued) == (None, [])
+    assert last.last is not None
+    assert (last.last.state, last.last.problem, last.last.run) == ("cancelled", "It was cancelled.", 1)
+    row = find_row(store, last.last.session or 0)
+    assert row is not None
+    assert (row.state, row.samples > 0) == ("complete", True)
+    assert row.duration < 3600
+
+
+def test_what_the_robot_refuses_is_marked_and_told(settings: Settings, store: Store) -> None:
+    broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
+
+    async def work(runs: Runs) -> None:
+        runs.start(broken.replace("at = 0.5", "at = 2.5"), "simulated", "host")
+        await runs.wait()
+
+    last = perform(settings, store, work)[-1].last
+    assert last is not None
+    assert last.state == "complete"
+    assert last.problem.startswith("At 2.5 s: Arm: refused. ")
+
+
+def test_a_process_that_fails_is_told_with_its_words(
+    settings: Settings, store: Store, tmp_path: Path
+) -> None:
+    async def work(runs: Runs) -> None:
+        runs.start(SHORT, "simulated", "emulated")
+        await runs.wait()
+
+    nowhere = Settings(data=settings.data, config=settings.config, robot="tested", build=tmp_path)
+    last = perform(nowhere, store, work)[-1].last
+    assert last is not None
+    assert (last.state, last.session) == ("failed", None)
+    assert "has ended with exit status" in last.problem
+    assert str(tmp_path) in last.problem
+
+
+def test_from_the_shell(settings: Settings, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "short.toml"
+    file.write_text(SHORT)
+    options = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert main(["scenario", "check", str(file), *options]) == 0
+    assert main(["scenario", "run", str(file), *options]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "A short one: 4 s, seed 7"
+    assert lines[-2:] == ["     2.0 s  Yellow card", "A short one: complete. Session 1."]
+    file.write_text(SHORT.replace("[scene]", "[sea]"))
+    assert main(["scenario", "run", str(file), *options]) == 1
+    problems = capsys.readouterr().err
+    assert "scene is missing" in problems
+    assert "'sea' is not known here" in problems
+    assert main(["scenario", "run", str(tmp_path / "none.toml"), *options]) == 1
+    assert "lost_link" in capsys.readouterr().err
+    assert main(["scenario", "list", *options]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 5

@@ -1,0 +1,106 @@
+"""A session that begins when the robot is armed."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+from robot_runtime.clock import SimulatedClock
+from server.features.sessions.auto_recording import REST_SECONDS, ArmingRecording
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import new_row
+from server.platform.models import SessionRow
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import state_block
+
+
+class Watched:
+    """A recorder, and what watches the robot's state for it."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self.clock = SimulatedClock(50.0)
+        self.settings = settings
+        notices = Notices(self.clock, lambda _: None)
+        self.recorder = Recorder(store, self.clock, notices, lambda: None)
+        self.arming = ArmingRecording(self.recorder, self.clock, notices, self.make_row)
+
+    async def make_row(self, name: str, state: str) -> SessionRow:
+        return new_row(self.settings, self.clock, name, "", state, origin="arming")
+
+    async def see(self, armed: bool) -> None:
+        self.arming.see(state_block(0, armed=armed))
+        await self.arming.close()
+
+    async def wait(self, seconds: float) -> None:
+        self.clock.forward(seconds)
+        self.arming.tick()
+        await self.arming.close()
+
+    @property
+    def recording(self) -> str | None:
+        session = self.recorder.session
+        return None if session is None else session.origin
+
+
+def play(store: Store, settings: Settings, scenario: Callable[[Watched], Awaitable[None]]) -> None:
+    async def run() -> None:
+        await scenario(Watched(store, settings))
+
+    asyncio.run(run())
+
+
+def test_it_records_while_armed_and_until_the_fins_rest(store: Store, settings: Settings) -> None:
+    async def scenario(watched: Watched) -> None:
+        await watched.see(armed=False)
+        await watched.wait(60)
+        assert watched.recording is None
+        await watched.see(armed=True)
+        assert watched.recording == "arming"
+        await watched.wait(60)
+        await watched.see(armed=False)
+        await watched.wait(REST_SECONDS - 1)
+        await watched.see(armed=True)
+        await watched.wait(60)
+        assert watched.recording == "arming"
+        await watched.see(armed=False)
+        await watched.see(armed=False)
+        await watched.wait(REST_SECONDS - 0.1)
+        assert watched.recording == "arming"
+        await watched.wait(0.1)
+        assert watched.recording is None
+
+    play(store, settings, scenario)
+
+
+def test_it_leaves_an_operator_s_session_alone(store: Store, settings: Settings) -> None:
+    async def scenario(watched: Watched) -> None:
+        row = new_row(settings, watched.clock, "mine", "", "null")
+        await watched.recorder.start(row)
+        await watched.see(armed=True)
+        await watched.see(armed=False)
+        await watched.wait(2 * REST_SECONDS)
+        assert watched.recording == "operator"
+
+    play(store, settings, scenario)
+
+
+def test_one_that_an_earlier_server_began_is_ended_too(store: Store, settings: Settings) -> None:
+    async def scenario(watched: Watched) -> None:
+        await watched.recorder.start(await watched.make_row("resumed", "null"))
+        await watched.see(armed=False)
+        await watched.wait(REST_SECONDS)
+        assert watched.recording is None
+
+    play(store, settings, scenario)
+
+
+def test_an_operator_who_stops_it_is_obeyed(store: Store, settings: Settings) -> None:
+    async def scenario(watched: Watched) -> None:
+        await watched.see(armed=True)
+        assert watched.recorder.session is not None
+        await watched.recorder.stop(watched.recorder.session.id)
+        await watched.see(armed=True)
+        await watched.wait(1)
+        assert watched.recording is None
+
+    play(store, settings, scenario)

@@ -1,0 +1,149 @@
+"""Sessions found, written about, marked, deleted and taken back, over HTTP as the page does it."""
+
+from typing import Any
+
+import pytest
+
+from server.platform.settings import Settings
+from tests.server.blocks import depth_block, state_block, thumbnail_block
+from tests.server.serving import Served, next_text, play
+from tests.server.waiting import until
+
+
+async def record(served: Served, name: str, note: str = "") -> int:
+    started = (await served.api.post("/sessions", json={"name": name, "note": note})).json()
+    await served.api.post(f"/sessions/{started['id']}/stop")
+    return int(started["id"])
+
+
+async def names(served: Served, **query: Any) -> list[str]:
+    answer = await served.api.get("/sessions", params=query)
+    assert answer.status_code == 200, answer.text
+    return [session["name"] for session in answer.json()]
+
+
+def test_sessions_are_found_by_words_tags_and_origin(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        ids = [await record(served, "Hover", "im KÄLTEN Becken"), await record(served, "Dive 100%")]
+        assert await names(served) == ["Dive 100%", "Hover"]
+        said = {"tags": ["pool", "Bang-bang", "pool"], "name": " Hovering ", "kept": True}
+        answer = await served.api.patch(f"/sessions/{ids[0]}", json=said)
+        found = answer.json()
+        assert (found["name"], found["tags"], found["kept"]) == ("Hovering", ["Bang-bang", "pool"], True)
+        for query, expected in (
+            ({"search": "kälten hover"}, ["Hovering"]),
+            ({"search": "bang"}, ["Hovering"]),
+            ({"search": "%"}, ["Dive 100%"]),
+            ({"search": "hover dive"}, []),
+            ({"tag": "POOL"}, ["Hovering"]),
+            ({"tag": ["pool", "sea"]}, []),
+            ({"origin": "operator"}, ["Dive 100%", "Hovering"]),
+            ({"origin": "arming"}, []),
+        ):
+            assert await names(served, **query) == expected, query
+        await served.api.patch(f"/sessions/{ids[0]}", json={"tags": []})
+        assert await names(served, tag="pool") == []
+
+    play(settings, scenario)
+
+
+def test_the_bin_gives_back_what_was_not_purged(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        api, first, second = served.api, await record(served, "first"), await record(served, "second")
+        assert (await api.post(f"/sessions/{first}/purge")).status_code == 409
+        assert (await api.delete(f"/sessions/{first}")).json()["deleted"] is not None
+        assert (await names(served), await names(served, deleted=True)) == (["second"], ["first"])
+        storage = (await api.get("/storage")).json()
+        assert (storage["sessions"], storage["bin"]) == (1, 1)
+        assert 0 < storage["database"] < storage["free"] < storage["total"]
+        assert (await api.post(f"/sessions/{first}/restore")).json()["deleted"] is None
+        assert await names(served) == ["second", "first"]
+        await api.delete(f"/sessions/{second}")
+        assert (await api.post(f"/sessions/{second}/purge")).status_code == 204
+        assert (await api.get(f"/sessions/{second}")).status_code == 404
+        assert (await api.post(f"/sessions/{second}/restore")).status_code == 404
+        assert await names(served, deleted=True) == []
+
+    play(settings, scenario)
+
+
+def test_marks_are_set_live_and_later(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        api = served.api
+        session = (await api.post("/sessions", json={"name": "marked"})).json()["id"]
+        path = f"/sessions/{session}/markers"
+        async with served.connect() as socket:
+            live = (await api.post(path, json={"text": " bubbles "})).json()
+            assert live["text"] == "bubbles"
+            told = await next_text(socket, "session")
+            while told["recording"]["markers"] == 0:
+                told = await next_text(socket, "session")
+        assert (await api.delete(f"/sessions/{session}")).status_code == 409
+        assert (await api.post(path, json={"time": 1e6})).status_code == 409
+        duration = (await api.post(f"/sessions/{session}/stop")).json()["duration"]
+        assert 0 <= live["time"] <= duration
+        assert "Say at what time" in (await api.post(path, json={})).json()["detail"]
+        late = (await api.post(path, json={"time": duration, "text": "end"})).json()
+        changed = await api.patch(f"{path}/{late['id']}", json={"time": 0, "text": "start"})
+        assert (changed.json()["time"], changed.json()["text"]) == (0, "start")
+        marks = (await api.get(f"/sessions/{session}")).json()["marks"]
+        assert [mark["text"] for mark in marks] == ["start", "bubbles"]
+        assert (await api.delete(f"{path}/{live['id']}")).status_code == 204
+        assert (await api.delete(f"{path}/{live['id']}")).status_code == 404
+        other = await record(served, "other")
+        assert (await api.patch(f"/sessions/{other}/markers/{late['id']}", json={})).status_code == 404
+        assert (await api.get("/sessions")).json()[1]["markers"] == 1
+
+    play(settings, scenario)
+
+
+def test_a_session_says_what_is_in_it(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.publish(state_block(0, set_point=0.7))
+        await until(lambda: served.assembly.watch.state() is not None, "the state")
+        session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
+        now, recorder = served.assembly.clock.now(), served.assembly.recorder
+        small = [thumbnail_block(n, now + n, bytes([n])) for n in range(2)]
+        served.runtime.publish(depth_block(5, 10, start=now - 0.1), depth_block(20, 1, start=now))
+        served.runtime.publish_bytes(b"".join(block.data for block in small))
+        await until(lambda: recorder.session is not None and recorder.session.samples >= 14, "the samples")
+        detail = (await served.api.get(f"/sessions/{session}")).json()
+        assert detail["robot_state"]["set_point"] == 0.7
+        assert detail["configuration"] == settings.config.read_text()
+        assert len(detail["software"]) == 16
+        (gap,) = detail["gaps"]
+        assert (gap["topic"], gap["kind"], gap["missed"]) == ("depth", "missed", 5)
+        topics = {topic["name"]: topic for topic in detail["topics"]}
+        assert (topics["depth"]["count"], topics["thumbnail"]["kind"]) == (11, "picture")
+        assert {"name": "depth", "unit": "m"}.items() <= topics["depth"]["columns"][1].items()
+        picture = f"/sessions/{session}/thumbnail"
+        start = served.assembly.catalogue.row(session).started_steady
+        answer = await served.api.get(picture, params={"time": now - start + 0.5})
+        assert (answer.headers["content-type"], answer.content) == ("image/jpeg", b"\1")
+        assert (await served.api.get(picture, params={"time": 1e6})).status_code == 404
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"name": ""},
+        {"name": " "},
+        {"name": "x" * 101},
+        {"tags": ["a,b"]},
+        {"tags": [""]},
+        {"tags": ["x"] * 21},
+        {"kept": "perhaps"},
+        {"state": "complete"},
+    ],
+)
+def test_what_cannot_be_said_of_a_session_is_refused(settings: Settings, body: dict[str, Any]) -> None:
+    async def scenario(served: Served) -> None:
+        session = await record(served, "as it was")
+        before = (await served.api.get(f"/sessions/{session}")).json()
+        assert (await served.api.patch(f"/sessions/{session}", json=body)).status_code == 422
+        assert (await served.api.get(f"/sessions/{session}")).json() == before
+        assert (await served.api.patch("/sessions/99", json={"name": "x"})).status_code == 404
+
+    play(settings, scenario)

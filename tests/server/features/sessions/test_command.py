@@ -1,0 +1,90 @@
+"""Sessions from a shell, beside a running server and without one."""
+
+import asyncio
+
+import pytest
+
+from robot_runtime.clock import SimulatedClock
+from server import cli
+from server.cli import main
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.session import new_row
+from server.platform.notices import Notices
+from server.platform.running_server import announce
+from server.platform.schema import prepare
+from server.platform.settings import Settings, SetupError
+from server.platform.store import Store
+from tests.server.serving import serve
+
+
+def run(settings: Settings, *arguments: str) -> int:
+    common = ("--data", str(settings.data.path), "--config", str(settings.config))
+    return main([*arguments, *common])
+
+
+def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
+    prepare(settings.data)
+    store = Store(settings.data.database)
+    clock = SimulatedClock(50.0)
+    recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+
+    async def record() -> None:
+        session = await recorder.start(new_row(settings, clock, "dive", "", "null"))
+        await recorder.stop(session.id)
+
+    asyncio.run(record())
+    store.close()
+
+    def told(*arguments: str) -> str:
+        status = run(settings, *arguments)
+        spoken = capsys.readouterr()
+        return spoken.out if status == 0 else spoken.err
+
+    assert "changed" in told("sessions", "tag", "1", "pool", "sea")
+    assert "changed" in told("sessions", "tag", "1", "--remove", "sea")
+    assert "changed" in told("sessions", "note", "1", "calm water")
+    assert "dive  [pool]" in told("sessions", "list", "calm")
+    assert "No session" in told("sessions", "list", "--tag", "sea")
+    assert "tags: pool" in told("sessions", "show", "1")
+    assert "bin" in told("sessions", "delete", "1")
+    assert "dive" in told("sessions", "list", "--deleted")
+    assert "back" in told("sessions", "restore", "1")
+    assert "There is no session 7" in told("sessions", "delete", "7")
+    assert told("sessions", "tag", "1", "a,b").startswith("mucat: ")
+    assert "No server works on" in told("record", "start")
+
+
+def test_in_a_folder_that_no_server_has_used_yet(
+    settings: Settings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings.data.database.unlink(missing_ok=True)
+    assert run(settings, "sessions", "list") == 0
+    assert "No session" in capsys.readouterr().out
+
+
+def test_what_a_running_server_is_asked(
+    settings: Settings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def claimed(_: object) -> object:
+        raise SetupError("Another server works on it.")
+
+    monkeypatch.setattr(cli, "_claim", claimed)
+
+    async def scenario() -> None:
+        async with serve(settings) as served:
+            announce(served.settings)
+            for arguments in (
+                ("record", "start", "from the shell"),
+                ("sessions", "tag", "1", "pool"),
+                ("sessions", "delete", "1"),
+                ("record", "stop"),
+                ("sessions", "delete", "1"),
+            ):
+                await asyncio.to_thread(run, settings, *arguments)
+            (session,) = (await served.api.get("/sessions", params={"deleted": True})).json()
+            assert (session["name"], session["tags"]) == ("from the shell", ["pool"])
+
+    asyncio.run(scenario())
+    spoken = capsys.readouterr()
+    assert "it is session 1" in spoken.out
+    assert "Stop it first" in spoken.err

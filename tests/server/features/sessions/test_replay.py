@@ -1,0 +1,342 @@
+"""A stretch of a session as blocks: range, order, cut, and sessions of other definitions."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from contextlib import closing
+from dataclasses import asdict
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from sqlalchemy import Connection, insert, text
+
+from robot_runtime.contract import documents
+from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, read_blocks, read_rows, row
+from server.features.sessions.chunks import encode_rows
+from server.features.sessions.recording import Recording
+from server.features.sessions.replay import CHARTED, LISTED_CHUNKS, RANGE_MAX, TooMuch, read_stretch
+from server.features.sessions.session import find_row
+from server.features.sessions.timeline import Hole, read_timeline
+from server.platform.models import Marker
+from server.platform.schema import prepare
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import debug_block, depth_block, state_block
+from tests.server.features.exports.test_tables import STARTED_STEADY, record
+from tests.server.serving import Served, serve
+
+
+def read(store: Store, session: int) -> Recording:
+    row = find_row(store, session)
+    assert row is not None
+    return Recording(store, row)
+
+
+def change(store: Store, statement: str) -> None:
+    def run(connection: Connection) -> None:
+        connection.execute(text(statement))
+
+    asyncio.run(store.write(run))
+
+
+def redefine(store: Store, session: int, topic: str, fields: list[dict[str, Any]]) -> None:
+    """Say that a topic's fields were these when the session was recorded."""
+    described = dict(read(store, session).topics)
+    described[topic] = {**described[topic], "fields": fields}
+
+    def run(connection: Connection) -> None:
+        connection.execute(text("UPDATE session SET topics = :topics"), {"topics": json.dumps(described)})
+
+    asyncio.run(store.write(run))
+
+
+def depths(data: bytes) -> list[tuple[float, Depth]]:
+    found = []
+    for block in read_blocks(data):
+        if block.topic.name == "depth":
+            found += read_rows(block)
+    assert all(isinstance(record, Depth) for _, record in found)
+    return found  # type: ignore[return-value]
+
+
+def told(data: bytes, topic: str) -> list[dict[str, Any]]:
+    blocks = (block for block in read_blocks(data) if block.topic.name == topic)
+    return [document for block in blocks for document in json.loads(block.payload)]
+
+
+def lines(first: int, count: int, period: float = 0.1) -> Block:
+    made = [
+        documents.DebugLine(time=100 + period * n, level=1, text=f"line {n}")
+        for n in range(first, first + count)
+    ]
+    return Block.of(BY_NAME["debug"], count, first, pack_documents(made))
+
+
+@pytest.fixture
+def dive(store: Store, settings: Settings) -> Recording:
+    """Ten seconds from 100 s on: depths 20 ms apart, lines 100 ms apart, a state each second."""
+    batches = [
+        [depth_block(50 * n, 50), lines(10 * n, 10), state_block(n, time=100.0 + n, set_point=float(n))]
+        for n in range(10)
+    ]
+    return read(store, record(store, settings, *batches))
+
+
+def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
+    stretch = read_stretch(dive, 102.5, 104.1)
+    numbers = [int(record.time) for _, record in depths(stretch.data)]
+    assert numbers == list(range(125, 205))
+    assert [one["text"] for one in told(stretch.data, "debug")] == [f"line {n}" for n in range(25, 41)]
+    assert [one["set_point"] for one in told(stretch.data, "state")] == [3, 4]
+    assert stretch.left_out == 0
+
+
+def test_blocks_say_the_numbers_and_come_in_order_of_time(dive: Recording) -> None:
+    blocks = read_blocks(read_stretch(dive, 102.5, 104.1).data)
+    assert [(one.first, one.count) for one in blocks if one.topic.name == "depth"] == [
+        (125, 25),
+        (150, 50),
+        (200, 5),
+    ]
+    starts = [
+        read_rows(one)[0][0] if one.topic.name == "depth" else json.loads(one.payload)[0]["time"]
+        for one in blocks
+    ]
+    assert starts == sorted(starts)
+
+
+def test_stretches_side_by_side_give_every_sample_once(dive: Recording) -> None:
+    edges = [100.0, 100.02, 101.999, 102.0, 105.5, 110.0]
+    joined = b"".join(read_stretch(dive, start, end).data for start, end in pairwise(edges))
+    assert [int(record.time) for _, record in depths(joined)] == list(range(500))
+    assert len(told(joined, "debug")) == 100
+    assert len(told(joined, "state")) == 10
+
+
+def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> None:
+    batches = [[state_block(0, time=100.0, set_point=0.7), lines(0, 1)]]
+    batches += [[depth_block(50 * n, 50)] for n in range(20)]
+    recording = read(store, record(store, settings, *batches))
+    stretch = read_stretch(recording, 115.0, 116.0, history=2.0)
+    assert [one["set_point"] for one in told(stretch.data, "state")] == [0.7]
+    assert [one["text"] for one in told(stretch.data, "debug")] == ["line 0"]
+    assert [int(record.time) for _, record in depths(stretch.data)] == list(range(650, 800))
+    assert "depth" in CHARTED
+    # Without a history, only what lies in the range.
+    assert {one.topic.name for one in read_blocks(read_stretch(recording, 115.0, 116.0).data)} == {"depth"}
+
+
+def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, settings: Settings) -> None:
+    batches = [[depth_block(0, 50)], [depth_block(50, 50), state_block(0)], [depth_block(1500, 50)]]
+    recording = read(store, record(store, settings, *batches))
+    found = depths(read_stretch(recording, 110.0, 112.0, history=1.0).data)
+    assert [int(record.time) for _, record in found] == [99]
+    # At the very moment of a sample it is the one before that was in force; the sample itself comes next.
+    at = depths(read_stretch(recording, 100 + 50 * 0.02, 101.01, history=0.0).data)
+    assert [int(record.time) for _, record in at] == [49, 50]
+
+
+def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, dive: Recording) -> None:
+    (state,) = json.loads(state_block(0, time=99.0, set_point=0.3).payload)
+
+    def tell(connection: Connection) -> None:
+        connection.execute(text("UPDATE session SET robot_state = :state"), {"state": json.dumps(state)})
+
+    asyncio.run(store.write(tell))
+    assert dive.row.id is not None
+    recording = read(store, dive.row.id)
+    seen = [
+        [one["set_point"] for one in told(read_stretch(recording, start, start, 0).data, "state")]
+        for start in (99.9, 100.5)
+    ]
+    assert seen == [[0.3], [0.0]]
+
+
+def test_before_the_beginning_there_is_nothing(dive: Recording) -> None:
+    assert read_stretch(dive, 90.0, 99.0, history=300.0).data == b""
+
+
+def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
+    count = LISTED_CHUNKS + 50
+    recording = read(store, record(store, settings, *[[lines(n, 1)] for n in range(count)]))
+    texts = [one["text"] for one in told(read_stretch(recording, 100 + count / 10, 140, 0).data, "debug")]
+    assert texts[-1] == f"line {count - 1}"
+    assert LISTED_CHUNKS <= len(texts) < count
+
+
+def test_too_long_a_range_is_refused_with_its_limit(dive: Recording) -> None:
+    with pytest.raises(TooMuch, match="at most 120 s"):
+        read_stretch(dive, 100.0, 100.1 + RANGE_MAX)
+
+
+def test_damaged_chunks_are_left_out_and_counted(store: Store, dive: Recording) -> None:
+    change(store, "UPDATE chunk SET data = x'00' WHERE topic = 'depth' AND number = 2")
+    stretch = read_stretch(dive, 100.0, 110.0)
+    assert [int(record.time) for _, record in depths(stretch.data)] == [*range(100), *range(150, 500)]
+    assert stretch.left_out == 50
+
+
+def test_rows_of_other_definitions_are_rewritten_by_name_and_scale(store: Store, dive: Recording) -> None:
+    # As if depth had been in centimetres' counts, pressure been called otherwise, temperature in kelvin.
+    fields = [dict(field) for field in dive.topics["depth"]["fields"]]
+    fields[1]["scale"] = 0.01
+    fields[2]["name"] = "absolute_pressure"
+    fields[3]["unit"] = "K"
+    assert dive.row.id is not None
+    redefine(store, dive.row.id, "depth", fields)
+    stretch = read_stretch(read(store, dive.row.id), 100.0, 101.0)
+    found = depths(stretch.data)
+    assert [int(record.time) for _, record in found] == list(range(50))
+    assert [record.depth for _, record in found] == pytest.approx([n / 100 for n in range(50)])
+    assert {(record.pressure, record.temperature) for _, record in found} == {(0, 0.0)}
+    assert stretch.left_out == 0
+
+
+def test_rows_of_another_size_are_rewritten(store: Store, settings: Settings) -> None:
+    session = record(store, settings, [depth_block(0, 3)])
+    recording = read(store, session)
+    fields = [dict(field) for field in recording.topics["depth"]["fields"]]
+    fields[1] |= {"code": "f", "scale": 1}
+    row = np.dtype([("row", "<f8"), ("time", "<u4"), ("depth", "<f4"), ("pressure", "<u4"), ("t", "<i2")])
+    rows = np.zeros(3, row)
+    rows["row"], rows["depth"] = [100.0, 100.02, 100.04], [0.25, 40.0, -50.0]
+    described = dict(recording.topics) | {
+        "depth": {**recording.topics["depth"], "fields": fields, "row_bytes": row.itemsize}
+    }
+    data, _, _ = encode_rows([rows.tobytes()], row.itemsize)
+
+    def run(connection: Connection) -> None:
+        connection.execute(text("UPDATE chunk SET data = :data"), {"data": data})
+        connection.execute(text("UPDATE session SET topics = :topics"), {"topics": json.dumps(described)})
+
+    asyncio.run(store.write(run))
+    found = depths(read_stretch(read(store, session), 100.0, 101.0).data)
+    # What a field cannot hold becomes the nearest that it can.
+    assert [record.depth for _, record in found] == pytest.approx([0.25, 32.767, -32.768])
+
+
+def test_documents_with_missing_fields_get_stand_ins_or_are_left_out(
+    store: Store, settings: Settings
+) -> None:
+    lacking = state_block(0)
+    (document,) = json.loads(lacking.payload)
+    del document["card"], document["connection"], document["refusals"]
+    document["forgotten"] = 1
+    stated = Block.of(BY_NAME["state"], 1, 0, json.dumps([document]).encode())
+    (unsure,) = json.loads(state_block(1, time=100.5).payload)
+    del unsure["armed"]
+    stated_unsure = Block.of(BY_NAME["state"], 1, 1, json.dumps([unsure]).encode())
+    session = record(store, settings, [stated, stated_unsure])
+    change(store, "UPDATE session SET version = 'older'")
+    stretch = read_stretch(read(store, session), 100.0, 101.0)
+    (state,) = told(stretch.data, "state")
+    assert (state["card"], state["connection"], state["refusals"]) == (None, "", [])
+    assert "forgotten" not in state
+    assert stretch.left_out == 1
+
+
+def test_documents_of_this_version_pass_unchanged(dive: Recording, store: Store) -> None:
+    before = told(read_stretch(dive, 100.0, 110.0).data, "state")
+    change(store, "UPDATE session SET version = 'older'")
+    assert dive.row.id is not None
+    assert told(read_stretch(read(store, dive.row.id), 100.0, 110.0).data, "state") == before
+
+
+def thumbnails(first: int, *times: float) -> list[Block]:
+    topic = BY_NAME["thumbnail"]
+    return [
+        Block.of(topic, 1, first + place, row(time, b"jpeg %d" % (first + place)))
+        for place, time in enumerate(times)
+    ]
+
+
+def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
+    batches = [thumbnails(0, 100.0, 100.4), thumbnails(2, 102.0, 102.4)]
+    recording = read(store, record(store, settings, *batches))
+    stretch = read_stretch(recording, 102.2, 103.0, history=0.0)
+    assert [(one.topic.name, one.count, one.payload) for one in read_blocks(stretch.data)] == [
+        ("picture", 1, row(102.0, b"jpeg 2")),
+        ("picture", 1, row(102.4, b"jpeg 3")),
+    ]
+
+
+def test_a_topic_that_is_unknown_now_is_counted(store: Store, dive: Recording) -> None:
+    change(store, """UPDATE session SET topics = replace(topics, '"depth":', '"sonar":')""")
+    change(store, "UPDATE chunk SET topic = 'sonar' WHERE topic = 'depth'")
+    assert dive.row.id is not None
+    stretch = read_stretch(read(store, dive.row.id), 100.0, 110.0)
+    assert depths(stretch.data) == []
+    assert stretch.left_out == 500
+
+
+def test_the_timeline_has_events_markers_and_holes(store: Store, settings: Settings) -> None:
+    event = documents.Event(time=102.0, kind="arm", severity="info", text="Armed.")
+    batches = [
+        [state_block(0, time=100.0), state_block(1, time=101.0)],
+        [Block.of(BY_NAME["event"], 1, 0, pack_documents([event]))],
+        [state_block(2, time=111.0)],
+    ]
+    session = record(store, settings, *batches)
+
+    def mark(connection: Connection) -> None:
+        values = {"session_id": session, "time": 105.5, "text": "here", "made": 1e9}
+        connection.execute(insert(Marker).values(values))
+
+    asyncio.run(store.write(mark))
+    timeline = read_timeline(read(store, session))
+    (one,) = timeline.events
+    assert asdict(event) == {**one.model_dump(), "time": 102.0}
+    assert one.time == 102.0 - STARTED_STEADY
+    assert [(mark.time, mark.text) for mark in timeline.markers] == [(105.5 - STARTED_STEADY, "here")]
+    assert timeline.holes == [Hole(start=101 - STARTED_STEADY, end=111 - STARTED_STEADY)]
+    assert timeline.started_steady == STARTED_STEADY
+
+
+def over_http(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            await scenario(served)
+
+    asyncio.run(run())
+
+
+def test_over_http(settings: Settings) -> None:
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        session = record(store, settings, [depth_block(0, 500), state_block(0)])
+        wanted = read_stretch(read(store, session), 102.0, 103.0, 60.0)
+
+    async def scenario(served: Served) -> None:
+        start = 102.0 - STARTED_STEADY
+        query = {"start": start, "end": start + 1, "history": 60}
+        answer = await served.api.get(f"/sessions/{session}/blocks", params=query)
+        assert answer.status_code == 200
+        assert answer.headers["content-type"] == "application/octet-stream"
+        assert answer.headers["left-out"] == "0"
+        assert answer.content == wanted.data
+        answer = await served.api.get(f"/sessions/{session}/timeline")
+        assert answer.json()["started_steady"] == STARTED_STEADY
+
+        async def refused(query: str, number: int = session) -> tuple[int, str]:
+            answer = await served.api.get(f"/sessions/{number}/blocks?{query}")
+            return answer.status_code, answer.json()["detail"]
+
+        status, words = await refused("start=5&end=4")
+        assert status == 422
+        assert "lies before the start" in words
+        status, words = await refused("start=0&end=121")
+        assert status == 422
+        assert "at most 120 s" in words
+        assert (await refused("start=0&end=1", session + 1))[0] == 404
+        for invalid in ("start=0", "start=nan&end=1", "start=0&end=inf", "start=0&end=1&history=301"):
+            assert (await refused(invalid))[0] == 422
+
+    over_http(settings, scenario)
+
+
+def test_debug_lines_of_one_instant_stay_together(store: Store, settings: Settings) -> None:
+    recording = read(store, record(store, settings, [debug_block(0, "a", "b", "c")]))
+    assert [one["text"] for one in told(read_stretch(recording, 100.5, 101.5).data, "debug")] == ["b"]

@@ -1,0 +1,325 @@
+"""A session that a killed server has left: the first recorder is forgotten, the second follows it."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+
+import pytest
+from sqlalchemy import update
+
+import robot_runtime.transport.replay_cache as cache_module
+from robot_runtime.contract.packets.layout import Record
+from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, row
+from robot_runtime.transport.replay_cache import Cache, Kept, write_question
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.resume import Missing, find_missing
+from server.platform.models import SessionRow
+from server.platform.settings import Settings
+from server.platform.store import Store
+from server.stream.bridge import SENT_BY
+from tests.server.blocks import debug_block, depth_block
+from tests.server.features.sessions.test_recorder import Deck
+
+
+def truth_block(first: int, count: int, start: float = 100.0) -> Block:
+    topic = BY_NAME["truth"]
+    assert topic.record is not None
+    assert issubclass(topic.record, Record)
+    rows = [
+        row(start + 0.05 * place, bytes(topic.record.layout.size)) for place in range(first, first + count)
+    ]
+    return Block.of(topic, count, first, b"".join(rows))
+
+
+def parameters_block(number: int, time: float = 40.0) -> Block:
+    payload = json.dumps([{"time": time, "parameters": []}]).encode()
+    return Block.of(BY_NAME["parameters"], 1, number, payload)
+
+
+class Wreck:
+    """A recorder that was forgotten in the middle, and senders that go on."""
+
+    def __init__(self, store: Store, settings: Settings) -> None:
+        self.before = Deck(store, settings)
+        self.after = Deck(store, settings)
+        self.kept = {name: Cache(f"{name} run", self.before.clock) for name in SENT_BY}
+        self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
+        self.session = 0
+
+    def send(self, *blocks: Block, heard: bool = True) -> None:
+        """A sender sends this, and keeps it."""
+        for block in blocks:
+            name = "simulator" if block.topic.name == "truth" else "runtime"
+            self.following[name][block.topic.name] = block.following
+            self.kept[name].keep(block.data, self.following[name])
+            if heard:
+                self.before.recorder.add(block)
+
+    def restart(self, name: str) -> None:
+        self.kept[name] = Cache(f"another {name} run", self.before.clock)
+        self.following[name] = dict.fromkeys(BY_NAME, 0)
+
+    def answers(self) -> dict[str, Kept]:
+        question = write_question(dict.fromkeys(BY_NAME, 0))
+        return {name: Kept.from_bytes(cache.answer(question)) for name, cache in self.kept.items()}
+
+    async def start(self, first: int = 0) -> None:
+        """Record for a while; then all that was recorded is stored, and some more is not."""
+        self.session = await self.before.start("dive")
+        self.send(depth_block(first % NUMBERS, 5), debug_block(0, "a"), truth_block(0, 3))
+        await self.before.recorder.flush()
+        self.send(depth_block((first + 5) % NUMBERS, 5), truth_block(3, 3))
+        self.before.clock.forward(3)
+        self.after.clock.forward(3)
+        await self.before.recorder.flush()
+        self.send(depth_block((first + 10) % NUMBERS, 5))
+        self.send(depth_block((first + 15) % NUMBERS, 5), debug_block(1, "b"), truth_block(6, 3), heard=False)
+
+    async def resume(self) -> dict[str, Missing]:
+        """The next server starts."""
+        left = await self.after.recorder.recover()
+        assert left is not None
+        answers = self.answers()
+        missing = {name: find_missing(left, SENT_BY[name], kept) for name, kept in answers.items()}
+        await self.after.recorder.resume(left, missing)
+        for kept in answers.values():
+            for block in kept.blocks:
+                self.after.recorder.add(block)
+        self.after.recorder.caught_up()
+        return missing
+
+    @property
+    def state(self) -> str:
+        (session,) = Catalogue(self.after.store).list()
+        return session.state
+
+
+@pytest.fixture
+def wreck(store: Store, settings: Settings) -> Wreck:
+    return Wreck(store, settings)
+
+
+def play(scenario: Callable[[], Awaitable[None]]) -> None:
+    async def run() -> None:
+        await scenario()
+
+    asyncio.run(run())
+
+
+@pytest.mark.parametrize("first", [0, 1000, NUMBERS - 12])
+def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wreck, first: int) -> None:
+    async def scenario() -> None:
+        await wreck.start(first)
+        missing = await wreck.resume()
+        assert all(one.same_run and one.whole for one in missing.values())
+        session = wreck.after.recorder.session
+        assert session is not None
+        assert (session.id, session.samples, session.duration) == (wreck.session, 17, 3.0)
+        wreck.after.recorder.add(depth_block((first + 20) % NUMBERS, 5))
+        wreck.after.clock.forward(2)
+        done = await wreck.after.recorder.stop(wreck.session)
+        assert (done.state, done.duration, done.samples) == ("complete", 5.0, 25 + 2 + 9)
+        assert wreck.after.numbers() == [(first + place) % NUMBERS for place in range(25)]
+        assert wreck.after.numbers("debug") == [0, 1]
+        assert wreck.after.numbers("truth") == list(range(9))
+        assert wreck.after.gaps() == []
+        assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
+        assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” goes on")
+
+    play(scenario)
+
+
+def test_parameters_that_were_told_before_it_began_do_not_end_it(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.send(parameters_block(7))
+        wreck.before.clock.forward(3)
+        wreck.after.clock.forward(3)
+        await wreck.start()
+        missing = await wreck.resume()
+        assert all(one.same_run and one.whole for one in missing.values())
+        assert wreck.state == "recording"
+
+    play(scenario)
+
+
+def test_a_session_of_which_nothing_is_stored_yet_goes_on_with_its_runtime_alone(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5), truth_block(0, 3))
+        left = await wreck.after.recorder.recover()
+        assert left is not None
+        answers = wreck.answers()
+        for state, same in (
+            ({"run": answers["runtime"].run}, True),
+            ({"run": "another"}, False),
+            (None, False),
+        ):
+            left.row.robot_state = json.dumps(state)
+            assert find_missing(left, SENT_BY["runtime"], answers["runtime"]).same_run is same
+        assert find_missing(left, SENT_BY["simulator"], answers["simulator"]).same_run
+
+    play(scenario)
+
+
+def test_notices_are_numbered_on(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.before.notices_too()
+        wreck.after.notices_too()
+        await wreck.start()
+        await wreck.resume()
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("notice") == [0, 1]
+        assert wreck.after.gaps() == []
+
+    play(scenario)
+
+
+def test_what_is_older_than_the_session_is_not_taken_into_it(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        # Board time 50 s is the session's start.
+        wreck.send(debug_block(0, "before", start=40.0), heard=False)
+        wreck.session = await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5))
+        await wreck.before.recorder.flush()
+        wreck.send(debug_block(1, "since"), heard=False)
+        await wreck.resume()
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("debug") == [1]
+        assert wreck.after.gaps() == []
+
+    play(scenario)
+
+
+def test_a_runtime_that_was_restarted_before_goes_on_though_not_all_its_topics_were_heard_since(
+    wreck: Wreck,
+) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        wreck.send(debug_block(2, "d"))
+        # The killed server has recorded the new runtime, but nothing yet of its debug lines.
+        wreck.restart("runtime")
+        wreck.send(depth_block(0, 5))
+        await wreck.before.recorder.flush()
+        wreck.send(depth_block(5, 5), debug_block(0, "c"), heard=False)
+        missing = await wreck.resume()
+        assert missing["runtime"].same_run
+        assert missing["runtime"].whole
+        done = await wreck.after.recorder.stop(wreck.session)
+        assert done.state == "complete"
+        # Of the old runtime as much as was heard, and of the new one everything.
+        assert wreck.after.numbers() == [*range(15), *range(10)]
+        assert wreck.after.numbers("debug") == [0, 2, 0]
+
+    play(scenario)
+
+
+def test_its_parameters_need_not_have_been_heard_either(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.send(parameters_block(7))
+        await wreck.start()
+        wreck.restart("runtime")
+        wreck.send(depth_block(0, 5))
+        await wreck.before.recorder.flush()
+        wreck.send(parameters_block(0, time=200.0), heard=False)
+        missing = await wreck.resume()
+        assert missing["runtime"].same_run
+        assert missing["runtime"].whole
+        assert missing["runtime"].sent["parameters"] == 1
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("parameters") == [7, 0]
+
+    play(scenario)
+
+
+def test_a_runtime_that_is_restarted_later_is_recorded_from_its_first_number_on(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.session = await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5), debug_block(0, "a"), debug_block(1, "b"))
+        await wreck.before.recorder.flush()
+        await wreck.resume()
+        # Of neither topic anything has come since the server was killed.
+        wreck.after.recorder.add(debug_block(0, "anew"))
+        wreck.after.recorder.add(depth_block(0, 3))
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("debug") == [0, 1, 0]
+        assert wreck.after.numbers() == [*range(5), *range(3)]
+        assert sorted(wreck.after.gaps()) == [("debug", "restarted", 0), ("depth", "restarted", 0)]
+
+    play(scenario)
+
+
+def test_another_run_of_the_runtime_is_another_recording(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        wreck.restart("runtime")
+        # It has come further than the one that was recorded.
+        wreck.send(*(depth_block(5 * place, 5, start=200.0) for place in range(9)), heard=False)
+        missing = await wreck.resume()
+        assert not missing["runtime"].same_run
+        assert (wreck.state, wreck.after.recorder.session) == ("interrupted", None)
+        assert wreck.after.numbers() == list(range(10))
+        assert "The server was killed while “dive” was recorded" in wreck.after.told[0]
+
+    play(scenario)
+
+
+def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        monkeypatch.setattr(cache_module, "BYTES_MAX", 10)
+        wreck.send(depth_block(20, 5), heard=False)
+        left = await wreck.after.recorder.recover()
+        assert left is not None
+        state = {"run": wreck.answers()["runtime"].run}
+        await wreck.after.store.write(
+            lambda connection: connection.execute(update(SessionRow).values(robot_state=json.dumps(state)))
+        )
+        assert not (await wreck.resume())["runtime"].whole
+        assert wreck.state == "interrupted"
+        missed = [("depth", "missed", 15), ("debug", "missed", 1), ("truth", "missed", 3)]
+        assert sorted(wreck.after.gaps()) == sorted(missed)
+        assert "19 samples sent since are not to be had any more" in wreck.after.told[0]
+
+    play(scenario)
+
+
+def test_without_a_runtime_that_answers_the_session_ends(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        del wreck.kept["runtime"]
+        await wreck.resume()
+        assert wreck.state == "interrupted"
+
+    play(scenario)
+
+
+def test_a_simulator_that_has_begun_anew_is_noted_as_a_gap(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        wreck.restart("simulator")
+        wreck.send(truth_block(0, 20, start=200.0), heard=False)
+        await wreck.resume()
+        await wreck.after.recorder.stop(wreck.session)
+        assert wreck.after.numbers("truth") == [*range(6), *range(20)]
+        assert wreck.after.gaps() == [("truth", "restarted", 0)]
+        assert wreck.after.numbers() == list(range(20))
+
+    play(scenario)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"boot": "another"}, {"boot": ""}, {"origin": "simulated"}],
+)
+def test_other_starts_of_the_computer_and_simulated_runs_are_over(
+    wreck: Wreck, change: dict[str, str]
+) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        await wreck.before.store.write(
+            lambda connection: connection.execute(update(SessionRow).values(**change)) and None
+        )
+        assert await wreck.after.recorder.recover() is None
+        assert wreck.state == "interrupted"
+
+    play(scenario)

@@ -1,0 +1,255 @@
+"""Sessions that go: after their time in the bin, by age, and where room is short."""
+
+import asyncio
+import json
+import shutil
+from collections.abc import Callable, Coroutine
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import pytest
+from sqlmodel import func, select
+
+import server.features.sessions.retention as tidying_module
+import server.features.sessions.storage as storage_module
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.config import SessionsConfig
+from robot_runtime.contract.topics import Block
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.recorder import Recorder
+from server.features.sessions.retention import BIN_SECONDS, DAY, Tidying
+from server.features.sessions.session import REMOVING, new_row
+from server.platform.models import Chunk, SessionRow
+from server.platform.notices import Notices
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import depth_block
+
+NOW = 1.7e9
+
+
+class Disk(NamedTuple):
+    total: int
+    used: int
+    free: int
+
+
+class Keeper:
+    """A database whose sessions one can age, and everything that tidies it up."""
+
+    def __init__(self, store: Store, settings: Settings, rules: SessionsConfig) -> None:
+        self.store = store
+        self.settings = replace(settings, sessions=rules)
+        self.clock = SimulatedClock(50.0)
+        self.told: list[str] = []
+        self.notices = Notices(self.clock, self._hear)
+        self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
+        self.catalogue = Catalogue(store, self.recorder)
+        self.tidying = Tidying(store, self.settings, self.notices, self.clock)
+
+    def _hear(self, block: Block) -> None:
+        self.told += [document["text"] for document in json.loads(block.payload)]
+
+    async def record(self, name: str, age: float, chunks: int = 3, *, stop: bool = True) -> int:
+        row = new_row(self.settings, self.clock, name, "", "null")
+        row.started = NOW - age
+        row.started_steady = self.clock.now() - age
+        session = (await self.recorder.start(row)).id
+        for number in range(chunks):
+            self.recorder.add(depth_block(100 * number, 100))
+            await self.recorder.flush()
+        if stop:
+            await self.recorder.stop(session)
+        return session
+
+    async def age_bin(self, seconds: float) -> None:
+        statement = f"UPDATE session SET deleted = {NOW - seconds} WHERE deleted IS NOT NULL"
+        await self.store.write(lambda connection: connection.exec_driver_sql(statement))
+
+    def names(self, *, deleted: bool = False) -> list[str]:
+        return [session.name for session in self.catalogue.list(deleted=deleted)]
+
+    def count(self, table: Any) -> int:
+        with self.store.read() as database:
+            return int(database.exec(select(func.count()).select_from(table)).one())
+
+
+@pytest.fixture
+def keep(
+    store: Store, settings: Settings
+) -> Callable[[SessionsConfig, Callable[[Keeper], Coroutine[Any, Any, None]]], None]:
+    def run(rules: SessionsConfig, scenario: Callable[[Keeper], Coroutine[Any, Any, None]]) -> None:
+        asyncio.run(scenario(Keeper(store, settings, rules)))
+
+    return run
+
+
+NO_RULES = SessionsConfig(keep_free=0.0)
+Keep = Callable[[SessionsConfig, Callable[[Keeper], Coroutine[Any, Any, None]]], None]
+
+
+def test_what_has_been_in_the_bin_for_long_is_removed(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        for name in ("stays", "goes"):
+            await keeper.record(name, DAY)
+        await keeper.catalogue.delete(2)
+        await keeper.age_bin(7 * DAY - 1)
+        await keeper.tidying.tidy(NOW)
+        assert keeper.names(deleted=True) == ["goes"]
+        await keeper.age_bin(7 * DAY)
+        await keeper.tidying.tidy(NOW)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
+        assert (keeper.count(SessionRow), keeper.count(Chunk)) == (1, 3)
+
+    keep(NO_RULES, scenario)
+
+
+def test_nothing_goes_by_its_age_for_a_day_after_the_clock_has_jumped(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        for name in ("stays", "goes"):
+            await keeper.record(name, DAY)
+        await keeper.catalogue.delete(2)
+        await keeper.age_bin(60.0)
+        years = 10 * 365 * DAY
+        begun = NOW - keeper.clock.now()
+        # As the steady clock goes on, so does the wall clock, but for the one jump.
+        for passed, jumped in ((0.0, 0.0), (60.0, years), (DAY - 60.0, years)):
+            keeper.clock.forward(passed)
+            await keeper.tidying.tidy(begun + keeper.clock.now() + jumped)
+            assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], ["goes"])
+        # A server that is started after the jump sees it by the newest session.
+        another = Tidying(keeper.store, keeper.settings, keeper.notices, keeper.clock)
+        await another.tidy(begun + keeper.clock.now() + years)
+        assert keeper.names(deleted=True) == ["goes"]
+        keeper.clock.forward(60.0)
+        await keeper.tidying.tidy(begun + keeper.clock.now() + years)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
+
+    keep(NO_RULES, scenario)
+
+
+def test_recording_goes_on_while_a_session_is_removed_in_small_steps(
+    keep: Keep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tidying_module, "CHUNKS_AT_ONCE", 1)
+    monkeypatch.setattr(tidying_module, "PAUSE", 0.0)
+
+    async def scenario(keeper: Keeper) -> None:
+        await keeper.record("goes", DAY, chunks=40)
+        await keeper.catalogue.delete(1)
+        await keeper.catalogue.purge(1)
+        assert keeper.names(deleted=True) == []
+        await keeper.record("records", 0, chunks=0, stop=False)
+        removal = asyncio.create_task(keeper.tidying.tidy(NOW))
+        left = []
+        for number in range(10):
+            keeper.recorder.add(depth_block(100 * number, 100))
+            await keeper.recorder.flush()
+            left.append(keeper.count(Chunk))
+        await removal
+        assert keeper.recorder.session is not None
+        assert keeper.recorder.session.samples == 1000
+        # Commits passed between the steps, not after them all.
+        assert left[0] > 30
+        assert keeper.count(Chunk) == 10
+
+    keep(NO_RULES, scenario)
+
+
+def test_a_removal_that_was_cut_off_is_taken_up_again(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        await keeper.record("half gone", DAY)
+        await keeper.store.write(
+            lambda connection: connection.exec_driver_sql(
+                f"UPDATE session SET state = '{REMOVING}', deleted = 1"
+            )
+        )
+        await keeper.store.write(
+            lambda connection: connection.exec_driver_sql("DELETE FROM chunk WHERE id = 1")
+        )
+        await keeper.tidying.tidy(NOW)
+        assert (keeper.count(SessionRow), keeper.count(Chunk)) == (0, 0)
+
+    keep(NO_RULES, scenario)
+
+
+def test_room_is_given_back_to_the_disk(keep: Keep, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tidying_module, "PAGES_AT_ONCE", 4)
+    monkeypatch.setattr(tidying_module, "PAUSE", 0.0)
+
+    async def scenario(keeper: Keeper) -> None:
+        def pages(name: str) -> int:
+            with keeper.store.read() as database:
+                return int(database.connection().exec_driver_sql(f"PRAGMA {name}").scalar_one())
+
+        await keeper.record("goes", DAY, chunks=60)
+        full, held = pages("page_count"), keeper.catalogue.find(1).bytes // pages("page_size")
+        await keeper.catalogue.delete(1)
+        await keeper.catalogue.purge(1)
+        await keeper.tidying.tidy(NOW)
+        assert pages("freelist_count") == 0
+        assert pages("page_count") <= full - held
+
+    keep(NO_RULES, scenario)
+
+
+def test_old_sessions_go_but_never_what_is_kept_tagged_or_recording(keep: Keep) -> None:
+    async def scenario(keeper: Keeper) -> None:
+        for name in ("old", "kept", "tagged"):
+            await keeper.record(name, 31 * DAY)
+        await keeper.record("young", 29 * DAY)
+        await keeper.catalogue.change(2, kept=True)
+        await keeper.catalogue.change(3, tags=["thesis"])
+        await keeper.record("records", 40 * DAY, stop=False)
+        await keeper.tidying.tidy(NOW)
+        assert keeper.names() == ["records", "young", "tagged", "kept"]
+        assert keeper.names(deleted=True) == ["old"]
+        assert [text for text in keeper.told if text.startswith("Older")] == [
+            "Older than 30 days: “old” went into the bin. Restore and keep what is to stay."
+        ]
+
+    keep(SessionsConfig(keep_days=30.0, keep_free=0.0), scenario)
+
+
+def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_good(
+    keep: Keep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free = 10**9
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Disk(10**10, 0, free))
+
+    async def scenario(keeper: Keeper) -> None:
+        nonlocal free
+        for place, name in enumerate(("oldest", "older", "newest")):
+            await keeper.record(name, (9 - place) * DAY, chunks=60)
+        await keeper.tidying.tidy(NOW)
+        assert keeper.names(deleted=True) == []
+        size = keeper.catalogue.find(1).bytes
+        free = 10**9 - size - 16_384
+        await keeper.tidying.tidy(NOW)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["newest"], ["older", "oldest"])
+        # Nothing more goes while these wait.
+        keeper.clock.forward(BIN_SECONDS)
+        await keeper.tidying.tidy(NOW + BIN_SECONDS - 1)
+        assert len(keeper.names(deleted=True)) == 2
+        await keeper.catalogue.restore(2)
+        await keeper.catalogue.change(2, kept=True)
+        free = 10**9 - size
+        await keeper.tidying.tidy(NOW + BIN_SECONDS)
+        assert (keeper.names(), keeper.names(deleted=True)) == (["newest", "older"], [])
+        free = 0
+        await keeper.catalogue.change(3, tags=["mine"])
+        keeper.clock.forward(BIN_SECONDS)
+        for _ in range(2):
+            await keeper.tidying.tidy(NOW + 2 * BIN_SECONDS)
+        assert len(keeper.names()) == 2
+        assert len([text for text in keeper.told if "Room is short" in text]) == 1
+
+    keep(SessionsConfig(keep_free=1.0), scenario)
+
+
+def test_the_true_disk_is_asked(store: Store, settings: Settings) -> None:
+    shown = storage_module.measure(store, settings)
+    assert shown.total == shutil.disk_usage(settings.data.path).total
+    assert shown.database == settings.data.database.stat().st_size + sum(
+        path.stat().st_size for path in settings.data.path.glob("mucat.db-*")
+    )

@@ -1,0 +1,84 @@
+"""Experiments on the whole robot in simulated time, measured as the server measures them."""
+
+from typing import Any
+
+from robot_runtime.contract.documents import Control, Experiment
+from robot_runtime.contract.packets import Motor
+from server.features.tuning.curve import Gathering
+from server.features.tuning.evaluation import measure_run
+from server.features.tuning.schemas import LimitCycleFound, RelayStart, StepStart
+from tests.runtime.control.flight import Flight
+
+OVER = ("complete", "stopped", "failed")
+
+
+class Rig:
+    """One flight, armed, whose runs on the depth are measured one after the other."""
+
+    def __init__(self, flight: Flight) -> None:
+        self.flight = flight
+        self._gathering = Gathering("depth")
+        self._told: list[Experiment] = []
+        bus = flight.robot.bus
+        bus.on_row("control", self._tick)
+        bus.on_row("motor", self._fins)
+        bus.on_document("experiment", self._hear)
+        flight.arm()
+
+    def step(self, start: float, target: float, seconds: float) -> dict[str, float | None]:
+        """The figures of a step of the set point, from rest at the start."""
+        wanted = StepStart(
+            kind="step",
+            start=start,
+            target=target,
+            tolerance=0.03,
+            settle=40.0,
+            duration=seconds,
+            low=0.0,
+            high=2.5,
+        )
+        return {name: figure["value"] for name, figure in self._run(wanted)["figures"].items()}
+
+    def relay(self, amplitude: float, cycles: int = 4) -> LimitCycleFound:
+        """The limit cycle of a relay about 0.6 m."""
+        wanted = RelayStart(
+            kind="relay",
+            set_point=0.6,
+            amplitude=amplitude,
+            hysteresis=0.01,
+            cycles=cycles,
+            duration=200.0,
+            low=0.0,
+            high=2.5,
+        )
+        return LimitCycleFound(**self._run(wanted)["cycle"])
+
+    def use(self, controller: str, gains: dict[str, float]) -> None:
+        """Steer the depth by this controller from now on."""
+        self.flight.robot.control.set_loop("depth", controller=controller, gains=gains)
+
+    def _run(self, wanted: StepStart | RelayStart) -> dict[str, Any]:
+        self._gathering, self._told = Gathering("depth"), []
+        self.flight.command("experiment", number=1, **wanted.model_dump())
+        self.flight.until(lambda: bool(self._told) and self._told[-1].phase in OVER, 250.0)
+        starts: dict[str, float] = {}
+        for one in self._told:
+            starts.setdefault(one.phase, one.since)
+        end = self._told[-1]
+        assert end.phase == "complete", end.text
+        found, _, problem = measure_run(wanted, self._gathering, starts, "complete", "")
+        assert problem == ""
+        return found
+
+    def _tick(self, _: str, time: float, record: bytes) -> None:
+        tick = Control.from_bytes(record)
+        self._gathering.curve.add(time, tick.set_point, tick.depth, tick.output)
+
+    def _fins(self, _: str, time: float, record: bytes) -> None:
+        self._gathering.fin_times.append(time)
+        for kept, angle in zip(self._gathering.fins, Motor.from_bytes(record).angle, strict=True):
+            kept.append(angle)
+
+    def _hear(self, _: str, document: object) -> None:
+        assert isinstance(document, Experiment)
+        self._told.append(document)

@@ -1,0 +1,167 @@
+"""Figures of step responses and relay cycles, against systems whose answers are known in closed form."""
+
+from math import acos, degrees, exp, pi, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.figure_definitions import meanings
+from server.features.tuning.figures import measure_response
+from server.features.tuning.proposals import propose
+from server.features.tuning.relay import find_ultimate
+from server.features.tuning.rules import RULES, ultimate_gain
+
+FROM, TO, SECONDS, RATE = 0.4, 0.7, 20.0, 10.0
+
+
+def second_order(damping: float, frequency: float) -> Curve:
+    """From FROM to TO at 0 s; wn² / (s² + 2 ζ wn s + wn²)."""
+    curve = Curve()
+    ringing = frequency * sqrt(1 - damping**2)
+    for tick in range(-20, round(SECONDS * RATE) + 1):
+        time = tick / RATE
+        share = 0.0
+        if time > 0:
+            wave = np.sin(ringing * time + acos(damping)) / sqrt(1 - damping**2)
+            share = 1 - exp(-damping * frequency * time) * float(wave)
+        curve.add(time, FROM if time < 0 else TO, FROM + (TO - FROM) * share, 1.0 - share)
+    return curve
+
+
+def figures(curve: Curve, loop: str = "depth") -> dict[str, float | None]:
+    measured = measure_response(curve, Gathering(loop), loop, 100.0, 100.0 + SECONDS)
+    return {name: figure.value for name, figure in measured.items()}
+
+
+@settings(max_examples=30, deadline=None)
+@given(damping=st.floats(0.3, 0.8), frequency=st.floats(1.0, 2.5))
+def test_second_order_systems(damping: float, frequency: float) -> None:
+    found = figures(second_order(damping, frequency))
+    # Between two samples the peak is missed by at most half a sample of a sine.
+    missed = 1 - np.cos(frequency / RATE / 2)
+    expected = 100 * exp(-pi * damping / sqrt(1 - damping**2))
+    assert found["overshoot"] == pytest.approx(expected, abs=100 * missed + 1e-3)
+    # The envelope is an upper bound of what is outside the band, and half a turn later a lower one.
+    bound = -np.log(0.05 * sqrt(1 - damping**2)) / (damping * frequency)
+    half = pi / (frequency * sqrt(1 - damping**2))
+    assert found["settling_share"] is not None
+    assert bound - half - 0.1 <= found["settling_share"] <= bound + 0.1
+    assert found["rise_time"] is not None
+    assert 0.8 < found["rise_time"] * frequency < 2.6
+
+
+def test_what_follows_by_arithmetic() -> None:
+    curve = Curve()
+    for tick in range(-10, 101):
+        curve.add(tick / 10, 0.4 if tick < 0 else 0.9, 0.4 if tick < 50 else 0.86, 0.5 if tick % 2 else -0.5)
+    found = figures(curve)
+    assert found["steady_error"] == pytest.approx(0.04)
+    assert found["steady_swing"] == pytest.approx(0.0)
+    assert found["iae"] == pytest.approx(0.5 * 4.9 + 0.27 * 0.1 + 0.04 * 5.0)
+    assert found["effort"] == pytest.approx(50.0)
+    assert found["travel"] == pytest.approx(100.0)
+    assert found["rise_time"] == pytest.approx(0.1 * 0.8 * 0.5 / 0.46)
+    assert found["settling_near"] is None
+    assert found["fin_strokes"] is None
+
+
+def test_angles_are_told_in_degrees() -> None:
+    curve = Curve()
+    for tick in range(-10, 101):
+        curve.add(tick / 10, 0.0 if tick < 0 else 0.5, 0.0 if tick < 10 else 0.49, 0.0)
+    found = figures(curve, "heading")
+    assert found["steady_error"] == pytest.approx(degrees(0.01))
+    assert found["settling_near"] == pytest.approx(1.0)
+    units = {one.name: one.unit for one in meanings("heading")}
+    assert (units["steady_error"], units["iae"]) == ("°", "° s")
+
+
+@pytest.mark.parametrize("loop", ["depth", "roll"])
+def test_every_figure_has_a_meaning(loop: str) -> None:
+    assert list(figures(second_order(0.5, 1.0), loop)) != []
+    assert {one.name for one in meanings(loop)} == set(figures(second_order(0.5, 1.0), loop))
+
+
+def relayed(gain: float, lag: float, delay: float, hysteresis: float, amplitude: float) -> Curve:
+    """A relay on gain e^(-delay s) / (s (lag s + 1)), simulated finely and sampled at 10 Hz."""
+    step, value, speed, side = 0.002, 0.0, 0.0, 1.0
+    waiting = [1.0] * round(delay / step)
+    curve = Curve()
+    for tick in range(round(60.0 / step)):
+        error = -value
+        side = 1.0 if error > hysteresis else -1.0 if error < -hysteresis else side
+        waiting.append(side)
+        speed += step / lag * (gain * amplitude * waiting.pop(0) - speed)
+        value += step * speed
+        if tick % round(1 / RATE / step) == 0:
+            curve.add(tick * step, 0.0, value, amplitude * side)
+    return curve
+
+
+@pytest.mark.parametrize(("lag", "delay"), [(0.5, 0.4), (1.0, 0.3), (2.0, 0.5)])
+def test_the_ultimate_point_of_an_integrator_with_lag_and_delay(lag: float, delay: float) -> None:
+    """Known from the phase: pi/2 = delay w + atan(lag w); the describing function is within 10 % or so."""
+    low, high = 0.01, 20.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if delay * middle + np.arctan(lag * middle) < pi / 2 else (low, middle)
+    gain = 0.2
+    known_gain = low * sqrt(1 + (lag * low) ** 2) / gain
+    found = find_ultimate(relayed(gain, lag, delay, 0.0, 0.5), 20.0, 0.0)
+    assert found.period == pytest.approx(2 * pi / low, rel=0.1)
+    assert found.ultimate_gain == pytest.approx(known_gain, rel=0.15)
+    assert abs(found.asymmetry) < 0.05
+    assert found.remarks == []
+
+
+def test_a_load_shows_as_asymmetry() -> None:
+    curve = Curve()
+    for tick in range(400):
+        side = 1.0 if (tick + 20) % 40 < 28 else -1.0
+        curve.add(tick / 10, 0.6, 0.6 + 0.05 * np.sin(tick / 40 * 2 * pi), 0.1 + 0.5 * side)
+    found = find_ultimate(curve, 0.0, 0.01)
+    assert found.asymmetry == pytest.approx(0.4)
+    assert found.bias == pytest.approx(0.1)
+    assert found.amplitude == pytest.approx(0.5)
+    assert found.period == pytest.approx(4.0)
+    assert "One half of each cycle is much longer" in found.remarks[0]
+
+
+def test_what_is_no_cycle_is_told() -> None:
+    with pytest.raises(ValueError, match="no whole cycle"):
+        find_ultimate(Curve(), 0.0, 0.01)
+    with pytest.raises(ValueError, match="beyond the hysteresis"):
+        ultimate_gain(0.5, 0.01, 0.01)
+
+
+def test_the_rules() -> None:
+    """Ku 9, Pu 4 s, by hand from the sources."""
+    gains = {rule.name: rule.gains(9.0, 4.0) for rule in RULES}
+    assert gains["ziegler_nichols"] == pytest.approx({"kp": 5.4, "ki": 2.7, "kd": 2.7})
+    assert gains["no_overshoot"] == pytest.approx({"kp": 1.8, "ki": 0.9, "kd": 2.4})
+    assert gains["some_overshoot"] == pytest.approx({"kp": 3.0, "ki": 1.5, "kd": 4.0})
+    assert gains["tyreus_luyben"] == pytest.approx({"kp": 4.0909, "ki": 0.46488, "kd": 2.5974}, rel=1e-4)
+    assert gains["amigo"] == pytest.approx({"kp": 2.7, "ki": 1.125, "kd": 1.62})
+
+
+def test_proposals_say_what_cannot_be_set() -> None:
+    cycle = find_ultimate(relayed(0.2, 1.0, 0.3, 0.0, 0.5), 20.0, 0.0)
+    limits = {"kp": (0.0, 50.0), "ki": (0.0, 20.0), "kd": (0.0, 0.1)}
+    proposals = {one.rule: one for one in propose("depth", cycle, limits)}
+    assert len(proposals) == len(RULES)
+    assert proposals["amigo"].problem == "kd may be 0 to 0.1."
+    assert "amigo" not in {one.rule for one in propose("roll", cycle, limits)}
+    assert all(one.problem == "" for one in propose("depth", cycle, limits | {"kd": (0.0, 50.0)}))
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.tuples(*[st.floats(-1e3, 1e3)] * 4), max_size=50))
+def test_curves_are_kept_as_they_are(ticks: list[tuple[float, float, float, float]]) -> None:
+    curve = Curve()
+    for tick in ticks:
+        curve.add(*tick)
+    assert Curve.from_bytes(curve.to_bytes()) == curve
+    assert Curve.from_bytes(b"") == Curve()

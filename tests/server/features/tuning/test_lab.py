@@ -1,0 +1,278 @@
+"""Runs through the interface: a runtime's end that the test is, and what is kept of it."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from math import pi, sin
+from typing import Any
+
+import httpx
+import pytest
+
+from robot_runtime.contract.documents import Control, Experiment
+from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from server.features.tuning.runs import Runs
+from server.features.tuning.schemas import Force, StepStart
+from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.serving import Served, next_text, serve
+from tests.server.waiting import until
+
+STEP: dict[str, Any] = {
+    "kind": "step",
+    "loop": "depth",
+    "start": 0.4,
+    "target": 0.7,
+    "tolerance": 0.03,
+    "settle": 10.0,
+    "duration": 6.0,
+    "low": 0.0,
+    "high": 1.5,
+}
+RELAY: dict[str, Any] = {
+    "kind": "relay",
+    "loop": "depth",
+    "set_point": 0.6,
+    "amplitude": 0.5,
+    "hysteresis": 0.01,
+    "cycles": 3,
+    "duration": 60.0,
+    "low": 0.0,
+    "high": 1.5,
+}
+PID = {
+    "name": "pid",
+    "title": "PID",
+    "gains": [
+        {"name": name, "value": value, "minimum": 0.0, "maximum": 50.0, "unit": "", "meaning": ""}
+        for name, value in {"kp": 3.0, "ki": 0.4, "kd": 2.0}.items()
+    ],
+}
+
+
+class Robot:
+    """The runtime's end as one robot, in automatic."""
+
+    def __init__(self, served: Served) -> None:
+        self._served = served
+        self._numbers: dict[str, int] = {}
+
+    def arm(self, mode: str = "automatic") -> None:
+        loop = {"name": "depth", "on": False, "set_point": 0.5, "controller": "pid", "controllers": [PID]}
+        self._served.runtime.state = {"mode": mode, "loops": [loop]}
+
+    def tell(self, run: int, phase: Any, since: float, **more: Any) -> None:
+        words: dict[str, Any] = {"progress": 0.5, "cycles": 0, "bias": 0.0, "text": "", "kind": "step"} | more
+        told = Experiment(time=since, number=run, loop="depth", phase=phase, since=since, **words)
+        self._publish("experiment", 1, pack_documents([told]))
+
+    def tick(self, ticks: list[tuple[float, float, float, float]]) -> None:
+        """Time, set point, depth and output of each."""
+        rows = b"".join(
+            row(
+                time,
+                Control(
+                    set_point=wanted, depth=depth, error=wanted - depth, output=output, latency=0.0
+                ).to_bytes(),
+            )
+            for time, wanted, depth, output in ticks
+        )
+        self._publish("control", len(ticks), rows)
+
+    def _publish(self, name: str, count: int, payload: bytes) -> None:
+        first = self._numbers.get(name, 0)
+        self._numbers[name] = first + count
+        self._served.runtime.publish(Block.of(BY_NAME[name], count, first, payload))
+
+
+def play(settings: Settings, scenario: Callable[[Served, Robot], Awaitable[None]]) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            await scenario(served, Robot(served))
+
+    asyncio.run(run())
+
+
+async def begin(served: Served, wanted: dict[str, Any]) -> int:
+    answer = await served.api.post("/tuning/runs", json=wanted)
+    assert answer.status_code == 201, answer.text
+    run = answer.json()["run"]
+    assert served.runtime.asked[-1] == ("experiment", {"number": run, **wanted})
+    return int(run)
+
+
+async def over(served: Served) -> dict[str, Any]:
+    """The run that has ended."""
+    await until(lambda: served.assembly.tuning.state().active is None, "the run's end")
+    last = served.assembly.tuning.state().last
+    assert last is not None
+    answer: dict[str, Any] = (await served.api.get(f"/tuning/runs/{last.id}")).raise_for_status().json()
+    return answer
+
+
+def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        async with served.connect() as socket:
+            run = await begin(served, STEP)
+            while (told := await next_text(socket, "tuning"))["active"] is None:
+                pass
+            assert (told["active"]["run"], told["active"]["phase"]) == (run, "settling")
+        robot.tell(run, "settling", 100.0)
+        robot.tick([(100.0 + 0.1 * one, 0.4, 0.4, 0.1) for one in range(50)])
+        robot.tell(run, "running", 105.0)
+        robot.tick([(105.0 + 0.1 * one, 0.7, min(0.4 + 0.02 * one, 0.7), 0.5) for one in range(61)])
+        robot.tell(run, "complete", 111.0, progress=1.0)
+        kept = await over(served)
+        assert (kept["id"], kept["state"], kept["problem"]) == (run, "complete", "")
+        assert kept["force"] == {
+            "controller": "pid",
+            "title": "PID",
+            "gains": {"kp": 3.0, "ki": 0.4, "kd": 2.0},
+        }
+        assert kept["settings"] == STEP
+        assert kept["name"] == "PID, 0.4 m to 0.7 m"
+        assert kept["curve"]["times"][0] == pytest.approx(-3.0)
+        assert kept["curve"]["times"][-1] == pytest.approx(5.9)
+        assert kept["figures"]["rise_time"]["value"] == pytest.approx(1.2)
+        assert kept["figures"]["overshoot"]["value"] == pytest.approx(0.0, abs=1e-3)
+        assert kept["figures"]["effort"]["value"] == pytest.approx(50.0)
+        listed = (await served.api.get("/tuning/runs")).json()
+        assert [one["id"] for one in listed["runs"]] == [run]
+        assert {one["name"] for one in listed["figures"]} == set(kept["figures"])
+        assert (await served.api.get("/tuning/runs?loop=roll")).json()["runs"] == []
+
+    play(settings, scenario)
+
+
+def test_a_relay_proposes_gains(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        run = await begin(served, RELAY)
+        robot.tell(run, "settling", 100.0, kind="relay")
+        robot.tell(run, "running", 104.0, kind="relay")
+        ticks = [0.1 * one for one in range(161)]
+        robot.tick(
+            [
+                (
+                    100.0 + at,
+                    0.6,
+                    0.6 - 0.07 * sin(at * 2 * pi / 4),
+                    0.6 if at % 4 < 1.99 or at % 4 > 3.99 else -0.4,
+                )
+                for at in ticks
+            ]
+        )
+        robot.tell(run, "complete", 116.0, kind="relay", cycles=3)
+        kept = await over(served)
+        assert (kept["state"], kept["problem"]) == ("complete", "")
+        cycle = kept["cycle"]
+        assert cycle["period"] == pytest.approx(4.0)
+        assert cycle["swing"] == pytest.approx(0.07, abs=1e-4)
+        assert cycle["amplitude"] == pytest.approx(0.5)
+        assert cycle["bias"] == pytest.approx(0.1)
+        assert cycle["ultimate_gain"] == pytest.approx(4 * 0.5 / (pi * (0.07**2 - 0.01**2) ** 0.5), rel=1e-3)
+        rules = [one["rule"] for one in kept["proposals"]]
+        assert rules[0] == "ziegler_nichols"
+        assert all(one["problem"] == "" and one["source"] for one in kept["proposals"])
+
+    play(settings, scenario)
+
+
+def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        run = await begin(served, STEP)
+        robot.tell(run, "settling", 100.0)
+        robot.tick([(100.0 + 0.1 * one, 0.4, 0.3, 0.1) for one in range(20)])
+        refused = await served.api.delete(f"/tuning/runs/{run}")
+        assert (refused.status_code, "is on" in refused.text) == (409, True)
+        assert (await served.api.post("/tuning/stop")).status_code == 204
+        assert served.runtime.asked[-1] == ("end_experiment", {})
+        robot.tell(run, "stopped", 102.0, text="It was stopped.")
+        kept = await over(served)
+        assert (kept["state"], kept["problem"], kept["figures"]) == ("stopped", "It was stopped.", {})
+        assert len(kept["curve"]["times"]) == 20
+
+    play(settings, scenario)
+
+
+def test_runs_are_named_and_deleted(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        run = await begin(served, STEP)
+        robot.tell(run, "failed", 102.0, text="It ended at 1.60, which is beyond the limits (0 to 1.5).")
+        await over(served)
+        named = await served.api.patch(f"/tuning/runs/{run}", json={"name": "with tape"})
+        assert named.json()["name"] == "with tape"
+        assert (await served.api.patch(f"/tuning/runs/{run}", json={"name": ""})).status_code == 422
+        assert (await served.api.delete(f"/tuning/runs/{run}")).status_code == 204
+        for answer in (
+            await served.api.delete(f"/tuning/runs/{run}"),
+            await served.api.patch(f"/tuning/runs/{run}", json={"name": "x"}),
+            await served.api.get(f"/tuning/runs/{run}"),
+        ):
+            assert (answer.status_code, "may have been deleted" in answer.text) == (404, True)
+
+    play(settings, scenario)
+
+
+async def refused(served: Served, wanted: Any, status: int) -> str:
+    text = wanted if isinstance(wanted, str) else json.dumps(wanted)
+    answer: httpx.Response = await served.api.post(
+        "/tuning/runs", content=text, headers={"Content-Type": "application/json"}
+    )
+    assert answer.status_code == status, answer.text
+    return str(answer.json()["detail"])
+
+
+def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm("disarmed")
+        assert "The robot is disarmed. Arm it" in await refused(served, STEP, 409)
+        robot.arm("manual")
+        assert "The robot is manual" in await refused(served, STEP, 409)
+        robot.arm()
+        assert "no loop 'roll'" in await refused(served, STEP | {"loop": "roll"}, 409)
+        for wrong in (
+            STEP | {"target": 21},
+            STEP | {"kind": "sine"},
+            STEP | {"loop": "surge"},
+            STEP | {"more": 1},
+            RELAY | {"cycles": 2.5},
+            RELAY | {"amplitude": 0},
+            json.dumps(STEP).replace("0.7", "NaN"),
+        ):
+            assert "not valid" in await refused(served, wrong, 422)
+        served.runtime.refusal = "No, since the runtime knows better."
+        assert "the runtime knows better" in await refused(served, STEP, 409)
+        served.runtime.refusal = None
+        served.assembly.tuning._occupied = lambda: "The scenario “Dive” is being run."
+        assert "The scenario “Dive”" in await refused(served, STEP, 409)
+        served.assembly.tuning._occupied = lambda: None
+        nothing = await served.api.post("/tuning/stop")
+        assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment runs.")
+        assert (await served.api.get("/tuning/runs")).json()["runs"] == []
+        await begin(served, STEP)
+        assert "runs already" in await refused(served, STEP, 409)
+
+    play(settings, scenario)
+
+
+def test_an_experiment_of_another_server_is_ended(settings: Settings) -> None:
+    async def scenario(served: Served, robot: Robot) -> None:
+        robot.arm()
+        robot.tell(7, "running", 100.0)
+        await until(lambda: ("end_experiment", {}) in served.runtime.asked, "it to be ended")
+
+    play(settings, scenario)
+
+
+def test_a_killed_server_leaves_its_run_interrupted(store: Store) -> None:
+    runs = Runs(store)
+    force = Force(controller="pid", title="PID", gains={})
+    run = asyncio.run(runs.begin(StepStart(**STEP), "one", force, {}))
+    asyncio.run(runs.mark_interrupted())
+    kept = runs.detail(run)
+    assert (kept.state, kept.curve.times) == ("interrupted", [])
+    assert "The server ended" in kept.problem

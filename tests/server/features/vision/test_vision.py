@@ -1,0 +1,152 @@
+"""The vision node's settings in the interface: handed on whole, refused at the edge, and as TOML."""
+
+import asyncio
+import tomllib
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_runtime.config import parse
+from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
+from server.features.vision.toml_document import read_document, write_document
+from server.platform.settings import Settings
+from tests.server.serving import Served, serve
+
+SETTINGS = VisionSettings(
+    rate=12.5,
+    colour="Boje",
+    colours={"Boje": COLOURS["green"], "red": COLOURS["red"]},
+    markers="4x4_50",
+    marker_numbers=(3, 7),
+    white_balance="underwater",
+    actions={"marker 7": 1.5, "red": 0.25},
+).table()
+
+
+def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            await scenario(served)
+
+    asyncio.run(run())
+
+
+def test_settings_are_handed_on_whole_and_read_back(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        assert (await served.api.put("/vision", json=SETTINGS)).status_code == 204
+        assert served.runtime.asked == [("vision_settings", SETTINGS)]
+        usual = VisionSettings().table()
+        assert (await served.api.get("/vision")).json() == {"settings": usual, "configured": usual}
+
+    play(settings, scenario)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"rate": 31}, "less than or equal to 30"),
+    ({"rate": None}, "rate"),
+    ({"rate": "fast"}, "rate"),
+    ({"area_min": 0.5, "area_max": 0.4}, "area_min is 0.5, above area_max"),
+    ({"colour": "pink"}, "colour is 'pink'; it must be one of Boje, red"),
+    ({"colours": {}}, "colours"),
+    ({"colours": {"Boje": {"hue": [0, 180], "saturation": [0, 1], "value": [0, 1]}}}, "179"),
+    ({"colours": {"Boje": {"hue": [0, 17], "saturation": [9, 1], "value": [0, 1]}}}, "saturation is"),
+    ({"colours": {"Boje": {"hue": [0.5, 17], "saturation": [0, 1], "value": [0, 1]}}}, "hue"),
+    ({"actions": {"marker x": 1.0}}, "no colour and no marker"),
+    ({"actions": {"red": 10.5}}, "less than or equal to 10"),
+    ({"white_balance": "magic"}, "white_balance"),
+    ({"marker_numbers": [1024]}, "marker_numbers"),
+    ({"shutter": 3}, "shutter"),
+]
+
+
+def test_settings_that_cannot_be_are_refused_at_the_edge(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        for change, words in WRONG:
+            answer = await served.api.put("/vision", json={**SETTINGS, **change})
+            assert answer.status_code == 422, change
+            assert words in answer.json()["detail"]
+        short = {name: value for name, value in SETTINGS.items() if name != "opening"}
+        assert (await served.api.put("/vision", json=short)).status_code == 422
+        text = '{"rate": NaN}'
+        json = {"Content-Type": "application/json"}
+        assert (await served.api.put("/vision", content=text, headers=json)).status_code == 422
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
+def test_picking_tells_what_the_runtime_says(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
+        assert answer.json() == {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
+        assert served.runtime.picked == [{"x": 0.25, "y": 1.0, "radius": 0.02}]
+        for wrong in (
+            {"x": 0.25},
+            {"x": 1.25, "y": 0},
+            {"x": 0, "y": 0, "radius": 0.5},
+            {"x": 0, "y": "low"},
+        ):
+            assert (await served.api.post("/vision/pick", json=wrong)).status_code == 422
+        served.runtime.refusal = "There is no colour at this place: it is grey."
+        answer = await served.api.post("/vision/pick", json={"x": 0.25, "y": 1})
+        assert (answer.status_code, answer.json()["detail"]) == (409, served.runtime.refusal)
+
+    play(settings, scenario)
+
+
+def test_the_table_of_robot_toml_is_given_and_read(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.get("/vision/toml")
+        assert 'filename="vision.toml"' in answer.headers["content-disposition"]
+        assert read_document(answer.text) == VisionSettings().table()
+        read = await served.api.post("/vision/read", json={"text": Path("robot.toml").read_text()})
+        assert read.json() == VisionSettings().table()
+        for text, words in (
+            ("[vision", "no TOML"),
+            ("[robot]", "no table [vision]"),
+            ("vision = 3", "must be a table"),
+            ("[vision]\nrate = 99", "between 2 and 30"),
+            ("[vision]\ncolour = 'pink'", "colour is 'pink'"),
+        ):
+            answer = await served.api.post("/vision/read", json={"text": text})
+            assert answer.status_code == 422, text
+            assert words in answer.json()["detail"]
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
+NAMES = st.from_regex(r"\A[A-Za-zäöüß][\w .-]{0,31}\Z").filter(lambda name: not name.startswith("marker"))
+BYTES = st.tuples(st.integers(0, 255), st.integers(0, 255)).map(lambda pair: (min(pair), max(pair)))
+RANGES = st.builds(
+    ColourRange,
+    hue=st.tuples(st.integers(0, 179), st.integers(0, 179)),
+    saturation=BYTES,
+    value=BYTES,
+)
+
+
+@st.composite
+def any_settings(draw: st.DrawFn) -> VisionSettings:
+    colours = draw(st.dictionaries(NAMES, RANGES, min_size=1, max_size=4))
+    named = st.sampled_from([*colours, "marker 0", "marker 1023"])
+    return VisionSettings(
+        rate=draw(st.floats(2, 30)),
+        colour=draw(st.sampled_from(sorted(colours))),
+        colours=colours,
+        aspect=(draw(st.floats(0.05, 1)), draw(st.floats(1, 20))),
+        marker_numbers=tuple(draw(st.lists(st.integers(0, 1023), max_size=5))),
+        actions=draw(st.dictionaries(named, st.floats(0, 10), max_size=4)),
+    )
+
+
+@given(any_settings())
+def test_whatever_is_set_survives_toml(settings: VisionSettings) -> None:
+    text = write_document(settings.table())
+    assert read_document(text) == settings.table()
+    # What goes before all others keeps its place.
+    assert list(tomllib.loads(text)["vision"].get("actions", {})) == list(settings.actions)
+    assert parse(VisionSettings, read_document(text)) == settings

@@ -1,0 +1,128 @@
+import asyncio
+from typing import Any
+
+import pytest
+from starlette.types import Message, Receive, Scope, Send
+
+from server.http.security import BODY_BYTES_MAX, Guard
+
+HOSTS = ("localhost", "127.0.0.1", "[::1]", "turtle.local")
+OWN = "http://localhost:8000"
+
+
+def ask(kind: str = "http", method: str = "GET", *, port: int = 8000, **headers: Any) -> int:
+    """The status of a request with these headers; 101 where a WebSocket is let through."""
+    sent: list[Message] = []
+
+    async def inner(scope: Scope, _receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.accept"})
+        else:
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def receive() -> Message:
+        return {"type": "websocket.connect"}
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    raw = [
+        (name.replace("_", "-").encode(), value.encode())
+        for name, values in headers.items()
+        for value in ([values] if isinstance(values, str) else values)
+    ]
+    scope: dict[str, Any] = {
+        "type": kind,
+        "method": method,
+        "path": "/api/x",
+        "headers": raw,
+        "scheme": "ws" if kind == "websocket" else "http",
+    }
+    asyncio.run(Guard(inner, HOSTS, port)(scope, receive, send))
+    if kind == "websocket":
+        return 101 if sent[0]["type"] == "websocket.accept" else 403
+    status: int = sent[0]["status"]
+    return status
+
+
+@pytest.mark.parametrize("host", ["localhost:8000", "127.0.0.1:8000", "[::1]:8000", "TURTLE.local:8000"])
+def test_own_hosts_are_let_in(host: str) -> None:
+    assert ask(host=host) == 200
+    assert ask(host=host, origin=f"http://{host.lower()}", method="POST") == 200
+    assert ask("websocket", host=host, origin=f"http://{host}") == 101
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "evil.example:8000",
+        "localhost",
+        "localhost:8001",
+        "localhost:8000.evil.example",
+        "evil.localhost:8000",
+        "localhost:8000@evil",
+        "",
+    ],
+)
+def test_foreign_hosts_are_refused(host: str) -> None:
+    assert ask(host=host) == 403
+    assert ask("websocket", host=host, origin=f"http://{host}") == 403
+
+
+def test_exactly_one_host_is_named() -> None:
+    assert ask() == 403
+    assert ask(host=["localhost:8000", "localhost:8000"]) == 403
+    assert ask(host=["localhost:8000", "evil.example:8000"]) == 403
+
+
+def test_port_80_needs_no_port() -> None:
+    assert ask(host="localhost", port=80) == 200
+    assert ask(host="localhost:80", port=80) == 200
+
+
+@pytest.mark.parametrize(
+    "origin",
+    [
+        "null",
+        "",
+        "http://evil.example",
+        "https://localhost:8000",
+        "http://localhost",
+        "http://localhost:8001",
+        "http://127.0.0.1:8000",
+        "http://localhost:8000.evil.example",
+        "http://localhost:8000/",
+        "ws://localhost:8000",
+    ],
+)
+@pytest.mark.parametrize(("kind", "method"), [("http", "GET"), ("http", "POST"), ("websocket", "GET")])
+def test_foreign_origins_are_refused(origin: str, kind: str, method: str) -> None:
+    assert ask(kind, method, host="localhost:8000", origin=origin) == 403
+
+
+def test_two_origins_are_refused() -> None:
+    assert ask(host="localhost:8000", origin=[OWN, OWN]) == 403
+
+
+@pytest.mark.parametrize(("kind", "method"), [("http", "PUT"), ("http", "DELETE"), ("websocket", "GET")])
+@pytest.mark.parametrize("site", ["cross-site", "same-site", "none"])
+def test_browsers_must_name_their_page(kind: str, method: str, site: str) -> None:
+    assert ask(kind, method, host="localhost:8000", sec_fetch_site=site) == 403
+
+
+def test_programs_need_no_origin_and_links_may_lead_here() -> None:
+    assert ask(host="localhost:8000", method="POST") == 200
+    assert ask("websocket", host="localhost:8000") == 101
+    assert ask(host="localhost:8000", sec_fetch_site="cross-site") == 200
+
+
+@pytest.mark.parametrize("header", ["x_forwarded_host", "x_forwarded_for", "forwarded", "x_real_ip"])
+def test_what_a_proxy_says_changes_nothing(header: str) -> None:
+    said: dict[str, Any] = {header: "localhost:8000"}
+    assert ask(host="evil.example:8000", **said) == 403
+
+
+def test_bodies_are_small_and_say_their_size() -> None:
+    assert ask(host="localhost:8000", method="POST", content_length=str(BODY_BYTES_MAX)) == 200
+    assert ask(host="localhost:8000", method="POST", content_length=str(BODY_BYTES_MAX + 1)) == 413
+    assert ask(host="localhost:8000", method="POST", transfer_encoding="chunked") == 413

@@ -1,0 +1,76 @@
+"""Binary messages of any size, in frames as every WebSocket client reads them."""
+
+import asyncio
+from typing import Any
+
+import pytest
+from fastapi import FastAPI, WebSocket
+from uvicorn.protocols.utils import ClientDisconnected
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosedOK
+
+from server.http.serving import make_server, open_socket
+
+SIZES = (0, 1, 125, 126, 65_535, 65_536, 300_000)
+
+
+def test_messages_of_every_size_arrive_whole_and_between_texts() -> None:
+    app = FastAPI()
+
+    @app.websocket("/")
+    async def send_all(socket: WebSocket) -> None:
+        await socket.accept()
+        for size in SIZES:
+            await socket.send_bytes(bytes(size - 1) + b"x" if size else b"")
+            await socket.send_text(str(size))
+        await socket.close()
+
+    async def scenario(url: str) -> None:
+        async with connect(url, max_size=None) as client:
+            for size in SIZES:
+                data = await client.recv()
+                assert isinstance(data, bytes)
+                assert len(data) == size
+                assert data[-1:] == (b"x" if size else b"")
+                assert await client.recv() == str(size)
+            with pytest.raises(ConnectionClosedOK):
+                await client.recv()
+
+    asyncio.run(_serve(app, scenario))
+
+
+def test_whoever_has_left_is_sent_nothing_more() -> None:
+    app = FastAPI()
+    outcomes: list[BaseException] = []
+    over = asyncio.Event()
+
+    @app.websocket("/")
+    async def send_after_the_end(socket: WebSocket) -> None:
+        await socket.accept()
+        assert (await socket.receive())["type"] == "websocket.disconnect"
+        # Starlette sees to it itself; this is what a sender meets that has not heard of the end yet.
+        raw: Any = socket._send
+        try:
+            await raw({"type": "websocket.send", "bytes": b"late"})
+        except BaseException as problem:
+            outcomes.append(problem)
+        over.set()
+
+    async def scenario(url: str) -> None:
+        async with connect(url):
+            pass
+        await over.wait()
+
+    asyncio.run(_serve(app, scenario))
+    assert [type(problem) for problem in outcomes] == [ClientDisconnected]
+
+
+async def _serve(app: FastAPI, scenario: Any) -> None:
+    server = make_server(app)
+    with open_socket("127.0.0.1", 0) as listener:
+        running = asyncio.create_task(server.serve(sockets=[listener]))
+        try:
+            await scenario(f"ws://127.0.0.1:{listener.getsockname()[1]}/")
+        finally:
+            server.should_exit = True
+            await running

@@ -1,0 +1,164 @@
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import create_engine, pool
+from sqlmodel import SQLModel, select
+
+import server.platform.models  # noqa: F401 - declares the tables
+from migrations import HEAD
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.recording import Recording
+from server.platform import schema
+from server.platform.settings import Settings, SetupError
+from server.platform.store import Store
+from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
+
+OLDER = [one.revision for one in ScriptDirectory(schema._scripts()).walk_revisions() if one.revision != HEAD]
+
+
+def test_the_newest_revision_is_the_one_the_server_wants() -> None:
+    assert ScriptDirectory(schema._scripts()).get_heads() == [HEAD]
+
+
+def test_migrations_and_models_agree(settings: Settings) -> None:
+    schema.prepare(settings.data)
+    engine = create_engine(f"sqlite:///{settings.data.database}", poolclass=pool.NullPool)
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), SQLModel.metadata) == []
+
+
+def test_a_new_database_is_made_once_and_without_a_copy(settings: Settings) -> None:
+    schema.prepare(settings.data)
+    assert schema.read_revision(settings.data.database) == HEAD
+    before = settings.data.database.read_bytes()
+    schema.prepare(settings.data)
+    assert settings.data.database.read_bytes() == before
+    assert not settings.data.backups.exists()
+
+
+def test_an_older_database_is_copied_before_it_is_upgraded(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    schema.prepare(settings.data)
+    older = settings.data.database.read_bytes()
+    upgraded: list[bool] = []
+    monkeypatch.setattr(schema, "HEAD", "9998")
+    monkeypatch.setattr(schema, "_upgrade", lambda _: upgraded.append(settings.data.backups.exists()))
+    schema.prepare(settings.data)
+    (copy,) = settings.data.backups.iterdir()
+    assert schema.read_revision(copy) == HEAD
+    assert copy.stat().st_size == len(older)
+    assert upgraded == [True]
+
+
+def test_a_newer_database_is_refused_and_left_alone(settings: Settings) -> None:
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+        connection.commit()
+    before = settings.data.database.read_bytes()
+    with pytest.raises(SetupError, match=r"newer version .*9999"):
+        schema.prepare(settings.data)
+    assert settings.data.database.read_bytes() == before
+
+
+@pytest.mark.parametrize("content", [b"no database at all, but long enough to look like one" * 20])
+def test_what_is_no_database_is_refused(settings: Settings, content: bytes) -> None:
+    settings.data.database.write_bytes(content)
+    with pytest.raises(SetupError, match="cannot be used"):
+        schema.prepare(settings.data)
+    assert settings.data.database.read_bytes() == content
+
+
+def test_the_database_of_another_program_is_refused(settings: Settings) -> None:
+    with closing(sqlite3.connect(settings.data.database)) as connection:
+        connection.execute("CREATE TABLE theirs (id INTEGER)")
+        connection.commit()
+    with pytest.raises(SetupError, match="another program"):
+        schema.prepare(settings.data)
+
+
+@pytest.mark.parametrize("revision", OLDER)
+def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Settings, revision: str) -> None:
+    upgrade_to(settings, revision)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+    schema.prepare(settings.data)
+    (copy,) = settings.data.backups.glob(f"mucat-before-{revision}-*.db")
+    assert schema.read_revision(copy) == revision
+    with closing(Store(settings.data.database)) as store:
+        catalogue = Catalogue(store)
+        (found,) = catalogue.list("COLD")
+        assert (found.name, found.origin, found.tags, found.kept, found.deleted) == (
+            "old",
+            "operator",
+            [],
+            False,
+            None,
+        )
+        (topic,) = catalogue.detail(1).topics
+        assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
+        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == ROWS
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
+        assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+@pytest.mark.parametrize("revision", OLDER)
+def test_an_upgrade_keeps_every_value_of_every_table_and_the_models_read_them(
+    settings: Settings, revision: str
+) -> None:
+    upgrade_to(settings, revision)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+        fill_tables(database)
+        before = read_tables(database)
+    schema.prepare(settings.data)
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        after = read_tables(database)
+        assert database.execute("PRAGMA foreign_key_check").fetchall() == []
+    for table, rows in before.items():
+        assert len(rows) == 1
+        assert after[table] == [after[table][0] | rows[0]], table
+    with closing(Store(settings.data.database)) as store, store.read() as reader:
+        for model in SQLModel.__subclasses__():
+            if model.__tablename__ in before:
+                assert len(reader.exec(select(model)).all()) == 1
+
+
+def describe(database: Path) -> list[tuple[str, ...]]:
+    with closing(sqlite3.connect(database)) as connection:
+        return connection.execute("SELECT type, name, sql FROM sqlite_master ORDER BY name").fetchall()
+
+
+def test_an_upgrade_that_is_broken_off_changes_nothing_and_can_be_done_again(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    upgrade_to(settings, "0003")
+    with closing(sqlite3.connect(settings.data.database)) as database:
+        make_session(database)
+    before = describe(settings.data.database)
+    with monkeypatch.context() as broken:
+        broken.setattr("alembic.op.create_index", lambda *_, **__: interrupt())
+        with pytest.raises(KeyboardInterrupt):
+            schema.prepare(settings.data)
+    assert describe(settings.data.database) == before
+    assert schema.read_revision(settings.data.database) == "0003"
+    schema.prepare(settings.data)
+    assert schema.read_revision(settings.data.database) == HEAD
+
+
+def interrupt() -> None:
+    raise KeyboardInterrupt
+
+
+def test_what_a_session_holds_is_read_from_an_index_alone(store: Store) -> None:
+    with store.read() as database:
+        query = "EXPLAIN QUERY PLAN SELECT topic, sum(count), min(first_time), max(last_time) FROM chunk "
+        plan = database.connection().exec_driver_sql(f"{query} WHERE session_id = 1 GROUP BY topic").all()
+    assert "USING COVERING INDEX chunk_time" in str(plan)

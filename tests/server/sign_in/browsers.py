@@ -1,0 +1,53 @@
+"""Browsers as the server sees them: a cookie, the page's header, and the page's origin."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import httpx
+from websockets.asyncio.client import connect
+
+from server.http.sign_in.identity import Role
+from tests.server.serving import Served
+
+
+class Browser:
+    """One that is not signed in yet."""
+
+    def __init__(self, served: Served, name: str) -> None:
+        self.name = name
+        self._served = served
+        self.origin = f"http://127.0.0.1:{served.settings.port}"
+        headers = {"origin": self.origin, "x-mucat": "page"}
+        self.api = httpx.AsyncClient(base_url=f"{self.origin}/api", headers=headers, timeout=10)
+
+    async def pair(self, code: str) -> httpx.Response:
+        return await self.api.post("/access/pair", json={"code": code, "name": self.name})
+
+    async def device(self) -> int:
+        number: int = (await self.api.get("/access/me")).json()["identity"]["device"]
+        return number
+
+    @property
+    def cookie(self) -> str:
+        return "; ".join(f"{name}={value}" for name, value in self.api.cookies.items())
+
+    def connect(self, **options: Any) -> connect:
+        """Its live socket."""
+        return self._served.connect(additional_headers={"cookie": self.cookie}, **options)
+
+
+@asynccontextmanager
+async def browser(served: Served, role: Role | None, name: str = "tablet") -> AsyncIterator[Browser]:
+    """A browser, paired in this role by the shell; None: nobody yet."""
+    one = Browser(served, name)
+    async with one.api:
+        if role is not None:
+            (await one.pair(await new_code(served, role))).raise_for_status()
+        yield one
+
+
+async def new_code(served: Served, role: Role) -> str:
+    answer = await served.api.post("/access/codes", json={"role": role})
+    code: str = answer.raise_for_status().json()["code"]
+    return code

@@ -1,0 +1,359 @@
+"""Signing in, roles and their end, through the served interface."""
+
+import asyncio
+import json
+import sqlite3
+from contextlib import closing, suppress
+from typing import Any
+
+import pytest
+from websockets.asyncio.client import ClientConnection
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from robot_runtime.contract.topics import read_blocks
+from server.http.sign_in.devices import Devices
+from server.platform.settings import Settings
+from tests.server.serving import Served, next_text, play, serve
+from tests.server.sign_in.browsers import browser, new_code
+from tests.server.waiting import until
+
+
+async def closing_of(socket: ClientConnection) -> tuple[int, str]:
+    """How the server closes a socket: code and reason."""
+    async with asyncio.timeout(10):
+        with suppress(ConnectionClosed):
+            async for _ in socket:
+                pass
+    assert socket.close_code is not None
+    return socket.close_code, socket.close_reason or ""
+
+
+def test_nobody_comes_in_without_a_sign_in(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, None) as stranger:
+            for method, path in (("GET", "/robot"), ("POST", "/robot/stop"), ("GET", "/nowhere")):
+                answer = await stranger.api.request(method, path)
+                assert (answer.status_code, answer.headers["www-authenticate"]) == (401, "Bearer")
+                assert "mucat pair" in answer.json()["detail"]
+            assert served.runtime.asked == []
+            with pytest.raises(InvalidStatus):
+                await stranger.connect()
+            me = (await stranger.api.get("/access/me")).json()
+            assert me == {
+                "signed_in": False,
+                "robot": "tested",
+                "identity": None,
+                "pairing_open": False,
+                "operators_only": [],
+            }
+
+    play(settings, scenario)
+
+
+def test_a_stranger_s_body_is_not_read(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        port = served.settings.port
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        head = f"POST /api/imports HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000000\r\n\r\n"
+        writer.write(head.encode())
+        async with asyncio.timeout(10):
+            assert b" 401 " in await reader.readline()
+        writer.close()
+
+    play(settings, scenario)
+
+
+def test_a_code_signs_a_browser_in_with_a_cookie_that_no_script_sees(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        code = await new_code(served, "operator")
+        async with browser(served, None, "bench laptop") as one:
+            assert (await one.api.get("/access/me")).json()["pairing_open"]
+            answer = await one.pair(code)
+            identity = {"device": 1, "name": "bench laptop", "role": "operator", "kind": "browser"}
+            assert (answer.status_code, answer.json()["identity"]) == (200, identity)
+            name, _, rest = answer.headers["set-cookie"].partition("=")
+            assert name == f"mucat_{served.settings.port}"
+            said = {part.strip().lower() for part in rest.split(";")[1:]}
+            assert {"httponly", "samesite=strict", "path=/"} <= said
+            assert not {part for part in said if part.startswith("domain")}
+            assert (await one.api.get("/robot")).status_code == 503
+            async with one.connect() as socket:
+                you = (await next_text(socket, "hello"))["you"]
+                assert (you["name"], you["role"]) == ("bench laptop", "operator")
+            again = await one.pair(code)
+            assert (again.status_code, "not valid" in again.json()["detail"]) == (403, True)
+
+    play(settings, scenario)
+
+
+def test_only_hashes_are_stored(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator") as one:
+            token = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
+            secrets = [*one.api.cookies.values(), token, settings.data.token.read_text().strip()]
+            listed = (await one.api.get("/access/devices")).text
+        with closing(sqlite3.connect(settings.data.database)) as database:
+            stored = "\n".join(database.iterdump())
+        assert "script" in stored
+        assert not [secret for secret in secrets if secret in stored or secret in listed]
+        assert len(secrets) == 3
+        assert settings.data.token.stat().st_mode & 0o777 == 0o600
+
+    play(settings, scenario)
+
+
+def test_a_restart_knows_who_was_paired_and_makes_another_shell_token(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served, browser(served, "viewer") as one:
+            cookies = dict(one.api.cookies)
+            token = settings.data.token.read_text()
+            made = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
+        async with serve(settings) as served, browser(served, None) as one:
+            (secret,) = cookies.values()
+            one.api.cookies.set(f"mucat_{served.settings.port}", secret)
+            assert (await one.api.get("/access/me")).json()["identity"]["role"] == "viewer"
+            old = {"authorization": f"Bearer {token.strip()}"}
+            assert (await one.api.get("/access/me", headers=old)).json()["identity"] is None
+            program = {"authorization": f"Bearer {made}"}
+            me = (await one.api.get("/access/me", headers=program)).json()
+            assert (me["identity"]["name"], me["identity"]["kind"]) == ("script", "program")
+
+    asyncio.run(run())
+
+
+def test_what_is_no_token_is_nobody_whatever_the_cookie_says(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator") as one:
+            (secret,) = one.api.cookies.values()
+            for said in ("Bearer wrong", "Bearer", "Basic eDp5", f"Bearer {secret}", ""):
+                answer = await one.api.get("/robot", headers={"authorization": said})
+                assert answer.status_code == 401, said
+
+    play(settings, scenario)
+
+
+def test_viewers_look_and_stop_and_nothing_else(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "viewer") as viewer:
+            assert (await viewer.api.post("/robot/stop")).status_code == 204
+            refused = await viewer.api.post("/robot/arm")
+            assert (refused.status_code, "operator" in refused.json()["detail"]) == (403, True)
+            for method, path, body in (
+                ("GET", "/access/devices", None),
+                ("POST", "/access/codes", {}),
+                ("POST", "/access/tokens", {"name": "x"}),
+                ("PATCH", "/access/devices/1", {"role": "operator"}),
+                ("DELETE", "/access/devices/1", None),
+            ):
+                answer = await viewer.api.request(method, path, json=body)
+                assert answer.status_code == 403, path
+            assert [name for name, _ in served.runtime.asked] == ["stop"]
+            async with viewer.connect() as socket:
+                await socket.send('{"op": "stop"}')
+                await until(lambda: len(served.runtime.asked) == 2, "the second STOP")
+
+    play(settings, scenario)
+
+
+def test_a_cookie_alone_changes_nothing(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator") as one:
+            for spoilt in ({"x-mucat": ""}, {"x-mucat": "Page"}, {"origin": ""}, {"origin": "null"}):
+                answer = await one.api.post("/robot/arm", headers=spoilt)
+                assert answer.status_code == 403, spoilt
+            for missing in ("x-mucat", "origin"):
+                kept = one.api.headers.pop(missing)
+                assert (await one.api.post("/robot/arm")).status_code == 403, missing
+                one.api.headers[missing] = kept
+            with pytest.raises(InvalidStatus):
+                await one.connect(origin=None)
+            assert served.runtime.asked == []
+            # Let in; all that it lacks is control.
+            assert (await one.api.post("/robot/arm")).status_code == 423
+
+    play(settings, scenario)
+
+
+def test_revocation_closes_live_sockets_and_ends_everything(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with (
+            browser(served, "operator", "boss") as boss,
+            browser(served, "operator", "guest") as guest,
+            guest.connect() as first,
+            guest.connect() as second,
+            boss.connect() as own,
+        ):
+            await until(lambda: served.assembly.hub.clients == 3, "the sockets")
+            answer = await boss.api.delete(f"/access/devices/{await guest.device()}")
+            assert answer.status_code == 204
+            assert await closing_of(first) == (1008, "Access was revoked by an operator.")
+            assert (await closing_of(second))[0] == 1008
+            assert (await guest.api.get("/robot")).status_code == 401
+            with pytest.raises(InvalidStatus):
+                await guest.connect()
+            await own.send('{"op": "ping", "id": 1}')
+            assert (await next_text(own, "pong"))["id"] == 1
+            assert (await boss.api.delete("/access/devices/2")).status_code == 404
+
+    play(settings, scenario)
+
+
+def test_a_new_role_closes_live_sockets_and_holds_at_once(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with (
+            browser(served, "operator", "boss") as boss,
+            browser(served, "viewer", "guest") as guest,
+        ):
+            place = f"/access/devices/{await guest.device()}"
+            for role, status in (("operator", 423), ("viewer", 403)):
+                async with guest.connect() as socket:
+                    await next_text(socket, "hello")
+                    answer = await boss.api.patch(place, json={"role": role})
+                    assert (answer.status_code, answer.json()["role"]) == (200, role)
+                    assert await closing_of(socket) == (1008, f"The role is now {role}.")
+                assert (await guest.api.post("/robot/arm")).status_code == status
+                async with guest.connect() as socket:
+                    assert (await next_text(socket, "hello"))["you"]["role"] == role
+            renamed = await boss.api.patch(place, json={"name": "  a   tablet "})
+            assert renamed.json()["name"] == "a tablet"
+
+    play(settings, scenario)
+
+
+def test_the_last_operator_stays_one_unless_the_shell_says_so(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator", "boss") as boss, browser(served, "viewer") as other:
+            await served.api.post("/access/tokens", json={"name": "script", "role": "operator"})
+            own = f"/access/devices/{await boss.device()}"
+            for answer in (
+                await boss.api.patch(own, json={"role": "viewer"}),
+                await boss.api.delete(own),
+            ):
+                assert (answer.status_code, "only operator" in answer.json()["detail"]) == (409, True)
+            place = f"/access/devices/{await other.device()}"
+            assert (await boss.api.patch(place, json={"role": "operator"})).status_code == 200
+            assert (await boss.api.patch(own, json={"role": "viewer"})).status_code == 200
+            assert (await other.api.delete(place)).status_code == 409
+            assert (await served.api.delete(place)).status_code == 204
+
+    play(settings, scenario)
+
+
+def test_signing_out_forgets_the_browser(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "operator") as one, one.connect() as socket:
+            await next_text(socket, "hello")
+            cookies = dict(one.api.cookies)
+            answer = await one.api.post("/access/sign-out")
+            assert answer.status_code == 204
+            assert await closing_of(socket) == (1008, "Signed out.")
+            assert dict(one.api.cookies) == {}
+            one.api.cookies.update(cookies)
+            assert (await one.api.get("/robot")).status_code == 401
+        assert (await served.api.post("/access/sign-out")).status_code == 409
+
+    play(settings, scenario)
+
+
+def test_a_browser_that_is_known_is_not_paired_twice(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with browser(served, "viewer", "tablet") as one:
+            cookies = dict(one.api.cookies)
+            for role, then in (("viewer", "viewer"), ("operator", "operator"), ("viewer", "operator")):
+                answer = await one.pair(await new_code(served, "viewer" if role == "viewer" else "operator"))
+                assert answer.json()["identity"]["role"] == then
+                assert "set-cookie" not in answer.headers
+            assert dict(one.api.cookies) == cookies
+        assert len((await served.api.get("/access/devices")).json()) == 1
+
+    play(settings, scenario)
+
+
+def test_too_many_wrong_codes_are_refused_and_told_once(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        code = await new_code(served, "operator")
+        async with browser(served, None) as stranger, served.connect() as socket:
+            for _ in range(3):
+                assert (await stranger.pair("AAAAA-AAAAA")).status_code == 403
+            for wrong in ("AAAAA-AAAAA", code):
+                answer = await stranger.pair(wrong)
+                assert answer.status_code == 429
+                assert 0 < int(answer.headers["retry-after"]) <= 60
+                assert "Try again in" in answer.json()["detail"]
+            told = await notices(socket, 1)
+            assert told[0]["severity"] == "caution"
+            assert "Too many wrong codes" in told[0]["text"]
+            # Nobody else is kept out, and the next notice is another one.
+            (await served.api.post("/access/tokens", json={"name": "script"})).raise_for_status()
+            assert "script" in (await notices(socket, 1))[0]["text"]
+
+    play(settings, scenario)
+
+
+def test_what_happens_is_told_without_secrets(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as socket, browser(served, "viewer", "tablet") as one:
+            token = (await served.api.post("/access/tokens", json={"name": "script"})).json()["token"]
+            secrets = [token, *one.api.cookies.values()]
+            await served.api.patch("/access/devices/1", json={"role": "operator"})
+            await served.api.delete("/access/devices/2")
+            await one.api.post("/access/sign-out")
+            told = await notices(socket, 5)
+            assert [event["text"] for event in told] == [
+                "“tablet” was paired as viewer.",
+                "“the shell of this computer” made a token for “script”, as viewer.",
+                "“the shell of this computer” made “tablet” an operator.",
+                "“the shell of this computer” revoked the access of “script”.",
+                "“tablet” signed out.",
+            ]
+            assert not [one for one in secrets if one in json.dumps(told)]
+
+    play(settings, scenario)
+
+
+async def notices(socket: ClientConnection, count: int) -> list[dict[str, Any]]:
+    """The next notices about access."""
+    found: list[dict[str, Any]] = []
+    async with asyncio.timeout(10):
+        while len(found) < count:
+            message = await socket.recv()
+            if isinstance(message, bytes):
+                for block in read_blocks(message):
+                    if block.topic.name == "notice":
+                        events = json.loads(block.payload)
+                        found += [event for event in events if event["kind"] == "access"]
+    return found
+
+
+@pytest.mark.parametrize("name", ["", "   ", "a\nb\x00", "x" * 41, "\x1b[31mred", "a\u202eb"])
+def test_names_are_short_and_can_be_shown(settings: Settings, name: str) -> None:
+    async def scenario(served: Served) -> None:
+        code = await new_code(served, "operator")
+        async with browser(served, None, name) as one:
+            answer = await one.pair(code)
+            assert (answer.status_code, "name" in answer.json()["detail"]) == (422, True)
+            one.name = "fine"
+            assert (await one.pair(code)).status_code == 200
+
+    play(settings, scenario)
+
+
+def test_the_last_visit_is_stored_once_an_hour(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        now = [1e9]
+        devices = Devices(served.assembly.store, lambda: now[0])
+        device, _ = await devices.add("tablet", "viewer", "browser")
+
+        async def stored() -> float:
+            await devices.close()
+            with closing(sqlite3.connect(settings.data.database)) as database:
+                seen: float = database.execute("SELECT seen FROM device").fetchone()[0]
+                return seen
+
+        for passed, kept in ((3599.0, 0.0), (1.0, 3600.0), (3599.0, 3600.0), (-7199.0, 0.0)):
+            now[0] += passed
+            devices.see(device)
+            assert await stored() == 1e9 + kept
+            assert devices.get(device.id).seen == now[0]
+
+    play(settings, scenario)

@@ -1,0 +1,64 @@
+"""Uploads and builds wait until the robot rests."""
+
+import asyncio
+import json
+from functools import partial
+from typing import Any
+
+from server.platform.settings import Settings
+from tests.server.blocks import state_block
+from tests.server.serving import Served, serve
+from tests.server.waiting import until
+
+ENDLESS: dict[str, Any] = {
+    "id": 1,
+    "name": "endless",
+    "ino_path": "comm_test/comm_test.ino",
+    "delay": [10.0],
+    "baud_rate": [9600],
+    "from_val": 0,
+    "to_val": 5000,
+    "expected": 5000,
+    "arduinodelay": [0.0],
+}
+
+
+async def answers(served: Served) -> list[tuple[int, str]]:
+    """To an upload that is no archive, and to a communication test that is no document."""
+    given = [
+        await served.api.post("/imports", content=b"no archive", timeout=60),
+        await served.api.post("/comm-tests/runs", json={"text": "no document", "place": "emulated"}),
+    ]
+    return [(answer.status_code, answer.json()["detail"]) for answer in given]
+
+
+def says(served: Served, armed: bool) -> bool:
+    """Whether the newest state says so."""
+    state = served.assembly.watch.state()
+    return state is not None and state["armed"] is armed
+
+
+def test_an_armed_robot_refuses_uploads_and_builds(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            for number, (armed, status) in enumerate(((True, 409), (False, 422))):
+                served.runtime.publish(state_block(number, armed=armed))
+                await until(partial(says, served, armed), "the state")
+                for code, detail in await answers(served):
+                    assert (code, "while the robot is armed" in detail) == (status, armed)
+
+    asyncio.run(run())
+
+
+def test_a_test_of_more_than_a_day_is_refused(settings: Settings) -> None:
+    async def run() -> None:
+        async with serve(settings) as served:
+            text = json.dumps([ENDLESS, ENDLESS])
+            refused = await served.api.post("/comm-tests/runs", json={"text": text, "place": "emulated"})
+            assert (refused.status_code, "28 hours" in refused.json()["detail"]) == (422, True)
+            checked = (await served.api.post("/comm-tests/check", json={"text": text})).json()
+            assert "at most 24" in checked["problems"][0]
+            alone = (await served.api.post("/comm-tests/check", json={"text": json.dumps([ENDLESS])})).json()
+            assert alone["problems"] == []
+
+    asyncio.run(run())

@@ -1,0 +1,256 @@
+"""Signing in, in any order: codes, roles, tokens, revocation and restarts, against a model of a few lines."""
+
+import asyncio
+import tempfile
+from collections.abc import Coroutine
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import pytest
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+from hypothesis.stateful import Bundle, RuleBasedStateMachine, invariant, precondition, rule
+from starlette.requests import HTTPConnection
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.errors import Refused
+from server.http.sign_in.access import Access
+from server.http.sign_in.identity import SHELL, Identity, Kind, Role
+from server.http.sign_in.pairing_codes import CODE_SECONDS, CODES_MAX, TooManyTries, WrongCode
+from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
+
+T = TypeVar("T")
+ROLES = st.sampled_from(["viewer", "operator"])
+
+
+@dataclass
+class Code:
+    """As it was made; `void` once it was used or forgotten."""
+
+    text: str
+    role: Role
+    until: float
+    void: bool = False
+
+
+@dataclass
+class Member:
+    """Somebody who was let in, and whose secret proves that unless they are `out`."""
+
+    identity: Identity
+    secret: str
+    out: bool = False
+
+
+class SigningIn(RuleBasedStateMachine):
+    """One robot, whose server is started again now and then."""
+
+    codes: Bundle[Code] = Bundle("codes")
+    members: Bundle[Member] = Bundle("members")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.runner = asyncio.Runner()
+        self.folder = tempfile.TemporaryDirectory(prefix="mucat-")
+        data = DataFolder(Path(self.folder.name))
+        make_folders(data)
+        prepare(data)
+        self.settings = Settings(data=data, config=data.path / "robot.toml")
+        self.clock = SimulatedClock(1000.0)
+        self.made: list[Code] = []
+        self.everybody: list[Member] = []
+        self.wrong: list[float] = []
+        self.closed: list[int] = []
+        self.start()
+
+    def start(self) -> None:
+        """What a server does: it knows who was paired, and no codes."""
+        self.store = Store(self.settings.data.database)
+        self.access = Access(
+            self.settings,
+            self.store,
+            self.clock,
+            lambda *_: None,
+            lambda one, _: self.closed.append(one),
+            make_token(TOKEN_PREFIX),
+        )
+        self.access.open()
+
+    def run(self, coroutine: Coroutine[Any, Any, T]) -> T:
+        """Its result."""
+        return self.runner.run(coroutine)
+
+    def end(self) -> None:
+        """End the server in order."""
+        self.run(self.access.close())
+        self.store.close()
+
+    def teardown(self) -> None:
+        self.end()
+        self.runner.close()
+        self.folder.cleanup()
+
+    @rule()
+    def restart(self) -> None:
+        self.end()
+        for code in self.made:
+            code.void = True
+        self.wrong.clear()
+        self.start()
+
+    @rule(seconds=st.sampled_from([1.0, 20.0, 61.0, 599.0, 3600.0]))
+    def forward(self, seconds: float) -> None:
+        self.clock.forward(seconds)
+
+    def valid(self) -> list[Code]:
+        """Those that open something."""
+        return [code for code in self.made if not code.void and self.clock.now() < code.until]
+
+    def waits(self) -> bool:
+        """Whether too many wrong codes have been tried."""
+        now = self.clock.now()
+        recent = [now - time for time in self.wrong]
+        return sum(age < 60.0 for age in recent) >= 3 or sum(age < 3600.0 for age in recent) >= 10
+
+    @precondition(lambda self: len(self.valid()) < CODES_MAX)
+    @rule(target=codes, role=ROLES)
+    def make_code(self, role: Role) -> Code:
+        code = Code(self.access.codes.make(role), role, self.clock.now() + CODE_SECONDS)
+        self.made.append(code)
+        return code
+
+    @rule(target=members, code=codes)
+    def pair(self, code: Code) -> Any:
+        return self.try_to_pair(code, None)
+
+    @rule(target=members, code=codes, member=members)
+    def pair_again(self, code: Code, member: Member) -> Any:
+        return self.try_to_pair(code, member)
+
+    def try_to_pair(self, code: Code, known: Member | None) -> Any:
+        """The member that came of it; or the one that there was."""
+        browser = known is not None and not known.out and known.identity.kind == "browser"
+        asking = self.access.pair(code.text, "tablet", known.identity if known and not known.out else None)
+        if self.waits():
+            with pytest.raises(TooManyTries):
+                self.run(asking)
+            return self.nobody()
+        if code not in self.valid():
+            with pytest.raises(WrongCode):
+                self.run(asking)
+            self.wrong.append(self.clock.now())
+            return self.nobody()
+        identity, secret = self.run(asking)
+        code.void = True
+        if browser:
+            assert known is not None
+            assert secret is None
+            role: Role = "operator" if "operator" in (known.identity.role, code.role) else "viewer"
+            known.identity = Identity(known.identity.device, "tablet", role, "browser")
+            assert identity == known.identity
+            return known
+        assert (identity.role, identity.kind) == (code.role, "browser")
+        assert secret is not None
+        return self.let_in(identity, secret)
+
+    def nobody(self) -> Any:
+        """A member that is none."""
+        return Member(Identity(10**6, "", "viewer", "browser"), "no secret", out=True)
+
+    def let_in(self, identity: Identity, secret: str) -> Member:
+        """One more; numbers and secrets are never given twice."""
+        assert identity.device not in {one.identity.device for one in self.everybody if not one.out}
+        assert secret not in {one.secret for one in self.everybody}
+        member = Member(identity, secret)
+        self.everybody.append(member)
+        return member
+
+    @rule(typed=st.sampled_from(["", "wrong", "AAAAA-AAAAA", "é" * 64]))
+    def guess(self, typed: str) -> None:
+        if self.waits():
+            with pytest.raises(TooManyTries):
+                self.run(self.access.pair(typed, "x", None))
+        else:
+            with pytest.raises(WrongCode):
+                self.run(self.access.pair(typed, "x", None))
+            self.wrong.append(self.clock.now())
+
+    @rule(target=members, role=ROLES)
+    def make_program(self, role: Role) -> Member:
+        device, token = self.run(self.access.make_program("script", role, SHELL))
+        assert (device.role, device.kind) == (role, "program")
+        return self.let_in(device.identity, token)
+
+    def operators(self) -> list[Member]:
+        """Browsers that may let others in."""
+        return [
+            one
+            for one in self.everybody
+            if not one.out and (one.identity.kind, one.identity.role) == ("browser", "operator")
+        ]
+
+    @rule(member=members, by=members, role=ROLES, shell=st.booleans())
+    def change_role(self, member: Member, by: Member, role: Role, shell: bool) -> None:
+        if member.out or by.out:
+            return
+        last = self.operators() == [member] and role == "viewer" and not shell
+        asking = self.access.set_role(member.identity.device, role, SHELL if shell else by.identity)
+        if last:
+            with pytest.raises(Refused):
+                self.run(asking)
+            return
+        before, self.closed = member.identity.role, []
+        self.run(asking)
+        old = member.identity
+        member.identity = Identity(old.device, old.name, role, old.kind)
+        assert self.closed == ([old.device] if before != role else [])
+
+    @rule(member=members, by=members, shell=st.booleans())
+    def revoke(self, member: Member, by: Member, shell: bool) -> None:
+        if member.out or by.out:
+            return
+        asking = self.access.revoke(member.identity.device, SHELL if shell else by.identity)
+        if self.operators() == [member] and not shell:
+            with pytest.raises(Refused):
+                self.run(asking)
+            return
+        self.closed = []
+        self.run(asking)
+        member.out = True
+        assert self.closed == [member.identity.device]
+
+    @rule(member=members)
+    def sign_out(self, member: Member) -> None:
+        if not member.out:
+            self.closed = []
+            self.run(self.access.sign_out(member.identity))
+            member.out = True
+            assert self.closed == [member.identity.device]
+
+    async def seen(self, kind: Kind, secret: str) -> Identity | None:
+        """Whom the server takes a request with this for."""
+        header = (b"authorization", f"Bearer {secret}".encode())
+        if kind == "browser":
+            header = (b"cookie", f"{self.access.cookie}={secret}".encode())
+        return self.access.identify(HTTPConnection({"type": "http", "headers": [header]}))
+
+    @invariant()
+    def everybody_is_who_they_are(self) -> None:
+        for one in self.everybody:
+            other: Kind = "program" if one.identity.kind == "browser" else "browser"
+            assert self.run(self.seen(one.identity.kind, one.secret)) == (None if one.out else one.identity)
+            assert self.run(self.seen(other, one.secret)) is None
+            assert self.access.still(one.identity) is not one.out
+        there = {one.identity for one in self.everybody if not one.out}
+        assert {one.identity for one in self.access.devices.all()} == there
+        assert self.access.codes.any_valid is bool(self.valid())
+
+
+SigningIn.TestCase.settings = hypothesis_settings(
+    max_examples=15, stateful_step_count=25, deadline=None, derandomize=True
+)
+TestSigningIn = SigningIn.TestCase

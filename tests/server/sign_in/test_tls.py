@@ -1,0 +1,74 @@
+"""A server with a certificate of its own, and what talks to it."""
+
+import asyncio
+import hashlib
+import ssl
+from dataclasses import replace
+
+import httpx
+import pytest
+
+from server.http.certificate import prepare_certificate
+from server.platform.running_server import announce, ask
+from server.platform.settings import Settings, SetupError
+from tests.server.serving import Served, next_text, serve
+
+
+@pytest.fixture
+def encrypted(settings: Settings) -> Settings:
+    return replace(settings, tls=True)
+
+
+def test_pages_shell_and_sockets_talk_by_tls_and_nothing_talks_without(encrypted: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        port = served.settings.port
+        me = (await served.api.get("/access/me")).json()
+        assert me["identity"]["name"] == "the shell of this computer"
+        async with served.connect() as socket:
+            assert (await next_text(socket, "hello"))["robot"] == "tested"
+        code = (await served.api.post("/access/codes", json={})).json()
+        assert code["link"].startswith(f"https://127.0.0.1:{port}/#pair=")
+        paired = await served.api.post("/access/pair", json={"code": code["code"], "name": "tablet"})
+        assert "secure" in paired.headers["set-cookie"].lower()
+        announce(served.settings)
+        assert (await asyncio.to_thread(ask, encrypted.data, "GET", "/access/me"))["signed_in"]
+        async with httpx.AsyncClient() as client:
+            with pytest.raises(httpx.RemoteProtocolError):
+                await client.get(f"http://127.0.0.1:{port}/api/access/me")
+            with pytest.raises(httpx.ConnectError, match=r"self.signed certificate"):
+                await client.get(f"https://127.0.0.1:{port}/api/access/me")
+        foreign = await served.api.get("/access/me", headers={"origin": f"http://127.0.0.1:{port}"})
+        assert foreign.status_code == 403
+
+    async def run() -> None:
+        async with serve(encrypted) as served:
+            await scenario(served)
+
+    asyncio.run(run())
+
+
+def test_the_certificate_is_the_robot_s_own_and_stays(encrypted: Settings) -> None:
+    made = prepare_certificate(encrypted)
+    assert made == prepare_certificate(encrypted)
+    der = ssl.PEM_cert_to_DER_cert(made.file.read_text())
+    assert made.fingerprint.replace(":", "").lower() == hashlib.sha256(der).hexdigest()
+    assert made.key.stat().st_mode & 0o777 == 0o600
+    assert made.key.parent.stat().st_mode & 0o777 == 0o700
+    other = replace(encrypted, data=type(encrypted.data)(encrypted.data.path / "other"))
+    other.data.path.mkdir()
+    assert prepare_certificate(other).fingerprint != made.fingerprint
+
+
+def test_what_cannot_be_had_is_told(encrypted: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patch:
+        patch.setenv("PATH", "/nowhere")
+        with pytest.raises(SetupError, match="apt install openssl"):
+            prepare_certificate(encrypted)
+    broken = replace(encrypted, allowed_hosts=("a,nonsense",))
+    with pytest.raises(SetupError, match="openssl refused"):
+        prepare_certificate(broken)
+    assert not encrypted.data.tls.exists()
+    made = prepare_certificate(encrypted)
+    made.file.write_text("no certificate")
+    with pytest.raises(SetupError, match="cannot be had"):
+        prepare_certificate(encrypted)

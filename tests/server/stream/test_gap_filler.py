@@ -1,0 +1,221 @@
+"""What the server does with holes. The kept blocks come from real caches."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.topics import BY_NAME, Block
+from robot_runtime.transport.replay_cache import Cache, Kept, write_question
+from server.stream.gap_filler import Source
+from tests.server.blocks import debug_block, depth_block
+from tests.server.waiting import until
+
+TOPICS = (BY_NAME["depth"], BY_NAME["debug"])
+
+
+class Sender:
+    """One run of a process: numbers blocks of depths and keeps them."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.cache = Cache(name, SimulatedClock())
+        self.next = 0
+
+    def send(self, count: int = 5) -> Block:
+        block = depth_block(self.next, count)
+        self.next = block.following
+        self.cache.keep(block.data, {"depth": self.next, "debug": 0})
+        return block
+
+
+class Receiver:
+    """A source, and what came out of it. It can ask whichever sender lives, once the gate is open."""
+
+    def __init__(self) -> None:
+        self.alive: Sender | None = None
+        self.gate = asyncio.Event()
+        self.gate.set()
+        self.asked: list[Mapping[str, int]] = []
+        self.delivered: list[Block] = []
+        self.source = Source(TOPICS, self._ask, self.delivered.extend)
+
+    @property
+    def numbers(self) -> list[int]:
+        return [block.first for block in self.delivered]
+
+    def hear(self, sender: Sender, *blocks: Block) -> None:
+        for block in blocks:
+            self.source.take(sender.name, [block])
+
+    async def settle(self, count: int) -> None:
+        await until(lambda: len(self.delivered) >= count, f"{count} blocks")
+
+    async def _ask(self, wanted: Mapping[str, int]) -> Kept | None:
+        self.asked.append(wanted)
+        answer = self.alive and self.alive.cache.answer(write_question(wanted))
+        await self.gate.wait()
+        return Kept.from_bytes(answer) if answer else None
+
+
+def play(scenario: Callable[[Receiver], Awaitable[None]]) -> None:
+    async def run() -> None:
+        receiver = Receiver()
+        receiver.source.go_on(None)
+        await scenario(receiver)
+        await receiver.source.close()
+
+    asyncio.run(run())
+
+
+def test_at_first_contact_all_that_was_kept_comes_first() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = receiver.alive = Sender("a")
+        sender.send()
+        sender.send()
+        receiver.hear(sender, sender.send())
+        receiver.hear(sender, sender.send())
+        await receiver.settle(4)
+        assert receiver.numbers == [0, 5, 10, 15]
+        assert receiver.asked == [{"depth": 0, "debug": 0}]
+        receiver.hear(sender, sender.send())
+        assert receiver.numbers == [0, 5, 10, 15, 20]
+
+    play(scenario)
+
+
+def test_a_hole_is_filled_before_what_comes_after_it() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = receiver.alive = Sender("a")
+        receiver.hear(sender, sender.send())
+        await receiver.settle(1)
+        receiver.gate.clear()
+        sender.send()
+        receiver.hear(sender, sender.send())
+        receiver.hear(sender, sender.send())
+        await until(lambda: len(receiver.asked) == 2, "the question")
+        assert receiver.numbers == [0]
+        sender.send()
+        receiver.hear(sender, sender.send())
+        receiver.gate.set()
+        await receiver.settle(6)
+        assert receiver.numbers == [0, 5, 10, 15, 20, 25]
+        assert [asked["depth"] for asked in receiver.asked] == [0, 5, 20]
+
+    play(scenario)
+
+
+def test_what_comes_twice_is_passed_on_once() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = receiver.alive = Sender("a")
+        first, second = sender.send(), sender.send()
+        receiver.hear(sender, second, first)
+        await receiver.settle(2)
+        receiver.hear(sender, first, second, sender.send())
+        assert receiver.numbers == [0, 5, 10]
+        assert len(receiver.asked) == 1
+
+    play(scenario)
+
+
+def test_a_hole_that_nobody_fills_stays_and_does_not_stop_the_rest() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = Sender("a")
+        first, _, third, fourth = (sender.send() for _ in range(4))
+        receiver.hear(sender, first)
+        await receiver.settle(1)
+        receiver.hear(sender, third)
+        await receiver.settle(2)
+        receiver.hear(sender, fourth)
+        assert receiver.numbers == [0, 10, 15]
+        assert len(receiver.asked) == 2
+
+    play(scenario)
+
+
+def test_what_is_no_longer_kept_is_asked_for_once() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = receiver.alive = Sender("a")
+        receiver.hear(sender, sender.send())
+        await receiver.settle(1)
+        sender.next += 5
+        receiver.hear(sender, sender.send())
+        await receiver.settle(2)
+        receiver.hear(sender, sender.send())
+        assert receiver.numbers == [0, 10, 15]
+        assert len(receiver.asked) == 2
+
+    play(scenario)
+
+
+def test_a_new_run_is_heard_from_its_beginning_after_the_end_of_the_old_one() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        old = receiver.alive = Sender("old")
+        receiver.hear(old, old.send())
+        await receiver.settle(1)
+        old.send()
+        new = receiver.alive = Sender("new")
+        new.send()
+        receiver.hear(old, old.send())
+        receiver.hear(new, new.send())
+        receiver.hear(old, old.send())
+        await receiver.settle(5)
+        # A hole of the old run that only the old run could have filled.
+        assert receiver.numbers == [0, 10, 15, 0, 5]
+        receiver.hear(new, new.send())
+        receiver.hear(old, old.send())
+        assert receiver.numbers == [0, 10, 15, 0, 5, 10, 20]
+
+    play(scenario)
+
+
+def test_a_run_that_is_over_before_it_could_be_asked_does_no_harm() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        short = Sender("short")
+        heard = short.send()
+        sender = receiver.alive = Sender("a")
+        sender.send()
+        receiver.hear(short, heard)
+        await receiver.settle(2)
+        receiver.hear(sender, sender.send())
+        receiver.hear(short, short.send())
+        assert receiver.numbers == [0, 0, 5, 5]
+        assert len(receiver.asked) == 2
+
+    play(scenario)
+
+
+def test_senders_without_a_name_are_not_asked() -> None:
+    async def scenario(receiver: Receiver) -> None:
+        for first in (100, 50, 200):
+            receiver.source.take("", [depth_block(first, 5), debug_block(first, "a")])
+        assert receiver.numbers == [100, 100, 50, 50, 200, 200]
+        assert receiver.asked == []
+
+    play(scenario)
+
+
+@given(st.lists(st.sampled_from(["lost", "heard", "twice", "later"]), max_size=30))
+def test_whatever_is_lost_on_the_way_nothing_is_missing_in_the_end(fates: list[str]) -> None:
+    async def scenario(receiver: Receiver) -> None:
+        sender = receiver.alive = Sender("a")
+        held: list[Block] = []
+        for place, fate in enumerate(fates):
+            block = sender.send(1 + place % 3)
+            if fate == "later":
+                held.append(block)
+            for _ in range(("lost", "heard", "twice").index(fate) if fate != "later" else 0):
+                receiver.hear(sender, block)
+            if place % 4 == 0:
+                await asyncio.sleep(0)
+        receiver.hear(sender, *held)
+        receiver.hear(sender, sender.send())
+        await until(
+            lambda: receiver.delivered and receiver.delivered[-1].following == sender.next, "the last"
+        )
+        numbers = [block.first + place for block in receiver.delivered for place in range(block.count)]
+        assert numbers == list(range(sender.next))
+
+    play(scenario)

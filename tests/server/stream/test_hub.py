@@ -1,0 +1,306 @@
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+
+import server.stream.hub as hub_module
+from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.topics import read_blocks
+from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, Evicted, Hub
+from tests.server.blocks import debug_block, depth_block, picture_block
+from tests.server.waiting import until
+
+
+class Page:
+    """A page's end of a socket, whose reading can be held up."""
+
+    def __init__(self, hub: Hub) -> None:
+        self.received: list[bytes | str] = []
+        self.reading = asyncio.Event()
+        self.reading.set()
+        self.gone = asyncio.Event()
+        self.client: Client | None = None
+        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen, device=1))
+
+    @property
+    def texts(self) -> list[dict[str, Any]]:
+        return [json.loads(one) for one in self.received if isinstance(one, str)]
+
+    def numbers(self, topic: str) -> list[int]:
+        """Numbers of all samples received of a topic, in order."""
+        blocks = [block for one in self.received if isinstance(one, bytes) for block in read_blocks(one)]
+        return [
+            number
+            for block in blocks
+            if block.topic.name == topic
+            for number in range(block.first, block.first + block.count)
+        ]
+
+    async def leave(self) -> None:
+        self.gone.set()
+        await self.task
+
+    async def _send(self, data: bytes | str) -> None:
+        await self.reading.wait()
+        self.received.append(data)
+        # As on a real connection, sending lets others run.
+        await asyncio.sleep(0)
+
+    async def _listen(self, client: Client) -> None:
+        self.client = client
+        await self.gone.wait()
+
+
+def with_hub(scenario: Callable[[Hub, SimulatedClock], Awaitable[None]]) -> None:
+    async def run() -> None:
+        clock = SimulatedClock(110.0)
+        await scenario(Hub(clock, lambda _: None), clock)
+
+    asyncio.run(run())
+
+
+def test_a_page_is_greeted_first_then_gets_the_past_then_the_present() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        hub.tell({"op": "health", "parts": []})
+        hub.add([depth_block(0, 3), debug_block(0, "before")])
+        page = Page(hub)
+        await until(lambda: page.numbers("debug") == [0], "the past")
+        hub.add([depth_block(3, 2)])
+        hub.add([debug_block(1, "after")])
+        await until(lambda: page.numbers("depth") == [0, 1, 2, 3, 4], "the present")
+        await until(lambda: page.numbers("debug") == [0, 1], "the document")
+        assert [text["op"] for text in page.texts] == ["hello", "health"]
+        assert isinstance(page.received[0], str)
+        await page.leave()
+
+    with_hub(scenario)
+
+
+def test_no_gap_and_no_double_while_the_past_is_still_being_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hub_module, "HISTORY_MESSAGE_BYTES", 200)
+
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        for number in range(300):
+            hub.add([depth_block(number, 1)])
+        page = Page(hub)
+        page.reading.clear()
+        await asyncio.sleep(0)
+        for number in range(300, 300 + 3 * ROWS_MESSAGES):
+            hub.add([depth_block(number, 1), debug_block(number, "x")])
+            if number % 50 == 0:
+                page.reading.set()
+                await asyncio.sleep(0)
+                page.reading.clear()
+        page.reading.set()
+        total = 300 + 3 * ROWS_MESSAGES
+        # Of the past, the topics come one after the other.
+        await until(lambda: len(page.numbers("depth")) >= total, "every depth")
+        await until(lambda: len(page.numbers("debug")) >= total - 300, "every line")
+        assert page.numbers("depth") == list(range(total))
+        assert page.numbers("debug") == list(range(300, total))
+        assert all(text["op"] == "hello" for text in page.texts)
+        await page.leave()
+
+    with_hub(scenario)
+
+
+def test_all_pages_get_the_same_bytes() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        pages = [Page(hub), Page(hub)]
+        await until(lambda: hub.clients == 2, "both pages")
+        hub.add([depth_block(0, 1), depth_block(1, 1)])
+        await until(lambda: all(page.numbers("depth") for page in pages), "the rows")
+        assert pages[0].received[-1] is pages[1].received[-1]
+        for page in pages:
+            await page.leave()
+
+    with_hub(scenario)
+
+
+def test_who_reads_slowly_loses_the_oldest_rows_and_is_told_how_many() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        slow, quick = Page(hub), Page(hub)
+        hub.add([depth_block(0, 1)])
+        await until(lambda: slow.numbers("depth") == quick.numbers("depth") == [0], "the first row")
+        slow.reading.clear()
+        for number in range(1, 3 * ROWS_MESSAGES):
+            hub.add([depth_block(number, 1)])
+            await asyncio.sleep(0)
+        await until(lambda: len(quick.numbers("depth")) == 3 * ROWS_MESSAGES, "the quick page")
+        slow.reading.set()
+        await until(lambda: slow.numbers("depth")[-1] == 3 * ROWS_MESSAGES - 1, "the slow page")
+        received = slow.numbers("depth")
+        assert received == sorted(set(received))
+        told = [text for text in slow.texts if text["op"] == "dropped"]
+        missing = 3 * ROWS_MESSAGES - len(received)
+        assert missing > 0
+        assert told == [{"op": "dropped", "topic": "depth", "count": missing}]
+        assert not [text for text in quick.texts if text["op"] == "dropped"]
+        await slow.leave()
+        await quick.leave()
+
+    with_hub(scenario)
+
+
+def test_documents_are_never_skipped_until_the_page_is_sent_away() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        page, other = Page(hub), Page(hub)
+        await until(lambda: hub.clients == 2, "both pages")
+        page.reading.clear()
+        hub.add([debug_block(0, "x")])
+        for number in range(1, DOCUMENTS_MESSAGES):
+            hub.add([debug_block(number, "x")])
+        page.reading.set()
+        await until(lambda: len(page.numbers("debug")) == DOCUMENTS_MESSAGES, "every document")
+        assert page.numbers("debug") == list(range(DOCUMENTS_MESSAGES))
+        page.reading.clear()
+        for number in range(DOCUMENTS_MESSAGES, 2 * DOCUMENTS_MESSAGES + 2):
+            hub.add([debug_block(number, "x")])
+            await asyncio.sleep(0)
+        page.reading.set()
+        with pytest.raises(Evicted, match="fell too far behind") as reason:
+            await page.task
+        assert reason.value.code == 1013
+        await until(lambda: len(other.numbers("debug")) == 2 * DOCUMENTS_MESSAGES + 2, "the other page")
+        await other.leave()
+
+    with_hub(scenario)
+
+
+def test_of_pictures_there_is_only_the_newest() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        page = Page(hub)
+        await until(lambda: page.texts, "the greeting")
+        page.reading.clear()
+        hub.add([picture_block(0)])
+        await until(lambda: page.client is not None and page.client.sending_since is not None, "a send")
+        for number in range(1, 10):
+            hub.add([picture_block(number)])
+        page.reading.set()
+        await until(lambda: 9 in page.numbers("picture"), "the newest picture")
+        assert page.numbers("picture") == [0, 9]
+        assert hub.history.since(-1, 1000) == []
+        await page.leave()
+
+    with_hub(scenario)
+
+
+def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(hub_module, "WATCH_SECONDS", 0.001)
+
+    async def scenario(hub: Hub, clock: SimulatedClock) -> None:
+        stalled, other = Page(hub), Page(hub)
+        watch = asyncio.create_task(hub.watch())
+        await until(lambda: stalled.texts and other.texts, "both greetings")
+        stalled.reading.clear()
+        hub.add([depth_block(0, 1)])
+        await until(lambda: other.numbers("depth") == [0], "the other page")
+        clock.forward(4.9)
+        await asyncio.sleep(0.02)
+        assert not stalled.task.done()
+        clock.forward(0.2)
+        with pytest.raises(Evicted, match="Nothing was read"):
+            await stalled.task
+        hub.add([depth_block(1, 1)])
+        await until(lambda: other.numbers("depth") == [0, 1], "the other page")
+        assert hub.clients == 1
+        await other.leave()
+        watch.cancel()
+
+    with_hub(scenario)
+
+
+def test_answers_nobody_reads_end_the_connection() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        page = Page(hub)
+        await until(lambda: page.texts, "the greeting")
+        page.reading.clear()
+        client = page.client
+        assert client is not None
+        for number in range(hub_module.ANSWERS_MAX):
+            client.answer({"op": "pong", "id": number})
+        with pytest.raises(Evicted, match="unread"):
+            client.answer({"op": "pong", "id": -1})
+        page.reading.set()
+        await page.leave()
+
+    with_hub(scenario)
+
+
+def test_news_of_one_kind_replace_each_other() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        page = Page(hub)
+        await until(lambda: page.texts, "the greeting")
+        page.reading.clear()
+        for number in range(100):
+            hub.tell({"op": "health", "parts": [number]})
+        page.reading.set()
+        await until(lambda: page.texts[-1].get("parts") == [99], "the newest health")
+        assert len(page.texts) <= 3
+        await page.leave()
+
+    with_hub(scenario)
+
+
+def test_pictures_are_wanted_only_while_somebody_looks() -> None:
+    async def scenario() -> None:
+        wanted: list[frozenset[str]] = []
+        hub = Hub(SimulatedClock(), wanted.append)
+        first, second = Page(hub), Page(hub)
+        await until(lambda: hub.clients == 2, "both pages")
+        hub.add([picture_block(0)])
+        assert wanted == [{"picture"}]
+        await first.leave()
+        assert wanted == [{"picture"}]
+        await second.leave()
+        assert wanted == [{"picture"}, set()]
+        late = Page(hub)
+        hub.add([debug_block(0, "x")])
+        await until(lambda: late.numbers("debug") == [0], "the newcomer")
+        assert late.numbers("picture") == []
+        await late.leave()
+
+    asyncio.run(scenario())
+
+
+def test_a_page_has_the_pictures_that_it_watches() -> None:
+    async def scenario() -> None:
+        wanted: list[frozenset[str]] = []
+        hub = Hub(SimulatedClock(), wanted.append)
+        plain, curious = Page(hub), Page(hub)
+        await until(lambda: hub.clients == 2, "both pages")
+        await until(lambda: curious.client, "the curious one's socket")
+        assert curious.client is not None
+        hub.show(curious.client, frozenset({"picture", "observer"}))
+        assert wanted[-1] == {"picture", "observer"}
+        hub.add([picture_block(0), picture_block(0, topic="observer")])
+        await until(lambda: curious.numbers("picture") == [0], "the camera's picture")
+        await until(lambda: curious.numbers("observer") == [0], "the bystander's picture")
+        await until(lambda: plain.numbers("picture") == [0], "the camera's picture, too")
+        assert plain.numbers("observer") == []
+        hub.show(curious.client, frozenset({"picture"}))
+        assert wanted[-1] == {"picture"}
+        hub.add([picture_block(1, topic="observer"), picture_block(1)])
+        await until(lambda: curious.numbers("picture")[-1] == 1, "the next picture")
+        assert curious.numbers("observer") == [0]
+        await plain.leave()
+        await curious.leave()
+
+    asyncio.run(scenario())
+
+
+def test_there_is_room_for_so_many_pages_and_no_more() -> None:
+    async def scenario(hub: Hub, _: SimulatedClock) -> None:
+        pages = [Page(hub) for _ in range(hub_module.CLIENTS_MAX)]
+        await until(lambda: hub.clients == hub_module.CLIENTS_MAX, "all pages")
+        with pytest.raises(Evicted, match="open already"):
+            await Page(hub).task
+        for page in pages:
+            await page.leave()
+        assert hub.clients == 0
+
+    with_hub(scenario)

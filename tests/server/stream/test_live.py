@@ -1,0 +1,282 @@
+import asyncio
+import json
+import socket as sockets
+from collections.abc import Callable
+from itertools import chain
+from typing import Any
+
+import pytest
+from websockets.asyncio.client import ClientConnection
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+import server.stream.hub as hub_module
+from robot_runtime.contract.packets import DEFINITIONS_HASH
+from robot_runtime.contract.topics import Block, read_blocks
+from server.http.serving import MESSAGE_BYTES_MAX
+from server.platform.settings import Settings
+from server.stream.routes import NONSENSE_MAX
+from tests.server.blocks import debug_block, depth_block, picture_block
+from tests.server.serving import Served, next_text, play
+from tests.server.waiting import until
+from tests.shell import shell_headers
+
+
+async def read_until(socket: ClientConnection, condition: Callable[[list[Block]], object]) -> list[Block]:
+    """All blocks up to where the condition holds."""
+    blocks: list[Block] = []
+    async with asyncio.timeout(10):
+        while not condition(blocks):
+            message = await socket.recv()
+            if isinstance(message, bytes):
+                blocks += read_blocks(message)
+    return blocks
+
+
+def numbers(blocks: list[Block], topic: str) -> list[int]:
+    return [
+        number
+        for block in blocks
+        if block.topic.name == topic
+        for number in range(block.first, block.first + block.count)
+    ]
+
+
+def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_double(
+    settings: Settings,
+) -> None:
+    async def scenario(served: Served) -> None:
+        await served.heard("stream")
+        start = served.assembly.clock.now()
+        served.runtime.publish(*(depth_block(5 * place, 5, start) for place in range(10)))
+        seen = served.assembly.hub.history
+
+        def kept() -> list[int]:
+            return numbers(read_blocks(b"".join(chain.from_iterable(seen.since(-1, 1)))), "depth")
+
+        await until(lambda: len(kept()) == 50, "the past")
+        async with served.connect() as page:
+            hello = json.loads(await page.recv())
+            assert hello["op"] == "hello"
+            assert (hello["robot"], hello["definitions"]) == ("tested", f"{DEFINITIONS_HASH:08x}")
+            assert hello["steady"] <= served.assembly.clock.now()
+            assert hello["utc"] > 1.7e9
+            assert hello["page_version"] == ""
+            served.runtime.publish(*(depth_block(50 + 5 * place, 5, start) for place in range(10)))
+            served.runtime.publish(debug_block(0, "é"))
+            blocks = await read_until(
+                page, lambda blocks: len(numbers(blocks, "depth")) >= 100 and numbers(blocks, "debug")
+            )
+            assert numbers(blocks, "depth") == list(range(100))
+            (line,) = (block for block in blocks if block.topic.name == "debug")
+            assert json.loads(line.payload)[0]["text"] == "é"
+
+    play(settings, scenario)
+
+
+def test_news_about_health_and_recording(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            health = await next_text(page, "health")
+            assert [part["name"] for part in health["parts"]][:2] == ["server", "database"]
+        async with served.connect() as page:
+            assert (await next_text(page, "session"))["recording"] is None
+            session = (await served.api.post("/sessions", json={"name": "Dive"})).json()
+            recording = (await next_text(page, "session"))["recording"]
+            assert recording == session
+            await served.api.post(f"/sessions/{session['id']}/stop")
+            while (await next_text(page, "session"))["recording"] is not None:
+                pass
+        async with served.connect() as page:
+            blocks = await read_until(page, lambda blocks: len(said_of_recording(blocks)) == 2)
+            assert said_of_recording(blocks) == [
+                "Recording of “Dive” has begun.",
+                "Recording of “Dive” has ended.",
+            ]
+
+    play(settings, scenario)
+
+
+def said_of_recording(blocks: list[Block]) -> list[str]:
+    events = [json.loads(one.payload)[0] for one in blocks if one.topic.name == "notice"]
+    return [event["text"] for event in events if event["kind"] == "recording"]
+
+
+def test_ping_and_stop(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            for identifier in (7, "a", 1.5):
+                await page.send(json.dumps({"op": "ping", "id": identifier}))
+                assert (await next_text(page, "pong"))["id"] == identifier
+            await page.send('{"op": "stop"}')
+            await until(lambda: served.runtime.asked == [("stop", {})], "the STOP")
+
+    play(settings, scenario)
+
+
+def test_stops_while_one_is_on_its_way_become_one_more(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            served.runtime.gates["stop"].clear()
+            await page.send('{"op": "stop"}')
+            await until(lambda: len(served.runtime.asked) == 1, "the STOP")
+            for _ in range(50):
+                await page.send('{"op": "stop"}')
+            await page.send('{"op": "ping", "id": 8}')
+            assert (await next_text(page, "pong"))["id"] == 8
+            served.runtime.gates["stop"].set()
+            await until(lambda: len(served.runtime.asked) == 2, "another STOP")
+            await page.send('{"op": "ping", "id": 9}')
+            await next_text(page, "pong")
+            assert len(served.runtime.asked) == 2
+
+    play(settings, scenario)
+
+
+def test_a_stop_that_nobody_takes_is_told(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        served.runtime.__exit__()
+        async with served.connect() as page:
+            await page.send('{"op": "stop"}')
+            assert "STOP has not been confirmed" in (await next_text(page, "error"))["text"]
+
+    play(settings, scenario)
+
+
+NONSENSE: list[str | bytes] = [
+    "",
+    "nonsense",
+    "[]",
+    "3",
+    "{}",
+    '{"op": "arm"}',
+    '{"op": ["stop"]}',
+    '{"op": "ping"}',
+    '{"op": "ping", "id": null}',
+    '{"op": "ping", "id": NaN}',
+    "[" * 4000,
+    b'{"op": "stop"}',
+]
+
+
+def test_nonsense_is_answered_in_words_and_does_nothing(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            for message in NONSENSE:
+                await page.send(message)
+                assert (await next_text(page, "error"))["text"]
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
+def test_nothing_but_nonsense_closes_the_socket(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            for _ in range(NONSENSE_MAX - 1):
+                await page.send("x")
+            await page.send('{"op": "ping", "id": 1}')
+            await next_text(page, "pong")
+            for _ in range(NONSENSE_MAX):
+                await page.send("x")
+            with pytest.raises(ConnectionClosed) as closed:
+                await read_until(page, lambda _: False)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1008
+        assert "20 messages in a row" in closed.value.rcvd.reason
+
+    play(settings, scenario)
+
+
+def test_messages_of_the_page_are_small(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        async with served.connect() as page:
+            frame = '{"op": "ping", "id": "%s"}'
+            room = MESSAGE_BYTES_MAX - len(frame) + 2
+            await page.send(frame % ("x" * room))
+            assert len((await next_text(page, "pong"))["id"]) == room
+            await page.send(frame % ("x" * (room + 1)))
+            with pytest.raises(ConnectionClosed) as closed:
+                await read_until(page, lambda _: False)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1009
+
+    play(settings, scenario)
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "https://127.0.0.1"])
+def test_pages_of_others_get_no_socket(settings: Settings, origin: str) -> None:
+    async def scenario(served: Served) -> None:
+        with pytest.raises(InvalidStatus) as refused:
+            await served.connect(origin=origin)
+        assert refused.value.response.status_code == 403
+        assert served.assembly.hub.clients == 0
+        async with served.connect(origin=None) as program:
+            assert await program.recv()
+
+    play(settings, scenario)
+
+
+def test_pictures_are_asked_for_only_while_a_page_is_open(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await served.heard("stream")
+        assert not served.runtime.is_heard("picture")
+        async with served.connect() as page:
+            await served.heard("picture")
+            served.runtime.publish(picture_block(3, size=5000))
+            blocks = await read_until(page, lambda blocks: numbers(blocks, "picture"))
+            (picture,) = (block for block in blocks if block.topic.name == "picture")
+            assert picture == picture_block(3, size=5000)
+        await until(lambda: not served.runtime.is_heard("picture"), "the end of the pictures")
+
+    play(settings, scenario)
+
+
+def test_a_page_that_stops_reading_is_dropped_and_the_others_miss_nothing(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub_module, "STALL_SECONDS", 0.3)
+    monkeypatch.setattr(hub_module, "WATCH_SECONDS", 0.05)
+
+    async def scenario(served: Served) -> None:
+        stalled = await stall(served)
+        hub = served.assembly.hub
+        await until(lambda: hub.clients == 1, "the stalled page")
+        async with served.connect() as page:
+            await until(lambda: hub.clients == 2, "both pages")
+            total = 0
+            reading = asyncio.create_task(
+                read_until(page, lambda blocks: numbers(blocks, "depth")[-1:] == [-1])
+            )
+            async with asyncio.timeout(20):
+                while hub.clients == 2:
+                    served.runtime.publish(depth_block(total, 1000))
+                    total += 1000
+                    await asyncio.sleep(0.01)
+            reading.cancel()
+            received = await asyncio.gather(reading, return_exceptions=True)
+            assert isinstance(received[0], asyncio.CancelledError)
+            served.runtime.publish(debug_block(0, "still here"))
+            await read_until(page, lambda blocks: numbers(blocks, "debug"))
+        stalled.close()
+
+    play(settings, scenario)
+
+
+async def stall(served: Served) -> sockets.socket:
+    """A page that opens a socket with a small buffer and never reads."""
+    page = sockets.socket()
+    page.setsockopt(sockets.SOL_SOCKET, sockets.SO_RCVBUF, 4096)
+    page.setblocking(False)
+    loop = asyncio.get_running_loop()
+    port = served.settings.port
+    await loop.sock_connect(page, ("127.0.0.1", port))
+    head: dict[str, Any] = {
+        "Host": f"127.0.0.1:{port}",
+        "Upgrade": "websocket",
+        "Connection": "Upgrade",
+        "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==",
+        "Sec-WebSocket-Version": "13",
+    } | shell_headers(served.settings.data)
+    lines = "".join(f"{name}: {value}\r\n" for name, value in head.items())
+    await loop.sock_sendall(page, f"GET /api/live HTTP/1.1\r\n{lines}\r\n".encode())
+    return page
