@@ -2,7 +2,8 @@
 
 "shuffle-zlib": rows of equal size (the sample's time, then its record, as `robot_runtime.contract.topics`
 says), with all first bytes of the rows first, then all second bytes, and so on; then zlib. Slowly changing
-numbers have nearly equal high bytes, which lie side by side that way. "lines-zlib": a JSON object a line; then zlib.
+numbers have nearly equal high bytes, which lie side by side that way.
+"lines-zlib": a JSON object a line; then zlib.
 "pictures": of each picture its size (u32, little-endian), its time (f64), and the JPEG file, of that size.
 What the fields of a row are is stored with each session (`describe_topics`), so that a recording stays
 readable when the definitions have changed.
