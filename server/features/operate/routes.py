@@ -168,7 +168,7 @@ async def put_loop(
 ) -> None:
     """Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing."""
     question = {"name": name, **change.model_dump(exclude_none=True)}
-    await Assembly.of(request).bridge.command("loop", question)
+    await tune(request, "loop", question)
 
 
 @router.put(

@@ -7,7 +7,7 @@ from fastapi.responses import PlainTextResponse
 
 from robot_runtime.config import ConfigError
 from server.container import Assembly
-from server.features.operate.routes import COMMAND, SILENT
+from server.features.operate.routes import COMMAND, SILENT, tune
 from server.features.vision.schemas import (
     PickedColour,
     PickPlace,
@@ -43,7 +43,7 @@ async def put_settings(request: Request, settings: VisionSettings) -> None:
         check(table)
     except ConfigError as problem:
         raise HTTPException(422, "; ".join(problem.problems)) from problem
-    await Assembly.of(request).bridge.command("vision_settings", table)
+    await tune(request, "vision_settings", table)
 
 
 @router.post(

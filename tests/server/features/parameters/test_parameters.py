@@ -85,6 +85,29 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
     play(settings, scenario)
 
 
+def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        await change(served, 3.0, 4.0)
+        served.runtime.answer = {"changed": {"depth.pid.kp": [4.0, 6.5]}}
+        proposed = {"controller": "pid", "gains": {"kp": 6.5}}
+        (await served.api.put("/robot/loops/depth", json=proposed)).raise_for_status()
+        served.runtime.answer = {"changed": {"vision.colour": ["red", "green"]}}
+        looks = (await served.api.get("/vision")).json()["settings"]
+        (await served.api.put("/vision", json=looks | {"colour": "green"})).raise_for_status()
+
+        listed = (await served.api.get("/parameters/changes")).json()
+        assert [(one["values"][0]["name"], one["values"][0]["after"]) for one in listed] == [
+            ("vision.colour", "green"),
+            ("depth.pid.kp", 6.5),
+            ("depth.pid.kp", 4.0),
+        ]
+        for one, before in zip(listed, ("red", 4.0, 3.0), strict=True):
+            (await served.api.post("/parameters/undo", json={"change": one["id"]})).raise_for_status()
+            assert list(served.runtime.asked[-1][1]["values"].values()) == [before]
+
+    play(settings, scenario)
+
+
 @pytest.mark.parametrize(
     "body",
     [
