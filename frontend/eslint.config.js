@@ -2,6 +2,7 @@ import js from '@eslint/js';
 import svelte from 'eslint-plugin-svelte';
 import globals from 'globals';
 import ts from 'typescript-eslint';
+import { house } from './eslint/house.js';
 import svelteConfig from './svelte.config.js';
 
 export default ts.config(
@@ -14,11 +15,14 @@ export default ts.config(
     languageOptions: {
       globals: { ...globals.browser },
       parserOptions: {
-        projectService: { allowDefaultProject: ['*.js'] },
+        projectService: { allowDefaultProject: ['*.js', 'eslint/*.js'] },
         extraFileExtensions: ['.svelte'],
       },
     },
+    plugins: { house },
     rules: {
+      'house/rooms': 'error',
+      'house/component-once': 'error',
       eqeqeq: 'error',
       'no-console': 'error',
       // `void signal` is how an effect depends on a signal that it does not use.
@@ -31,5 +35,5 @@ export default ts.config(
     files: ['**/*.svelte', '**/*.svelte.ts'],
     languageOptions: { parserOptions: { parser: ts.parser, svelteConfig } },
   },
-  { files: ['*.js'], extends: [ts.configs.disableTypeChecked] },
+  { files: ['*.js', 'eslint/*.js'], extends: [ts.configs.disableTypeChecked], languageOptions: { globals: { ...globals.node } } },
 );

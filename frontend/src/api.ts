@@ -1,5 +1,4 @@
 /** The server's HTTP interface. Every call answers `null` or its result, or what went wrong in words. */
-import type { Device, Invitation, Me, Role, Token } from './access/shapes';
 import type { components } from './generated/api';
 import type { State } from './generated/topics';
 import { command, download, request, send, upload, type Answer } from './http';
@@ -7,6 +6,12 @@ import { command, download, request, send, upload, type Answer } from './http';
 export type { Answer, Downloaded } from './http';
 
 type Schemas = components['schemas'];
+export type Identity = Schemas['Known'];
+export type Role = Identity['role'];
+export type Me = Schemas['Me'];
+export type Device = Schemas['DeviceShape'];
+export type Invitation = Schemas['MadeCode'];
+export type Token = Schemas['MadeToken'];
 export type Part = Schemas['PartHealth'];
 export type LinkFrame = Schemas['LinkFrame'];
 export type LinkFrames = Schemas['LinkFrames'];

@@ -1,8 +1,8 @@
 import { describe, expect, it } from 'vitest';
-import { Arranger, type Arranged } from '../src/panels/arrange';
-import { COLUMNS, overlaps, PANELS_MOST, readLayout, ROWS_SEEN, within, type Placed } from '../src/panels/layout';
+import { Arranger, type Arranged } from '../src/layout/arrange';
+import { COLUMNS, overlaps, PANELS_MOST, readLayout, ROWS_SEEN, within, type Placed } from '../src/layout/layout';
 import { describe as describePanel, PANELS } from '../src/panels/registry';
-import { SHIPPED } from '../src/panels/shipped';
+import { SHIPPED } from '../src/layout/shipped';
 
 const least = { width: 3, height: 2 };
 const arranger = new Arranger((panel) => ({ title: panel, least }));

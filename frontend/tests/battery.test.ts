@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { timeToAlarm } from '../src/panels/battery';
+import { timeToAlarm } from '../src/live/battery';
 
 /** A ring's columns: a voltage each second. */
 function measured(volts: number[]) {

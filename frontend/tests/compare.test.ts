@@ -1,9 +1,9 @@
 import { describe, expect, it } from 'vitest';
 import type { Compared, Comparison, Signal } from '../src/api';
-import { bestOf } from '../src/pages/compare/best';
-import { chartsOf, gather, PRESETS } from '../src/pages/compare/charts';
-import { drawPicture, points, wholeView, type Look } from '../src/pages/compare/figure';
-import { readIds } from '../src/pages/compare/links';
+import { bestOf } from '../src/parts/figures';
+import { chartsOf, gather, PRESETS } from '../src/pages/sessions/compare/charts';
+import { drawPicture, points, wholeView, type Look } from '../src/pages/sessions/compare/figure';
+import { readIds } from '../src/pages/sessions/compare/links';
 
 const LOOK: Look = { text: '#1', muted: '#2', panel: '#3', line: '#4', band: '#5', font: 'f', colours: ['blue', 'orange'] };
 const UNITS: Record<string, string> = { 'depth.depth': 'm', 'control.set_point': 'm', 'control.error': 'm' };

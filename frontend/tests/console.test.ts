@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { asText, matching } from '../src/pages/operate/console';
+import { asText, matching } from '../src/panels/console/console';
 import { Lines } from '../src/live/lines.svelte';
 
 const lines = [

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { Control } from '../src/control/control.svelte';
-import type { ControlMessage, You } from '../src/control/messages';
+import { Control } from '../src/live/control.svelte';
+import type { ControlMessage, You } from '../src/live/messages';
 
 let asked: string[];
 let seen: boolean;

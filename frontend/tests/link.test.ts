@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { LinkRow } from '../src/generated/topics';
-import { linkFacts } from '../src/pages/system/link';
+import { linkFacts } from '../src/parts/linkFacts';
 
 const LINE = { connection: 'connected', port: 'serial0', baud: 9600 };
 const ROW: LinkRow = {

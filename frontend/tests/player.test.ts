@@ -2,8 +2,8 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Answer, Stretch, Timeline } from '../src/api';
 import { OTHER_TOPICS } from '../src/generated/topics';
 import { Stop } from '../src/live/stop.svelte';
-import { Player, type Source } from '../src/replay/player.svelte';
-import { ticks } from '../src/replay/ticks';
+import { Player, type Source } from '../src/pages/replay/player.svelte';
+import { ticks } from '../src/pages/replay/ticks';
 import { depthBlock, documentBlock, join } from './bytes';
 
 const ZERO = 1000;

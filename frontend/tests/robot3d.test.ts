@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { finAt, HEAD_FACETS, HULL, MOUNTS } from '../src/panels/robot3d/shape';
-import { dot, eyeOf, turn, turnBack, type Quaternion, type Vector } from '../src/panels/robot3d/space';
+import { finAt, HEAD_FACETS, HULL, MOUNTS } from '../src/panels/robot/shape';
+import { dot, eyeOf, turn, turnBack, type Quaternion, type Vector } from '../src/panels/robot/space';
 
 const half = Math.SQRT1_2;
 const near = (a: Vector, b: Vector) => a.forEach((one, at) => expect(one).toBeCloseTo(b[at] ?? NaN, 9));

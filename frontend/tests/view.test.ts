@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { moved, turned, VIEWS } from '../src/pages/operate/view';
+import { moved, turned, VIEWS } from '../src/panels/camera/view';
 
 describe('the bystander’s view', () => {
   it('turns all the way round', () => {

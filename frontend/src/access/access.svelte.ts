@@ -1,8 +1,7 @@
 import { createContext } from 'svelte';
-import { api } from '../api';
+import { api, type Identity, type Me } from '../api';
 import type { operations } from '../generated/api';
 import { onSignedOut } from '../http';
-import type { Identity, Me } from './shapes';
 
 /** what the server can be asked for, by the names in its interface */
 export type Operation = keyof operations;

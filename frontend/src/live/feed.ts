@@ -1,6 +1,6 @@
 import type { Access } from '../access/access.svelte';
 import { api } from '../api';
-import { Control } from '../control/control.svelte';
+import { Control } from './control.svelte';
 import { keeps } from '../drive/holds';
 import { Pilot } from '../drive/pilot.svelte';
 import { DEFINITIONS_HASH } from '../generated/topics';

@@ -14,8 +14,8 @@ import {
 } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
-import { inOrder } from '../alarms/order';
-import type { Control } from '../control/control.svelte';
+import { inOrder } from './alarms';
+import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';

@@ -1,7 +1,17 @@
 /** The text messages of the live socket. */
-import type { Cell, Part, ScenarioState, Session, TuningState } from '../api';
-import type { ControlMessage, You } from '../control/messages';
+import type { Cell, Part, Role, ScenarioState, Session, TuningState } from '../api';
+import type { components } from '../generated/api';
 import type { Alarm } from '../generated/topics';
+
+/** Who a page is to the robot. A seat is what can have the control; it lasts as long as the live socket. */
+export interface You {
+  readonly name: string;
+  readonly role: Role;
+  readonly seat: number;
+}
+
+/** `epoch` grows whenever control goes to another seat: what was meant for an earlier one is dropped. */
+export type ControlMessage = { readonly op: 'control' } & Readonly<components['schemas']['ControlState']>;
 
 export interface Hello {
   op: 'hello';

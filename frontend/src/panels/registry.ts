@@ -1,27 +1,11 @@
-import type { Component } from 'svelte';
-import Camera from '../pages/operate/Camera.svelte';
-import Console from '../pages/operate/Console.svelte';
-import DepthChart from '../pages/operate/DepthChart.svelte';
-import Events from '../pages/operate/Events.svelte';
-import Fins from '../pages/operate/Fins.svelte';
-import Horizon from '../pages/operate/Horizon.svelte';
-import Navigation from '../pages/operate/Navigation.svelte';
-import type { Size } from './layout';
-
-type Plain = Component<Record<string, never>>;
-
-/** A panel that can be put into a layout. Sizes are in columns and rows of the grid. */
-export interface PanelKind {
-  readonly name: string;
-  /** what its head says, too */
-  readonly title: string;
-  readonly about: string;
-  readonly load: () => Promise<{ readonly default: Plain }>;
-  readonly size: Size;
-  readonly least: Size;
-  /** the phone's tab that has it; none where it stands above the tabs */
-  readonly tab?: 'motion' | 'sensors' | 'console' | 'events';
-}
+import Camera from './camera/Camera.svelte';
+import Console from './console/Console.svelte';
+import DepthChart from './depth/DepthChart.svelte';
+import Events from './events/Events.svelte';
+import Fins from './fins/Fins.svelte';
+import Horizon from './attitude/Horizon.svelte';
+import Navigation from './navigation/Navigation.svelte';
+import { ownTitle, type PanelKind, type Plain, type Size } from '../parts/panelKind';
 
 /** What an operator looks at first comes with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
@@ -66,7 +50,7 @@ export const PANELS: readonly PanelKind[] = [
     name: 'robot',
     title: 'Robot',
     about: 'The robot in space, its fins as the encoders say',
-    load: () => import('./robot3d/Robot3d.svelte'),
+    load: () => import('./robot/Robot3d.svelte'),
     size: { width: 7, height: 6 },
     least: { width: 5, height: 5 },
     tab: 'motion',
@@ -84,7 +68,7 @@ export const PANELS: readonly PanelKind[] = [
     name: 'imu',
     title: 'Inertial sensor',
     about: 'Roll, pitch and yaw, turn rates, specific forces',
-    load: () => import('./Imu.svelte'),
+    load: () => import('./imu/Imu.svelte'),
     size: { width: 8, height: 8 },
     least: { width: 6, height: 5 },
     tab: 'sensors',
@@ -93,7 +77,7 @@ export const PANELS: readonly PanelKind[] = [
     name: 'beacons',
     title: 'Light beacons',
     about: 'Which detector sees the beacon, now and before',
-    load: () => import('./Beacons.svelte'),
+    load: () => import('./beacons/Beacons.svelte'),
     size: { width: 8, height: 5 },
     least: { width: 6, height: 4 },
     tab: 'sensors',
@@ -102,7 +86,7 @@ export const PANELS: readonly PanelKind[] = [
     name: 'battery',
     title: 'Battery',
     about: 'Voltage, and how long until its alarm',
-    load: () => import('./Battery.svelte'),
+    load: () => import('./battery/Battery.svelte'),
     size: { width: 6, height: 6 },
     least: { width: 5, height: 4 },
     tab: 'sensors',
@@ -111,7 +95,7 @@ export const PANELS: readonly PanelKind[] = [
     name: 'link',
     title: 'Serial link',
     about: 'Round trip, losses and repeats between computer and board',
-    load: () => import('./Link.svelte'),
+    load: () => import('./link/Link.svelte'),
     size: { width: 8, height: 7 },
     least: { width: 6, height: 5 },
     tab: 'sensors',
@@ -138,6 +122,8 @@ export const PANELS: readonly PanelKind[] = [
 
 export const CHART = 'chart';
 export const OWN = 'own/';
+export const loadChart = () => import('./chart/PlacedChart.svelte');
+export const loadOwn = () => import('./own/OwnPanel.svelte');
 
 const CHART_KIND = { title: 'Chart', size: { width: 12, height: 7 }, least: { width: 7, height: 5 } };
 const OWN_SIZE = { size: { width: 8, height: 7 }, least: { width: 4, height: 3 } };
@@ -147,10 +133,4 @@ export function describe(panel: string): { readonly title: string; readonly size
   if (panel === CHART) return CHART_KIND;
   if (panel.startsWith(OWN)) return { title: ownTitle(panel.slice(OWN.length)), ...OWN_SIZE };
   return PANELS.find(({ name }) => name === panel) ?? { title: `Unknown panel “${panel}”`, ...OWN_SIZE };
-}
-
-/** climb-rate.js is “Climb rate” until its script says otherwise. */
-export function ownTitle(name: string): string {
-  const words = name.replaceAll(/[-_]+/g, ' ').trim();
-  return words.charAt(0).toUpperCase() + words.slice(1);
 }

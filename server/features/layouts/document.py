@@ -1,4 +1,4 @@
-"""A layout of panels as a document, the same in the database, in files and in the page (panels/layout.ts)."""
+"""A layout of panels as a document, the same in the database, in files and in the page (layout/layout.ts)."""
 
 from itertools import combinations
 from typing import Annotated, Any, Literal, Self

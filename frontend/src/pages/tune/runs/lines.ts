@@ -1,7 +1,7 @@
 import type { ActiveTuning, TuningRunDetail } from '../../../api';
 import type { RowRing } from '../../../live/ring';
 import type { Rings } from '../../../live/store';
-import { sessionColour } from '../../compare/colours';
+import { sessionColour } from '../../../parts/sessionColour';
 import type { CurveLine } from './curvePlot';
 import type { Loop } from './loops';
 import { runTitle } from './words';

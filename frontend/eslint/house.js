@@ -1,0 +1,99 @@
+/** Rules of the page's house: which room may import which, and that a component's name is there once. */
+import { existsSync, readdirSync } from 'node:fs';
+import path from 'node:path';
+
+const SOURCES = path.resolve(import.meta.dirname, '../src');
+
+/**
+ * The rooms from the ground up, `*` for each of the folders there. A room imports from itself and from the layers
+ * below it, so that there is no circle; rooms of one layer do not import each other.
+ */
+const LAYERS = [
+  ['generated', 'styles'],
+  ['texts'],
+  ['floor'],
+  ['access', 'drive'],
+  ['live'],
+  ['parts'],
+  ['charts'],
+  ['panels/*'],
+  ['panels'],
+  ['layout'],
+  ['shell', 'pages/*'],
+  ['app'],
+];
+/** Files beside the rooms' folders. */
+const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'router', 'screen', 'theme'];
+const APP = ['App', 'Root', 'main'];
+/** A single panel is reached through the registry (panels/registry.ts) alone. */
+const DOORS = { 'panels/*': ['panels'] };
+/** The one page that shows another: a replay is Operate, filled from a recording. */
+const SHOWN = { 'pages/replay': 'pages/operate/Operate.svelte' };
+
+const NO_ROOM = 'a file without a room: name its folder in eslint/house.js';
+
+/** The room of a file given by its path below src; null where it has none. */
+function roomOf(file) {
+  const folders = file.split(path.sep);
+  const [first, second] = folders;
+  if (folders.length === 1) {
+    const [stem] = first.split('.');
+    return APP.includes(stem) ? 'app' : FLOOR.includes(stem) ? 'floor' : null;
+  }
+  const room = folders.length > 2 && (first === 'panels' || first === 'pages') ? `${first}/${second}` : first;
+  return levelOf(room) < 0 ? null : room;
+}
+
+const kindOf = (room) => room.replace(/^(pages|panels)\/.*/, '$1/*');
+const levelOf = (room) => LAYERS.findIndex((layer) => layer.includes(kindOf(room)));
+
+/** Why one file must not import another, both given by their paths below src, the first of them in a room; null where it may. */
+function refusal(from, to) {
+  const [here, there] = [roomOf(from), roomOf(to)];
+  if (there === null) return `${to}: ${NO_ROOM}`;
+  if (here === there || SHOWN[here] === to) return null;
+  if (levelOf(there) > levelOf(here)) return `${there} lies above ${here}`;
+  if (levelOf(there) === levelOf(here)) return `${here} and ${there} do not import each other: what both need belongs in a room below`;
+  const doors = DOORS[kindOf(there)];
+  return doors === undefined || doors.includes(here) ? null : `${there} is reached through ${doors.join(', ')} alone`;
+}
+
+/** The file that an import names, as a path below src; null where it is a package or lies outside. */
+function resolve(from, source) {
+  if (!source.startsWith('.')) return null;
+  const base = path.resolve(path.dirname(from), source);
+  const file = [`${base}.ts`, `${base}.svelte`, base].find(existsSync);
+  return file === undefined ? null : below(file);
+}
+
+function below(file) {
+  const inside = path.relative(SOURCES, file);
+  return inside.startsWith('..') ? null : inside;
+}
+
+const rooms = {
+  meta: { type: 'problem', messages: { room: '{{ why }}.' }, schema: [] },
+  create(context) {
+    const from = below(context.filename);
+    if (from === null) return {};
+    if (roomOf(from) === null) return { Program: (node) => context.report({ node, messageId: 'room', data: { why: NO_ROOM } }) };
+    function check(node) {
+      const to = typeof node.source?.value === 'string' ? resolve(context.filename, node.source.value) : null;
+      const why = to === null ? null : refusal(from, to);
+      if (why !== null) context.report({ node, messageId: 'room', data: { why } });
+    }
+    return { ImportDeclaration: check, ImportExpression: check, ExportNamedDeclaration: check, ExportAllDeclaration: check };
+  },
+};
+
+const componentOnce = {
+  meta: { type: 'problem', messages: { twice: '{{ other }} has this name too: name each by what it shows.' }, schema: [] },
+  create(context) {
+    const own = below(context.filename);
+    if (own === null || !own.endsWith('.svelte')) return {};
+    const other = readdirSync(SOURCES, { recursive: true }).find((one) => one !== own && path.basename(one) === path.basename(own));
+    return other === undefined ? {} : { Program: (node) => context.report({ node, messageId: 'twice', data: { other } }) };
+  },
+};
+
+export const house = { rules: { rooms, 'component-once': componentOnce } };

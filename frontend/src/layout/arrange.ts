@@ -1,0 +1,129 @@
+/**
+ * What may be done to a layout. Each answers the panels as they then stand, or why it cannot be, in words.
+ *
+ * No panel ever lies over another: one that is moved onto another changes places with it, and one that grows into
+ * another takes its room, down to the least size of that one.
+ */
+import type { Size } from '../parts/panelKind';
+import { COLUMNS, overlaps, PANELS_MOST, ROWS_MOST, ROWS_SEEN, rowsOf, within, type Placed, type Rect } from './layout';
+
+export type Arranged = { readonly panels: readonly Placed[]; readonly told: string } | { readonly refused: string };
+
+/** What the rules must know of a panel. */
+export type Known = (panel: string) => { readonly title: string; readonly least: Size };
+
+export class Arranger {
+  constructor(private readonly known: Known) {}
+
+  /** Move a panel by so many columns and rows; into another one it changes places with that. */
+  move(panels: readonly Placed[], id: string, columns: number, rows: number): Arranged {
+    const moved = find(panels, id);
+    const target = { ...moved, x: moved.x + columns, y: moved.y + rows };
+    if (!within(target)) return { refused: `${this.#title(moved)} is at the edge.` };
+    const met = panels.filter((one) => one.id !== id && overlaps(one, target));
+    const [other] = met.sort((one, two) => shared(two, target) - shared(one, target));
+    if (other === undefined) return this.#place(panels, target);
+    return this.swap(panels, id, other.id);
+  }
+
+  /** Let two panels change places. */
+  swap(panels: readonly Placed[], id: string, other: string): Arranged {
+    const one = find(panels, id);
+    const two = find(panels, other);
+    for (const [panel, rect] of [[one, two], [two, one]] as const) {
+      if (!this.#fits(panel, rect)) return { refused: `${this.#title(panel)} needs more room than that.` };
+    }
+    const changed = panels.map((panel) =>
+      panel.id === id ? { ...panel, ...rectOf(two) } : panel.id === other ? { ...panel, ...rectOf(one) } : panel,
+    );
+    return { panels: changed, told: `${this.#title(one)} and ${this.#title(two)} have changed places.` };
+  }
+
+  /** Give a panel these edges, which takes from others what they can spare. */
+  resize(panels: readonly Placed[], id: string, wanted: Rect): Arranged {
+    const before = find(panels, id);
+    const target = { ...before, ...rectOf(wanted) };
+    if (!within(target)) return { refused: `${this.#title(target)} is at the edge.` };
+    if (!this.#fits(before, target)) return { refused: `${this.#title(target)} cannot be smaller.` };
+    const changed: Placed[] = [];
+    for (const panel of panels) {
+      if (panel.id === id) changed.push(target);
+      else if (!overlaps(panel, target)) changed.push(panel);
+      else {
+        const rest = { ...panel, ...cut(panel, before, target) };
+        if (!this.#fits(panel, rest) || overlaps(rest, target)) return { refused: `${this.#title(panel)} cannot be smaller.` };
+        changed.push(rest);
+      }
+    }
+    return { panels: changed, told: `${this.#title(target)}: ${sizeWords(target)}.` };
+  }
+
+  /** Stand a new panel where there is room: of this size, smaller, or below all others. */
+  add(panels: readonly Placed[], added: Omit<Placed, keyof Rect>, size: Size): Arranged {
+    if (panels.length >= PANELS_MOST) return { refused: `There is room for ${PANELS_MOST} panels.` };
+    const { least } = this.known(added.panel);
+    const rows = rowsOf(panels);
+    const rect =
+      free(panels, size, ROWS_SEEN) ?? free(panels, least, ROWS_SEEN) ?? free(panels, size, Math.min(ROWS_MOST, rows + size.height));
+    if (rect === null) return { refused: 'There is no room for another panel. Remove one first.' };
+    return this.#place([...panels, { ...added, ...rect }], { ...added, ...rect });
+  }
+
+  remove(panels: readonly Placed[], id: string): Arranged {
+    return { panels: panels.filter((one) => one.id !== id), told: `${this.#title(find(panels, id))} is removed.` };
+  }
+
+  #place(panels: readonly Placed[], target: Placed): Arranged {
+    const changed = panels.map((one) => (one.id === target.id ? target : one));
+    return { panels: changed, told: `${this.#title(target)}: ${placeWords(target)}.` };
+  }
+
+  #title(panel: Placed): string {
+    return this.known(panel.panel).title;
+  }
+
+  /** Whether so much room is enough; what is smaller already need not become larger. */
+  #fits(panel: Placed, { width, height }: Size): boolean {
+    const { least } = this.known(panel.panel);
+    return width >= Math.min(least.width, panel.width) && height >= Math.min(least.height, panel.height);
+  }
+}
+
+export const placeWords = ({ x, y }: Rect): string => `column ${x + 1}, row ${y + 1}`;
+export const sizeWords = ({ width, height }: Size): string => `${width} wide, ${height} high`;
+
+function find(panels: readonly Placed[], id: string): Placed {
+  const found = panels.find((one) => one.id === id);
+  if (found === undefined) throw new RangeError(`no panel ${id}`);
+  return found;
+}
+
+const rectOf = ({ x, y, width, height }: Rect): Rect => ({ x, y, width, height });
+
+/** How many cells both take. */
+function shared(one: Rect, other: Rect): number {
+  const wide = Math.min(one.x + one.width, other.x + other.width) - Math.max(one.x, other.x);
+  const high = Math.min(one.y + one.height, other.y + other.height) - Math.max(one.y, other.y);
+  return Math.max(0, wide) * Math.max(0, high);
+}
+
+/** What is left of `panel` on its side of what grew from `before` to `after`. */
+function cut(panel: Rect, before: Rect, after: Rect): Rect {
+  const right = panel.x + panel.width;
+  const bottom = panel.y + panel.height;
+  if (panel.x >= before.x + before.width) return { ...panel, x: after.x + after.width, width: right - after.x - after.width };
+  if (right <= before.x) return { ...panel, width: after.x - panel.x };
+  if (panel.y >= before.y + before.height) return { ...panel, y: after.y + after.height, height: bottom - after.y - after.height };
+  return { ...panel, height: after.y - panel.y };
+}
+
+/** The first free room of this size within so many rows, row by row. */
+function free(panels: readonly Rect[], { width, height }: Size, rows: number): Rect | null {
+  for (let y = 0; y + height <= rows; y += 1) {
+    for (let x = 0; x + width <= COLUMNS; x += 1) {
+      const rect = { x, y, width, height };
+      if (!panels.some((one) => overlaps(one, rect))) return rect;
+    }
+  }
+  return null;
+}

@@ -1,0 +1,213 @@
+import { createContext } from 'svelte';
+import { api, type KeptLayout } from '../api';
+import { Arranger, type Arranged } from './arrange';
+import type { ShownChart } from '../parts/panelKind';
+import { FORMAT, readLayout, VERSION, type Layout, type Placed } from './layout';
+import { CHART, describe } from '../panels/registry';
+import { SHIPPED } from './shipped';
+
+const STANDARD = 'standard';
+const UNDO_MOST = 100;
+
+/** Where the panels stand, and what that is called. */
+interface Standing {
+  readonly panels: readonly Placed[];
+  /** a shipped layout's name, or `kept/` and the number of one that the server keeps */
+  readonly choice: string;
+  readonly title: string;
+  /** whether it is not any more what `choice` says */
+  readonly changed: boolean;
+}
+
+export const keptChoice = (id: KeptLayout['id']): string => `kept/${id}`;
+
+/** The layout of Operate, or of replays, in this browser: which one, how it was changed, what can be undone. */
+export class Arrangement {
+  #now = $state.raw<Standing>(shipped(STANDARD));
+  #past = $state.raw<readonly Standing[]>([]);
+  arranging = $state(false);
+  /** what was done last or could not be done, in words */
+  told = $state('');
+  /** the layouts that the server keeps */
+  kept = $state.raw<readonly KeptLayout[]>([]);
+  readonly #arranger = new Arranger(describe);
+  readonly #key: string;
+
+  constructor(where: 'live' | 'replay') {
+    this.#key = `mucat-layout-${where}`;
+    this.#recall();
+  }
+
+  get panels(): readonly Placed[] {
+    return this.#now.panels;
+  }
+
+  get choice(): string {
+    return this.#now.choice;
+  }
+
+  get title(): string {
+    return this.#now.title;
+  }
+
+  get changed(): boolean {
+    return this.#now.changed;
+  }
+
+  get undoable(): boolean {
+    return this.#past.length > 0;
+  }
+
+  get document(): Layout {
+    return { format: FORMAT, version: VERSION, panels: this.panels };
+  }
+
+  /** What would come of it; nothing is changed yet. */
+  try(change: (arranger: Arranger, panels: readonly Placed[]) => Arranged): Arranged {
+    return change(this.#arranger, this.panels);
+  }
+
+  /** Change the layout, or tell why not. Returns whether it was. */
+  do(change: (arranger: Arranger, panels: readonly Placed[]) => Arranged): boolean {
+    const done = this.try(change);
+    this.told = 'refused' in done ? done.refused : done.told;
+    if ('refused' in done) return false;
+    this.#become({ ...this.#now, panels: done.panels, changed: true });
+    return true;
+  }
+
+  /** Put a panel of this kind in. Returns its id; null where there is no room. */
+  add(panel: string): string | null {
+    let id = panel;
+    for (let number = 2; this.panels.some((one) => one.id === id); number += 1) id = `${panel} ${number}`;
+    const added = { id, panel, ...(panel === CHART ? { chart: { signals: [], seconds: 60 } } : {}) };
+    return this.do((arranger, panels) => arranger.add(panels, added, describe(panel).size)) ? id : null;
+  }
+
+  /** Another chart in the place of a panel's own. */
+  setChart(id: string, chart: ShownChart): void {
+    const panels = this.panels.map((one) => (one.id === id ? { ...one, chart } : one));
+    this.#become({ ...this.#now, panels, changed: true });
+  }
+
+  undo(): void {
+    const before = this.#past.at(-1);
+    if (before === undefined) return;
+    this.#past = this.#past.slice(0, -1);
+    this.#now = before;
+    this.told = 'Undone.';
+    this.#remember();
+  }
+
+  readonly reset = (): void => this.#apply(shipped(STANDARD));
+
+  /** Show another layout. Returns why not, in words; null where it is shown. */
+  async choose(choice: string): Promise<string | null> {
+    if (SHIPPED.some(({ name }) => name === choice)) {
+      this.#apply(shipped(choice));
+      return null;
+    }
+    const answer = await api.layout(Number(choice.replace('kept/', '')));
+    if ('problem' in answer) return answer.problem;
+    return this.take(answer.value.document, answer.value.name, choice);
+  }
+
+  /** Show what this text or object holds. Returns why not, in words; null where it is shown. */
+  take(given: unknown, title: string, choice = ''): string | null {
+    const layout = readLayout(given);
+    if ('problem' in layout) return layout.problem;
+    this.#apply({ panels: layout.panels, choice, title, changed: choice === '' });
+    return null;
+  }
+
+  /** Keep it on the server under this name. Returns why not, in words; null where it is kept. */
+  async save(name: string): Promise<string | null> {
+    const answer = await api.saveLayout(name, this.document);
+    if ('problem' in answer) return answer.problem;
+    this.#now = { ...this.#now, choice: keptChoice(answer.value.id), title: answer.value.name, changed: false };
+    this.told = `Saved as “${answer.value.name}”.`;
+    this.#remember();
+    await this.list();
+    return null;
+  }
+
+  /** Delete a layout from the server; what is shown goes on being shown. */
+  async delete(id: KeptLayout['id']): Promise<string | null> {
+    const problem = await api.deleteLayout(id);
+    if (problem === null && this.choice === keptChoice(id)) this.#now = { ...this.#now, choice: '', changed: true };
+    this.#remember();
+    await this.list();
+    return problem;
+  }
+
+  /** Ask the server which layouts it keeps. */
+  async list(): Promise<void> {
+    const answer = await api.layouts();
+    if ('value' in answer) this.kept = answer.value;
+  }
+
+  /** Panels in the order in which they are read, which must not change under the hand that moves them. */
+  finish(): void {
+    this.arranging = false;
+    this.told = '';
+    this.#now = { ...this.#now, panels: inReadingOrder(this.panels) };
+    this.#remember();
+  }
+
+  #apply(standing: Standing): void {
+    this.#become({ ...standing, panels: inReadingOrder(standing.panels) });
+    this.told = `“${standing.title}” is shown.`;
+  }
+
+  #become(next: Standing): void {
+    this.#past = [...this.#past, this.#now].slice(-UNDO_MOST);
+    this.#now = next;
+    this.#remember();
+  }
+
+  #remember(): void {
+    const { choice, title, changed } = this.#now;
+    try {
+      localStorage.setItem(this.#key, JSON.stringify({ choice, title, changed, document: this.document }));
+    } catch {
+      // Storage may be forbidden; then the layout lasts as long as the page.
+    }
+  }
+
+  #recall(): void {
+    const kept = recall(this.#key);
+    if (kept === null) return;
+    const { choice, title, changed, document } = kept;
+    // What comes with the program is as this version has it, and as this screen wants it.
+    if (changed === false && SHIPPED.some(({ name }) => name === choice)) {
+      this.#now = shipped(String(choice));
+      return;
+    }
+    const layout = readLayout(document);
+    if ('problem' in layout) this.told = layout.problem;
+    else if (typeof choice === 'string' && typeof title === 'string') {
+      this.#now = { panels: layout.panels, choice, title, changed: changed === true };
+    }
+  }
+}
+
+/** What this browser keeps under this key; null where it keeps nothing, or may not. */
+function recall(key: string): Partial<Record<'choice' | 'title' | 'changed' | 'document', unknown>> | null {
+  try {
+    return JSON.parse(localStorage.getItem(key) ?? 'null') as ReturnType<typeof recall>;
+  } catch {
+    return null;
+  }
+}
+
+function shipped(choice: string): Standing {
+  const found = SHIPPED.find(({ name }) => name === choice);
+  if (found === undefined) throw new RangeError(`no layout ${choice}`);
+  return { panels: inReadingOrder(found.layout().panels), choice, title: found.title, changed: false };
+}
+
+function inReadingOrder(panels: readonly Placed[]): readonly Placed[] {
+  return [...panels].sort((one, other) => one.y - other.y || one.x - other.x);
+}
+
+export const [useArrangement, provideArrangement] = createContext<Arrangement>();

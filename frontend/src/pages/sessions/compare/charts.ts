@@ -1,0 +1,109 @@
+/** Which signals share a chart, and how they are drawn in it. */
+import type { Signal } from '../../../api';
+import type { ChoiceGroup } from '../../../parts/choices';
+
+export interface ChartSignal {
+  readonly signal: Signal;
+  /** wanted, not measured: drawn dashed */
+  readonly wanted: boolean;
+}
+
+export interface Chart {
+  readonly title: string;
+  readonly unit: string;
+  /** values grow downwards */
+  readonly downwards: boolean;
+  readonly signals: readonly ChartSignal[];
+}
+
+export interface Preset {
+  readonly name: string;
+  readonly hint: string;
+  readonly signals: readonly string[];
+}
+
+export const DEPTH = 'depth.depth';
+export const SET_POINT = 'control.set_point';
+
+export const PRESETS: readonly Preset[] = [
+  { name: 'Depth', hint: 'depth and set point', signals: [DEPTH, SET_POINT] },
+  {
+    name: 'Figures 14 to 16',
+    hint: 'as in the thesis: depth and set point, their difference, the command, what the camera detects',
+    signals: [DEPTH, SET_POINT, 'control.error', 'navigation.z', 'detection.area'],
+  },
+  {
+    name: 'Fins',
+    hint: 'wanted and measured angle of each fin',
+    signals: [0, 1, 2, 3].flatMap((fin) => [`motor.angle_${fin}`, `motor.wanted_${fin}`]),
+  },
+];
+
+const FINS = ['front right', 'back right', 'back left', 'front left'];
+const DEPTHS = new Set([
+  DEPTH,
+  SET_POINT,
+  'control.depth',
+  'state.set_point',
+  'state.set_point_default',
+  'state.set_point_detected',
+  'truth.position_2',
+]);
+const TITLES: Readonly<Record<string, string>> = {
+  'control.error': 'Depth error',
+  'control.output': 'Command downwards',
+  'navigation.z': 'Command downwards',
+  'detection.area': 'Colour detected, share of the picture',
+  'detection.seen': 'Colour detected',
+  'status.battery': 'Battery',
+};
+
+/** The charts of these signals, from top to bottom in the order in which they were chosen. */
+export function chartsOf(signals: readonly Signal[]): Chart[] {
+  const charts = new Map<string, { title: string; unit: string; downwards: boolean; signals: ChartSignal[] }>();
+  for (const signal of signals) {
+    const title = titleOf(signal);
+    const key = `${title} ${signal.unit}`;
+    const chart = charts.get(key) ?? { title, unit: signal.unit, downwards: DEPTHS.has(signal.name), signals: [] };
+    chart.signals.push({ signal, wanted: isWanted(signal) });
+    charts.set(key, chart);
+  }
+  return [...charts.values()];
+}
+
+/** The signals of all sessions together, by topic; of those that not every session has it is said. */
+export function gather(lists: readonly (readonly Signal[])[]): ChoiceGroup[] {
+  const found = new Map(lists.flat().map((signal) => [signal.name, signal]));
+  const topics = new Set([...found.values()].map(({ topic }) => topic));
+  return [...topics].map((topic) => ({
+    topic,
+    meaning: '',
+    choices: [...found.values()]
+      .filter((signal) => signal.topic === topic)
+      .map(({ name, column, unit, meaning }) => {
+        const having = lists.filter((list) => list.some((signal) => signal.name === name)).length;
+        const note = having < lists.length ? { note: `in ${having} of ${lists.length} sessions` } : {};
+        return { name, label: columnWords(column), unit, meaning, ...note };
+      }),
+  }));
+}
+
+/** A signal in words, such as "angle 2". */
+export function columnWords(column: string): string {
+  return column.replaceAll('_', ' ');
+}
+
+function titleOf({ name, topic, column, meaning }: Signal): string {
+  if (DEPTHS.has(name)) return 'Depth';
+  const fin = /^(angle|wanted|drive)_([0-3])$/.exec(column);
+  if (topic === 'motor' && fin) return `${fin[1] === 'drive' ? 'Drive' : 'Fin'}, ${FINS[Number(fin[2])] ?? ''}`;
+  return TITLES[name] ?? `${capital(columnWords(column))}, ${topic}${meaning ? `: ${meaning}` : ''}`;
+}
+
+function isWanted({ column }: Signal): boolean {
+  return /^(set_point|wanted)/.test(column);
+}
+
+function capital(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
