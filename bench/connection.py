@@ -6,8 +6,8 @@ from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Heartbeat, Navigation
-from robot_runtime.link.connection import Connection
-from robot_runtime.link.session import Message
+from robot_runtime.link.serial_link import SerialLink
+from robot_runtime.link.session import BoardMessage
 from robot_runtime.simulation.boards.emulator_process import BoardProcess
 from tests.board.host import BAUD, FIRMWARE
 from tests.board.rig import PROGRAM
@@ -29,11 +29,11 @@ def measure() -> dict[str, float]:
 
     `wakings` is the part of it that a process takes which wakes as often and does nothing else.
     """
-    heard: list[Message] = []
+    heard: list[BoardMessage] = []
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         with BoardProcess(PROGRAM, FIRMWARE / "robot.elf", place / "tty", place / "socket"):
-            connection = Connection(str(place / "tty"), BAUD, SteadyClock(), 1, heard.extend, lambda: None)
+            connection = SerialLink(str(place / "tty"), BAUD, SteadyClock(), 1, heard.extend, lambda: None)
             connection.start()
             try:
                 _await(connection)
@@ -44,7 +44,7 @@ def measure() -> dict[str, float]:
     return best | {"link.cpu_percent.wakings": _idle(best["link.wakings_per_s"])}
 
 
-def _await(connection: Connection) -> None:
+def _await(connection: SerialLink) -> None:
     end = time.monotonic() + _CONNECT_SECONDS
     while not connection.connected:
         if time.monotonic() > end:
@@ -52,7 +52,7 @@ def _await(connection: Connection) -> None:
         time.sleep(_PERIOD)
 
 
-def _talk(connection: Connection, heard: list[Message]) -> dict[str, float]:
+def _talk(connection: SerialLink, heard: list[BoardMessage]) -> dict[str, float]:
     heard.clear()
     command = Navigation(x=0.5, y=0.0, z=1.0, roll=0.0, pitch=0.0, yaw=-0.5)
     began, cpu, wakings = time.monotonic(), _cpu(), _wakings()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bench.chip import build_for
 from robot_runtime.contract.packets import Navigation, Start, Status, StatusFlag, encode
-from robot_runtime.link.session import NO_BOOT, Session
+from robot_runtime.link.session import NO_BOOT, LinkSession
 from tests.board.host import FIRMWARE
 from tests.board.rig import Rig
 
@@ -88,7 +88,7 @@ class _Host:
         self.status: Status | None = None
         self._rig = rig
         self._byte_time = _BITS_PER_BYTE / (_PACE * baud)
-        self._session = Session(1, baud)
+        self._session = LinkSession(1, baud)
         self._epochs = cycle([_OTHER_BOOT] + [NO_BOOT] * _VOID_STARTS)
         self._line_free = self.now
 

@@ -18,8 +18,8 @@ from struct import Struct
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.topics import BY_NAME, TIME
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import Cache
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from server.app import create_app
 from server.http.serving import make_server, open_socket
 from server.platform.schema import prepare
@@ -68,8 +68,8 @@ async def _serve(data: Path, port: int, page: Path, ended: threading.Event) -> N
 
 
 def _source(data: Path, ended: threading.Event) -> None:
-    messages = Messages("turtle", listen=[f"unixsock-stream/{DataFolder(data).runtime_socket}"])
-    cache = Cache(messages.run, SteadyClock())
+    messages = ZenohTransport("turtle", listen=[f"unixsock-stream/{DataFolder(data).runtime_socket}"])
+    cache = ReplayCache(messages.run, SteadyClock())
     messages.answer_bytes("query/blocks", cache.answer)
     outbox = Outbox(messages.publish, lambda _: False, cache)
 

@@ -13,7 +13,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.topics import Block, read_blocks, read_rows
 from robot_runtime.contract.vision_settings import COLOURS, VisionSettings
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
 from robot_runtime.vision.picture import Picture
@@ -83,7 +83,7 @@ def _latencies() -> dict[str, float]:
         runtime = f"unixsock-stream/{data}/run/runtime.sock"
         with (
             Stack(data, "--config", str(config)),
-            Messages("turtle", connect=[runtime], client=True) as robot,
+            ZenohTransport("turtle", connect=[runtime], client=True) as robot,
         ):
             ticks: list[Block] = []
             looks: list[Block] = []

@@ -10,8 +10,8 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.config import ConfigError, load
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.transport.zenoh_transport import Messages
-from robot_runtime.vision.settings_file import Kept
+from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
 def main() -> int:
@@ -22,11 +22,11 @@ def main() -> int:
         end_with_parent()
     try:
         config = load(options.config)
-        with Messages(
+        with ZenohTransport(
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
             port = options.port or config.link.port
-            kept = Kept(options.data / "vision.json")
+            kept = VisionSettingsFile(options.data / "vision.json")
             robot = Robot(config, port, messages, heartbeat=options.heartbeat, kept_vision=kept)
             robot.answer()
             if options.server_lock is not None:

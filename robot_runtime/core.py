@@ -43,23 +43,23 @@ from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.experiments import Experiments
-from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import PILOT_LOOK
 from robot_runtime.control.supervisor import Supervisor
-from robot_runtime.link.conversation import Conversation
 from robot_runtime.link.dissection import dissect
+from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.link.pace import periods
-from robot_runtime.link.session import Message
+from robot_runtime.link.session import BoardMessage
 from robot_runtime.parameters.board import BoardParameters
 from robot_runtime.parameters.providers import runtime_entries
 from robot_runtime.parameters.registry import Registry
 from robot_runtime.transport.bus import Bus
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera
-from robot_runtime.vision.node import Vision
+from robot_runtime.vision.node import VisionNode
 
 log = logging.getLogger(__name__)
 
@@ -94,13 +94,13 @@ class Core:
         config: Config,
         clock: Clock,
         run: str,
-        line: Conversation,
+        line: LinkDriver,
         outbox: Outbox,
         *,
         watched: Callable[[str], bool],
         open_camera: Callable[[], Camera] | None = None,
-        messages: Messages | None = None,
-        loop: InTheLoop | None = None,
+        messages: ZenohTransport | None = None,
+        loop: HilFeed | None = None,
         heartbeat: float | None = None,
     ) -> None:
         self.config = config
@@ -127,7 +127,7 @@ class Core:
         )
         self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
         self.experiments = Experiments(clock, self._tell_experiment)
-        self.vision = Vision(
+        self.vision = VisionNode(
             config.vision,
             clock,
             self._take_detection,
@@ -342,7 +342,7 @@ class Core:
     def _navigate(self, command: Navigation) -> None:
         self.line.send(command)
 
-    def take_messages(self, messages: list[Message]) -> None:
+    def take_messages(self, messages: list[BoardMessage]) -> None:
         """Publish what the board said, and send it on."""
         watch = self.supervisor.watch
         watch.see_messages()

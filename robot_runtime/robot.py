@@ -9,15 +9,15 @@ from robot_runtime.commands import Commands
 from robot_runtime.config import Config, ConfigError
 from robot_runtime.contract.documents import Event
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.core import PUBLISH_EVERY, Core
-from robot_runtime.link.connection import Connection
+from robot_runtime.link.serial_link import SerialLink
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import Cache
-from robot_runtime.transport.zenoh_transport import Messages
-from robot_runtime.vision.settings_file import Kept
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
 class Robot(Core):
@@ -30,24 +30,24 @@ class Robot(Core):
         self,
         config: Config,
         port: str,
-        messages: Messages,
+        messages: ZenohTransport,
         clock: Clock | None = None,
         heartbeat: float | None = None,
-        kept_vision: Kept | None = None,
+        kept_vision: VisionSettingsFile | None = None,
     ) -> None:
         clock = clock or SteadyClock()
-        self.cache = Cache(messages.run, clock)
+        self.cache = ReplayCache(messages.run, clock)
         self._messages = messages
         self._closing = False
         self._ending = threading.Event()
         # Any number will do that differs from the last run's.
         epoch = time.time_ns() // 1_000_000 & 0xFFFF
-        self.connection = Connection(
+        self.connection = SerialLink(
             port, config.link.baud, clock, epoch, self.take_messages, self.link_changed
         )
-        self.loop: InTheLoop | None = None
+        self.loop: HilFeed | None = None
         if config.robot.mode == "hil":
-            self.loop = InTheLoop(clock, self.connection.send, self.tell)
+            self.loop = HilFeed(clock, self.connection.send, self.tell)
             hear = self.loop.hear
             messages.subscribe("sense", lambda _, data: hear(data))
         outbox = Outbox(messages.publish, messages.watched, self.cache)

@@ -6,7 +6,7 @@ GRAVITY = 9.80665
 """m/s²: the standard acceleration of free fall."""
 
 
-def turned(attitude: tuple[float, float, float, float]) -> tuple[float, float, float]:
+def euler_angles(attitude: tuple[float, float, float, float]) -> tuple[float, float, float]:
     """Heading, pitch and roll, rad, of a unit quaternion w, x, y, z from body to world.
 
     Turned about down by the heading, then about right, then about forward (T. I. Fossen, Handbook of Marine
@@ -20,10 +20,12 @@ def turned(attitude: tuple[float, float, float, float]) -> tuple[float, float, f
     )
 
 
-def sinking(attitude: tuple[float, float, float, float], force: tuple[float, float, float]) -> float:
+def heave_acceleration(
+    attitude: tuple[float, float, float, float], force: tuple[float, float, float]
+) -> float:
     """How a hull gathers speed downwards, m/s², that feels this specific force (m/s², body axes).
 
-    Attitude as in `turned`. Near the poles 0.026 m/s² too little, at the equator as much too much.
+    Attitude as in `euler_angles`. Near the poles 0.026 m/s² too little, at the equator as much too much.
     """
     w, x, y, z = attitude
     forward, right, down = force
@@ -33,6 +35,6 @@ def sinking(attitude: tuple[float, float, float, float], force: tuple[float, flo
     return turned_down + GRAVITY
 
 
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """The angle's equal between -π and π."""
     return remainder(angle, 2 * pi)

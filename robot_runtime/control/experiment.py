@@ -12,7 +12,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.controllers.base import GainLimits
-from robot_runtime.control.loop import Loan
+from robot_runtime.control.loop import LoopOverride
 
 SETTLED_SECONDS = 2.0
 """s for which the value has to have stayed about the start before the step."""
@@ -58,7 +58,7 @@ class RelaySettings:
     high: float
 
 
-class Experiment(ABC):
+class LoopExperiment(ABC):
     """Base of both: `look` before each tick until it is `over`; `text` says why where it did not complete."""
 
     kind: ClassVar[ExperimentKind]
@@ -80,7 +80,7 @@ class Experiment(ABC):
 
     @property
     @abstractmethod
-    def loan(self) -> Loan:
+    def loan(self) -> LoopOverride:
         """What the loop is to do from now on."""
 
     @property
@@ -112,7 +112,7 @@ class Experiment(ABC):
         self.phase, self.phase_since = phase, self._clock.now()
 
 
-class StepExperiment(Experiment):
+class StepExperiment(LoopExperiment):
     """A step of the set point."""
 
     kind = "step"
@@ -123,9 +123,11 @@ class StepExperiment(Experiment):
         self._away = self._began
 
     @property
-    def loan(self) -> Loan:
+    def loan(self) -> LoopOverride:
         """Another set point for the loop's own controller."""
-        return Loan(set_point=self._settings.start if self.phase == "settling" else self._settings.target)
+        return LoopOverride(
+            set_point=self._settings.start if self.phase == "settling" else self._settings.target
+        )
 
     def _look(self, value: float) -> None:
         wanted, now = self._settings, self._clock.now()
@@ -142,7 +144,7 @@ class StepExperiment(Experiment):
                 self.end("complete")
 
 
-class RelayExperiment(Experiment):
+class RelayExperiment(LoopExperiment):
     """A relay in the controller's place (Åström and Hägglund, Automatica 20, 1984).
 
     A load, here buoyancy, makes one half of each cycle longer than the other, and period and amplitude wrong
@@ -155,14 +157,14 @@ class RelayExperiment(Experiment):
     def __init__(self, settings: RelaySettings, clock: Clock) -> None:
         super().__init__(clock, settings.low, settings.high)
         self._settings = settings
-        self._loan = Loan(_Relay(self), settings.set_point)
+        self._loan = LoopOverride(_Relay(self), settings.set_point)
         self._side = 0.0
         self._switched = self._began
         self._forth = 0.0
         self._balancing = 0
 
     @property
-    def loan(self) -> Loan:
+    def loan(self) -> LoopOverride:
         """The relay, about its set point."""
         return self._loan
 

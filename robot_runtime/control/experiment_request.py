@@ -7,7 +7,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.config import Range
 from robot_runtime.control.experiment import (
-    Experiment,
+    LoopExperiment,
     RelayExperiment,
     RelaySettings,
     StepExperiment,
@@ -25,7 +25,7 @@ HYSTERESIS_SHARE = 0.25
 
 def read_experiment(
     question: Mapping[str, Any], loops: Mapping[str, ControlLoop], clock: Clock
-) -> tuple[int, ControlLoop, Experiment]:
+) -> tuple[int, ControlLoop, LoopExperiment]:
     """Its number, its loop, and itself. Raises Refused with what is wrong."""
     number, name, kind = question.get("number"), question.get("loop"), question.get("kind")
     if type(number) is not int:
@@ -39,7 +39,7 @@ def read_experiment(
     return number, loop, make(question, loop.limits, clock)
 
 
-def _step(question: Mapping[str, Any], loop: Range, clock: Clock) -> Experiment:
+def _step(question: Mapping[str, Any], loop: Range, clock: Clock) -> LoopExperiment:
     low, high = _limits(question)
     settings = StepSettings(
         start=_between(question, "start", loop),
@@ -57,7 +57,7 @@ def _step(question: Mapping[str, Any], loop: Range, clock: Clock) -> Experiment:
     return StepExperiment(settings, clock)
 
 
-def _relay(question: Mapping[str, Any], loop: Range, clock: Clock) -> Experiment:
+def _relay(question: Mapping[str, Any], loop: Range, clock: Clock) -> LoopExperiment:
     low, high = _limits(question)
     cycles = _between(question, "cycles", CYCLES)
     if cycles != round(cycles):

@@ -4,10 +4,9 @@ import threading
 from collections.abc import Callable
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Experiment as Told
-from robot_runtime.contract.documents import Mode
-from robot_runtime.control.attitude import wrapped
-from robot_runtime.control.experiment import Experiment
+from robot_runtime.contract.documents import Experiment, Mode
+from robot_runtime.control.attitude import wrap_angle
+from robot_runtime.control.experiment import LoopExperiment
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.errors import Refused
 
@@ -22,11 +21,11 @@ _LEFT: dict[Mode, str] = {
 class Experiments:
     """`tell` takes each document. `tick` belongs to the control loop, the rest to any thread."""
 
-    def __init__(self, clock: Clock, tell: Callable[[Told], None]) -> None:
+    def __init__(self, clock: Clock, tell: Callable[[Experiment], None]) -> None:
         self._clock = clock
         self._tell = tell
         self._lock = threading.Lock()
-        self._running: tuple[int, ControlLoop, Experiment] | None = None
+        self._running: tuple[int, ControlLoop, LoopExperiment] | None = None
         self._told: tuple[object, ...] = ()
         self._due = 0.0
 
@@ -36,7 +35,7 @@ class Experiments:
         if running is not None:
             raise Refused(f"An experiment runs on the {running[1].name}. Wait for its end, or stop it first.")
 
-    def begin(self, number: int, loop: ControlLoop, experiment: Experiment) -> None:
+    def begin(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
         """Run it from the next tick on. Raises Refused while another runs."""
         with self._lock:
             self.require_none()
@@ -58,20 +57,22 @@ class Experiments:
             experiment.end("stopped", _LEFT.get(mode, "The robot was disarmed."))
         elif loop.measured is not None and not experiment.over:
             near = experiment.middle
-            experiment.look(loop.measured if loop.name == "depth" else near + wrapped(loop.measured - near))
+            experiment.look(
+                loop.measured if loop.name == "depth" else near + wrap_angle(loop.measured - near)
+            )
         loop.lent = None if experiment.over else experiment.loan
         self._tell_changes(number, loop, experiment)
         if experiment.over:
             self._running = None
 
-    def _tell_changes(self, number: int, loop: ControlLoop, experiment: Experiment) -> None:
+    def _tell_changes(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
         now = self._clock.now()
         changed = (number, experiment.phase, experiment.cycles, experiment.bias)
         if changed == self._told and now < self._due:
             return
         self._told, self._due = changed, now + TELL_EVERY
         self._tell(
-            Told(
+            Experiment(
                 time=now,
                 number=number,
                 kind=experiment.kind,

@@ -12,7 +12,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import Depth, Hello, Imu, Packet, SensorFault, Status, StatusFlag
 from robot_runtime.control.faults import BY_NAME, LOOK
-from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.link.pace import frames_airtime, stale_after
 
@@ -34,7 +34,7 @@ _STATUS_STALE = 0.5
 _NEVER = float("-inf")
 
 
-class Line(Protocol):
+class BoardLink(Protocol):
     """What is asked of the connection to the board."""
 
     text: str
@@ -55,15 +55,15 @@ class Line(Protocol):
         ...
 
 
-class Watch:
+class FaultDetector:
     """`see_...` say what came; `wrong` and `refusals` judge it. Without `heartbeat` no server is expected."""
 
     def __init__(
         self,
         clock: Clock,
-        line: Line,
+        line: BoardLink,
         pilot: Pilot,
-        loop: InTheLoop | None,
+        loop: HilFeed | None,
         heartbeat: float | None,
         unsettled: Callable[[], list[str]],
     ) -> None:

@@ -15,7 +15,7 @@ Action = Literal["all-stop", "neutral", "drop set points", "alarm only"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fault:
+class FaultRule:
     """One row of the table; `limit` is the s within which it is noticed, on a line of full speed."""
 
     name: str
@@ -39,7 +39,7 @@ _CABLE = "The board lost its power, hangs, or a wire of the serial line is loose
 _SENSOR = "Look at its cable; reset the board. Arm again once Operate shows a depth that moves."
 
 FAULTS = (
-    Fault(
+    FaultRule(
         name="pilot_quiet",
         severity="caution",
         limit=0.5,
@@ -48,7 +48,7 @@ FAULTS = (
         cause="The page is hidden or closed, the gamepad is off, or the network is slow.",
         remedy="Go back to the page and move the sticks, or switch to automatic.",
     ),
-    Fault(
+    FaultRule(
         name="pilot_lost",
         severity="alarm",
         limit=3.0,
@@ -57,7 +57,7 @@ FAULTS = (
         cause="The page is hidden or closed, the gamepad is off, or the network is gone.",
         remedy="Look at the network and the gamepad, then arm again.",
     ),
-    Fault(
+    FaultRule(
         name="server_silent",
         severity="alarm",
         limit=5.0,
@@ -66,7 +66,7 @@ FAULTS = (
         cause="The server ended or hangs, or this computer is overloaded.",
         remedy="It is started again by itself. Look at its log if that repeats.",
     ),
-    Fault(
+    FaultRule(
         name="board_silent",
         severity="alarm",
         limit=1.0,
@@ -75,7 +75,7 @@ FAULTS = (
         cause=_CABLE,
         remedy="The board stops the fins by itself. Look at power and cable.",
     ),
-    Fault(
+    FaultRule(
         name="board_restarted",
         severity="alarm",
         limit=1.0,
@@ -84,7 +84,7 @@ FAULTS = (
         cause="Its watchdog ended a main loop that hung, or its supply broke down.",
         remedy="The console says why it started. Look at the battery; then arm again.",
     ),
-    Fault(
+    FaultRule(
         name="board_disarmed",
         severity="alarm",
         limit=1.0,
@@ -93,7 +93,7 @@ FAULTS = (
         cause="It heard nothing valid of this computer for 1 s, or its battery is low.",
         remedy="The console says why. Look at the serial line and the load of this computer.",
     ),
-    Fault(
+    FaultRule(
         name="runtime_stalled",
         severity="alarm",
         limit=1.0,
@@ -102,7 +102,7 @@ FAULTS = (
         cause="This computer is overloaded, or somebody suspended the process.",
         remedy="The board had stopped the fins by itself. Look at the load of this computer; then arm again.",
     ),
-    Fault(
+    FaultRule(
         name="depth_stale",
         severity="alarm",
         limit=0.5,
@@ -112,7 +112,7 @@ FAULTS = (
         cause="The pressure sensor does not answer, or the serial line loses too much.",
         remedy=_SENSOR,
     ),
-    Fault(
+    FaultRule(
         name="depth_frozen",
         severity="alarm",
         limit=0.5,
@@ -122,7 +122,7 @@ FAULTS = (
         cause="The pressure sensor hangs; in simulated water: the simulator ended.",
         remedy=_SENSOR,
     ),
-    Fault(
+    FaultRule(
         name="depth_range",
         severity="alarm",
         limit=0.5,
@@ -132,7 +132,7 @@ FAULTS = (
         cause="The pressure sensor is damaged, or the board was started under water.",
         remedy="Switch the board off and on at the surface, so that it learns the surface anew.",
     ),
-    Fault(
+    FaultRule(
         name="imu_stale",
         severity="alarm",
         limit=0.2,
@@ -141,7 +141,7 @@ FAULTS = (
         cause="It hangs, or its wires on the I2C bus are loose.",
         remedy="Look at its cable; reset the board.",
     ),
-    Fault(
+    FaultRule(
         name="capsized",
         severity="alarm",
         limit=2.0,
@@ -150,7 +150,7 @@ FAULTS = (
         cause="Its trim is wrong, it holds on to something, or a fin fails.",
         remedy="Let it rise and take it out. Look at trim and fins.",
     ),
-    Fault(
+    FaultRule(
         name="vision_stale",
         severity="caution",
         limit=1.0,
@@ -159,7 +159,7 @@ FAULTS = (
         cause="The camera failed, or this computer is too slow for the chosen rate.",
         remedy="Look at the camera on the Operate page; lower its rate.",
     ),
-    Fault(
+    FaultRule(
         name="not_rising",
         severity="alarm",
         limit=20.0,
@@ -169,7 +169,7 @@ FAULTS = (
         cause="It holds on to something, took in water, or is trimmed too heavy.",
         remedy="Fetch it, or drive it up by hand.",
     ),
-    Fault(
+    FaultRule(
         name="battery_low",
         severity="alarm",
         limit=20.5,
@@ -179,7 +179,7 @@ FAULTS = (
         cause="It is empty, or old.",
         remedy="Let the robot rise, and charge it.",
     ),
-    Fault(
+    FaultRule(
         name="fin_failing",
         severity="caution",
         limit=0.5,
@@ -188,7 +188,7 @@ FAULTS = (
         cause="Its encoder or its H-bridge is loose, or the fin is blocked.",
         remedy="STOP, and look at that fin; then check the fins.",
     ),
-    Fault(
+    FaultRule(
         name="simulator_silent",
         severity="alarm",
         limit=0.6,
@@ -198,7 +198,7 @@ FAULTS = (
         cause="It ended, or the network between is down.",
         remedy="Look whether it runs and whether the network between is well.",
     ),
-    Fault(
+    FaultRule(
         name="control_failed",
         severity="alarm",
         limit=0.1,

@@ -18,7 +18,7 @@ SILENCE = 0.5
 """s without a word after which the simulator counts as lost; the board gives up after half of it."""
 
 
-class InTheLoop:
+class HilFeed:
     """The runtime's end of it. `hear` may be called from any thread; `tick` runs with the control loop."""
 
     def __init__(self, clock: Clock, send: Callable[[Packet], object], tell: Callable[[Event], None]) -> None:

@@ -5,7 +5,7 @@ from math import degrees, pi
 from typing import Literal
 
 from robot_runtime.config import SET_POINT, Range
-from robot_runtime.control.attitude import wrapped
+from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import Refused
 
@@ -23,7 +23,7 @@ SET_POINTS: dict[LoopName, Range] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Loan:
+class LoopOverride:
     """A controller and a set point for a while; None leaves the loop's own."""
 
     controller: Controller | None = None
@@ -46,7 +46,7 @@ class ControlLoop:
         self.controller = next(iter(self.controllers.values()))
         self.on = False
         self.set_point = 0.0
-        self.lent: Loan | None = None
+        self.lent: LoopOverride | None = None
         self.measured: float | None = None
         self.mean: float | None = None
         """Of what was measured since the last tick, where that was more than one value."""
@@ -85,8 +85,8 @@ class ControlLoop:
         if controller.averages and self.mean is not None:
             measured = self.mean
         if self._is_angle:
-            self._counted_on += wrapped(measured - self._counted_on)
-            set_point = self._counted_on + wrapped(set_point - measured)
+            self._counted_on += wrap_angle(measured - self._counted_on)
+            set_point = self._counted_on + wrap_angle(set_point - measured)
             measured = self._counted_on
         controller.down, controller.felt = down, self.felt
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)

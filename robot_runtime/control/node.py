@@ -9,7 +9,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Control, Detection, Document, Event, Mode, Steering, Turning
 from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
-from robot_runtime.control.attitude import sinking, turned
+from robot_runtime.control.attitude import euler_angles, heave_acceleration
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
@@ -234,7 +234,7 @@ class ControlNode:
     def _measure(self) -> float | None:
         """Read what came last; when the depth was taken, if there was one."""
         if self._imu is not None:
-            angles = turned(Imu.from_bytes(self._imu).attitude)
+            angles = euler_angles(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.turning, angles, strict=True):
                 loop.measured = angle
         self.depth.felt = None
@@ -255,7 +255,7 @@ class ControlNode:
         felt = []
         while self._imus:
             imu = Imu.from_bytes(self._imus.popleft())
-            felt.append(sinking(imu.attitude, imu.force))
+            felt.append(heave_acceleration(imu.attitude, imu.force))
         return sum(felt) / len(felt) if felt else None
 
     def _publish(self, now: float, taken: float | None) -> None:

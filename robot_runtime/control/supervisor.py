@@ -8,10 +8,10 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
 from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
 from robot_runtime.control.alarms import Alarms
-from robot_runtime.control.fault_detector import Line, Watch
+from robot_runtime.control.fault_detector import BoardLink, FaultDetector
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.fin_check import FinCheck
-from robot_runtime.control.hil_feed import InTheLoop
+from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.control.transitions import ARMED, Trigger, follow
 from robot_runtime.errors import Refused
@@ -63,9 +63,9 @@ class Supervisor:
     def __init__(
         self,
         clock: Clock,
-        line: Line,
+        line: BoardLink,
         tell: Callable[[Event], None],
-        loop: InTheLoop | None = None,
+        loop: HilFeed | None = None,
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
         unsettled: Callable[[], list[str]] = list,
@@ -73,7 +73,7 @@ class Supervisor:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.watch = Watch(clock, line, self.pilot, loop, heartbeat, unsettled)
+        self.watch = FaultDetector(clock, line, self.pilot, loop, heartbeat, unsettled)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line

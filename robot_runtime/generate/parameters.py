@@ -4,7 +4,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
 from robot_runtime.contract.documents import Parameter
 from robot_runtime.core import Core
-from robot_runtime.link.conversation import Conversation
+from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
 
 _BEGIN, _END = "<!-- parameters: from the code -->\n", "<!-- parameters: end -->\n"
@@ -23,7 +23,7 @@ def weave(text: str) -> str:
 
 def _listed() -> list[Parameter]:
     clock, config = SimulatedClock(), Config()
-    line = Conversation("", config.link.baud, clock, 1, lambda _: None, lambda: None)
+    line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
     robot = Core(config, clock, "", line, outbox, watched=lambda _: False)
     return robot.parameters.listed()

@@ -1,6 +1,6 @@
 """The parts of docs/safety.md that say what the code does: the supervisor's states, and the faults."""
 
-from robot_runtime.control.faults import FAULTS, Fault
+from robot_runtime.control.faults import FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
 
 PARTS = ("states", "faults")
@@ -32,7 +32,7 @@ def _faults() -> str:
     return f"| fault | within | action | alarm | what a person is told |\n|---|---|---|---|---|\n{rows}"
 
 
-def _row(fault: Fault) -> str:
+def _row(fault: FaultRule) -> str:
     action = f"{fault.action}; alarm only by hand" if fault.steered_by else fault.action
     words = f"{fault.what} {fault.cause} *{fault.remedy}*"
     return f"| `{fault.name}` | {fault.limit:g} s | {action} | {fault.severity} | {words} |\n"

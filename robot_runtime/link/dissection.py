@@ -7,7 +7,7 @@ from struct import Struct
 from cobs import cobs
 
 from robot_runtime.contract.packets import FRAME_BYTES_MAX, PACKETS
-from robot_runtime.link.frame_ring import KeptFrame
+from robot_runtime.link.frame_ring import RecordedFrame
 from robot_runtime.link.framing import OPEN
 
 _CRC = Struct("<I")
@@ -32,7 +32,7 @@ class Dissection:
     problem: str
 
 
-def dissect(frame: KeptFrame) -> Dissection:
+def dissect(frame: RecordedFrame) -> Dissection:
     """What is in this frame; never raises."""
     try:
         content = cobs.decode(frame.stuffed)
@@ -85,7 +85,7 @@ def _kinds(messages: bytes) -> tuple[list[str], bool]:
     return kinds, bool(kinds)
 
 
-def _nothing(frame: KeptFrame, problem: str) -> Dissection:
+def _nothing(frame: RecordedFrame, problem: str) -> Dissection:
     return Dissection(
         time=frame.time,
         sent=frame.sent,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 _FRAMES = 100
 
 
-class KeptFrame(NamedTuple):
+class RecordedFrame(NamedTuple):
     """A frame as on the line, without its closing zero; `key` is that of its session, `time` in s."""
 
     time: float
@@ -19,18 +19,18 @@ class FrameRing:
     """Keeps the last hundred frames sent and the last hundred received."""
 
     def __init__(self) -> None:
-        self._sent: deque[KeptFrame] = deque(maxlen=_FRAMES)
-        self._received: deque[KeptFrame] = deque(maxlen=_FRAMES)
+        self._sent: deque[RecordedFrame] = deque(maxlen=_FRAMES)
+        self._received: deque[RecordedFrame] = deque(maxlen=_FRAMES)
 
     def add_sent(self, frame: bytes, key: int, now: float) -> None:
         """Note a frame that was handed to the line."""
-        self._sent.append(KeptFrame(now, True, key, frame.removesuffix(b"\0")))
+        self._sent.append(RecordedFrame(now, True, key, frame.removesuffix(b"\0")))
 
     def add_received(self, frame: bytes, key: int, now: float) -> None:
         """Note what came between two zeros, valid or not."""
-        self._received.append(KeptFrame(now, False, key, frame))
+        self._received.append(RecordedFrame(now, False, key, frame))
 
-    def frames(self) -> list[KeptFrame]:
+    def frames(self) -> list[RecordedFrame]:
         """Both ways in the order of time."""
         return sorted([*self._received, *self._sent], key=lambda frame: frame.time)
 

@@ -10,7 +10,7 @@ from typing import Self
 
 import serial
 
-from robot_runtime.link.conversation import LineError
+from robot_runtime.link.link_driver import LineError
 
 _READ_BYTES = 4096
 _WRITE_SECONDS = 0.25

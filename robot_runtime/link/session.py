@@ -53,7 +53,7 @@ _GOODPUT_OVER = 1.0
 _GARBLED_BYTES = 3 * FRAME_BYTES_MAX
 
 
-class Stage(Enum):
+class SessionStage(Enum):
     """How far the conversation is."""
 
     GREETING = "waiting for the board's greeting"
@@ -61,7 +61,7 @@ class Stage(Enum):
     REFUSED = "the board's firmware was built from other packet definitions"
 
 
-class Message(NamedTuple):
+class BoardMessage(NamedTuple):
     """One packet from the board, not yet decoded; `time` is when it was taken, in host seconds."""
 
     type: int
@@ -81,11 +81,11 @@ def session_key(host_epoch: int, board_epoch: int) -> int:
     return key ^ key >> 16
 
 
-class Session:
+class LinkSession:
     """One conversation on a line of this many baud; `host_epoch` tells it from every other."""
 
     def __init__(self, host_epoch: int, baud: int) -> None:
-        self.stage = Stage.GREETING
+        self.stage = SessionStage.GREETING
         self.board: Hello | None = None
         self.counters = Counters()
         self.ring = FrameRing()
@@ -115,33 +115,33 @@ class Session:
         """Whether something waits for the board's word, or the board for an acknowledgement."""
         return self._channel.urgent
 
-    def receive(self, data: bytes, now: float) -> list[Message]:
+    def receive(self, data: bytes, now: float) -> list[BoardMessage]:
         """The messages that these bytes complete; greetings are handled here and passed on as well."""
         self._now = now
         self._bytes_received += len(data)
-        messages: list[Message] = []
+        messages: list[BoardMessage] = []
         for frame in self._decoder.feed(data):
             self._heard = now
             self._bytes_understood = self._bytes_received
             if frame.open:
                 passed = self._take_open(frame, now)
-            elif self.stage is Stage.REFUSED:
+            elif self.stage is SessionStage.REFUSED:
                 passed = []
             else:
                 # The board has our epoch: it heard, whether or not its answer came.
                 self._establish(now)
                 passed = self._channel.receive(frame, now)
             messages += [
-                Message(type_, payload, self._stamp(type_, payload, now)) for type_, payload in passed
+                BoardMessage(type_, payload, self._stamp(type_, payload, now)) for type_, payload in passed
             ]
         return messages
 
     def poll(self, now: float) -> bytes:
         """What is due to be sent now: a greeting, whatever waits, a heartbeat, or nothing."""
         self._measure_goodput(now)
-        if self.stage is Stage.ESTABLISHED and now - self._heard > self._silence:
-            self.stage = Stage.GREETING
-        if self.stage is not Stage.ESTABLISHED:
+        if self.stage is SessionStage.ESTABLISHED and now - self._heard > self._silence:
+            self.stage = SessionStage.GREETING
+        if self.stage is not SessionStage.ESTABLISHED:
             if self._greeted is not None and now - self._greeted < _GREETING:
                 return b""
             self._greeted = now
@@ -154,7 +154,7 @@ class Session:
 
     def due(self) -> float:
         """When `poll` wants to be called, where nothing else happens."""
-        if self.stage is not Stage.ESTABLISHED:
+        if self.stage is not SessionStage.ESTABLISHED:
             return self._greeted + _GREETING if self._greeted is not None else float("-inf")
         heartbeat = max(self._sent + _HEARTBEAT, self._channel.free_at)
         return min(self._heard + self._silence, heartbeat, self._channel.due())
@@ -166,9 +166,9 @@ class Session:
             if isinstance(packet, Stop):
                 self._void_starts()
                 data += self._send_open(packet, now)
-            elif self.stage is Stage.ESTABLISHED:
+            elif self.stage is SessionStage.ESTABLISHED:
                 self._take_over(packet, now)
-        return data + self.poll(now) if self.stage is Stage.ESTABLISHED else data
+        return data + self.poll(now) if self.stage is SessionStage.ESTABLISHED else data
 
     def statistics(self) -> LinkStatistics:
         """The counters as a record."""
@@ -232,23 +232,27 @@ class Session:
         greetings = [one for one in frame.messages if one[0] == Hello.type]
         for _, payload in greetings:
             self._greet(Hello.from_bytes(payload), now)
-        if not greetings and self.stage is Stage.ESTABLISHED:
-            self.stage, self._greeted = Stage.GREETING, None
+        if not greetings and self.stage is SessionStage.ESTABLISHED:
+            self.stage, self._greeted = SessionStage.GREETING, None
         return greetings
 
     def _greet(self, hello: Hello, now: float) -> None:
-        known = self.board is not None and self.board.epoch == hello.epoch and self.stage is not Stage.REFUSED
+        known = (
+            self.board is not None
+            and self.board.epoch == hello.epoch
+            and self.stage is not SessionStage.REFUSED
+        )
         self.board = hello
         if hello.definitions != DEFINITIONS_HASH:
             self._begin_anew(hello)
-            self.stage = Stage.REFUSED
+            self.stage = SessionStage.REFUSED
         elif not known:
             self._begin_anew(hello)
         else:
             self._establish(now)
 
     def _begin_anew(self, hello: Hello) -> None:
-        self.stage = Stage.GREETING
+        self.stage = SessionStage.GREETING
         self.counters.messages_discarded += len(self._channel.pending())
         self._decoder.key = session_key(self._epoch, hello.epoch)
         self._channel = Channel(self.baud, hello.credit, self._decoder.key, self.counters)
@@ -256,8 +260,8 @@ class Session:
         self._greeted = None
 
     def _establish(self, now: float) -> None:
-        if self.stage is Stage.GREETING:
-            self.stage = Stage.ESTABLISHED
+        if self.stage is SessionStage.GREETING:
+            self.stage = SessionStage.ESTABLISHED
             if self._greeted is not None:
                 self._greeting_took = now - self._greeted
 

@@ -16,7 +16,7 @@ from robot_runtime.simulation.water.parameters import Parameters
 from robot_runtime.simulation.water.process import Process
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.transport.zenoh_transport import Messages, join
+from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 log = logging.getLogger(__name__)
 
@@ -32,7 +32,7 @@ def main() -> None:
     joined = (
         join(arguments.robot, arguments.connect)
         if arguments.in_the_loop
-        else Messages(arguments.robot, connect=arguments.connect)
+        else ZenohTransport(arguments.robot, connect=arguments.connect)
     )
     with joined as messages:
         simulator = Simulator(Parameters(), arguments.seed)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from robot_runtime.contract.documents import Document
 from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
-from robot_runtime.transport.replay_cache import Cache
+from robot_runtime.transport.replay_cache import ReplayCache
 
 STREAM = "stream"
 
@@ -23,7 +23,10 @@ class Outbox:
     """
 
     def __init__(
-        self, send: Callable[[str, bytes], None], watched: Callable[[str], bool], cache: Cache | None = None
+        self,
+        send: Callable[[str, bytes], None],
+        watched: Callable[[str], bool],
+        cache: ReplayCache | None = None,
     ) -> None:
         self._send = send
         self._watched = watched

@@ -21,7 +21,7 @@ _SIZE = Struct("<I")
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class BacklogReply:
     """The answer to a question for blocks: who sent them, the blocks, oldest first, and what comes next.
 
     `next` are the numbers that the sender gives to the next sample of each topic (by name): what lies between
@@ -46,7 +46,7 @@ class Kept:
             raise LayoutError(f"kept blocks that cannot be read: {problem!r}") from problem
 
 
-class Cache:
+class ReplayCache:
     """The last messages of blocks of the process that is called `run`, bounded in age and in bytes.
 
     Every method may be called from any thread.

@@ -36,7 +36,7 @@ class Subscription:
         self._subscriber.undeclare()  # type: ignore[no-untyped-call]
 
 
-class Messages:
+class ZenohTransport:
     """One process's end of the conversation.
 
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
@@ -150,12 +150,12 @@ class Messages:
         return publisher
 
 
-def join(robot: str, endpoints: Sequence[str]) -> Messages:
+def join(robot: str, endpoints: Sequence[str]) -> ZenohTransport:
     """Join the conversation of a robot elsewhere, as a client; wait until it is there."""
     told = False
     while True:
         try:
-            return Messages(robot, connect=endpoints, client=True)
+            return ZenohTransport(robot, connect=endpoints, client=True)
         except OSError as problem:
             if not told:
                 log.warning("%s; trying again until the robot answers", problem)

@@ -13,7 +13,7 @@ from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import Refused
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.pace import Pace
 
@@ -31,7 +31,7 @@ THUMBNAIL_SECONDS = 2.0
 """s between two small pictures for recordings. The runtime does not know whether anything records."""
 
 
-class Vision:
+class VisionNode:
     """Looks at a settable rate, in a thread of its own that no camera can end.
 
     Every picture gives one Detection: of the wanted colour if it is there, else of what has an action, else
@@ -50,7 +50,7 @@ class Vision:
         watched: Callable[[str], bool],
         tell: Callable[[Event], None],
         open_camera: Callable[[], Camera] | None = None,
-        messages: Messages | None = None,
+        messages: ZenohTransport | None = None,
         on_thumbnail: Callable[[float, bytes], None] | None = None,
     ) -> None:
         self.held: Card | None = None

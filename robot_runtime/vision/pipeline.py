@@ -11,7 +11,7 @@ import cv2
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import Card
@@ -36,7 +36,7 @@ cv2.setNumThreads(1)
 def open_camera(
     config: VisionConfig,
     clock: Clock,
-    messages: Messages | None,
+    messages: ZenohTransport | None,
     card: Callable[[], Card | None],
     on_missing: Callable[[str], None],
 ) -> Camera:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from robot_runtime.contract.scene_picture import read_picture, write_request
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera, CameraError, Frame
 from robot_runtime.vision.cards import Card
 
@@ -29,7 +29,7 @@ class SceneCamera(Camera):
         self,
         width: int,
         height: int,
-        messages: Messages,
+        messages: ZenohTransport,
         card: Callable[[], Card | None],
     ) -> None:
         self._size = (width, height)

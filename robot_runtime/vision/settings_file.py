@@ -8,7 +8,7 @@ from robot_runtime.config import ConfigError, read_value
 from robot_runtime.contract.vision_settings import VisionSettings
 
 
-class Kept:
+class VisionSettingsFile:
     """A file; whole under its name, or not there."""
 
     def __init__(self, path: Path) -> None:

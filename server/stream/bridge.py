@@ -20,8 +20,8 @@ from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
-from robot_runtime.transport.replay_cache import Kept, write_question
-from robot_runtime.transport.zenoh_transport import Messages, NoAnswer, Subscription
+from robot_runtime.transport.replay_cache import BacklogReply, write_question
+from robot_runtime.transport.zenoh_transport import NoAnswer, Subscription, ZenohTransport
 from server.features.sessions.chunks import RECORDED
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import Source
@@ -99,7 +99,7 @@ class Bridge:
         folder = self._settings.data
         try:
             self._messages = await asyncio.to_thread(
-                Messages,
+                ZenohTransport,
                 self._settings.robot,
                 listen=[f"unixsock-stream/{folder.server_socket}"],
                 connect=[f"unixsock-stream/{folder.runtime_socket}"],
@@ -108,13 +108,13 @@ class Bridge:
             raise SetupError(f"The server cannot listen for the robot's runtime: {problem}") from problem
         self._messages.subscribe_runs(STREAM, self._receive)
 
-    async def catch_up(self, names: Iterable[str]) -> dict[str, Kept]:
+    async def catch_up(self, names: Iterable[str]) -> dict[str, BacklogReply]:
         """What the running processes of these names have kept; those that do not answer are left out."""
         asked = [name for name in names if name in self._sources]
         answers = await asyncio.gather(*map(self._contact, asked))
         return {name: kept for name, kept in zip(asked, answers, strict=True) if kept is not None}
 
-    def go_on(self, kept: Mapping[str, Kept]) -> None:
+    def go_on(self, kept: Mapping[str, BacklogReply]) -> None:
         """Deliver what was kept, by the processes' names, and from now on what arrives."""
         for name, source in self._sources.items():
             source.go_on(kept.get(name))
@@ -210,7 +210,7 @@ class Bridge:
         finally:
             self._asking -= not stop
 
-    async def _contact(self, name: str) -> Kept | None:
+    async def _contact(self, name: str) -> BacklogReply | None:
         wanted, kept = self._sources[name].everything(), None
         with suppress(TimeoutError):
             async with asyncio.timeout(CONTACT_SECONDS):
@@ -220,7 +220,7 @@ class Bridge:
 
     async def _ask_kept(
         self, name: str, wanted: Mapping[str, int], seconds: float = KEPT_SECONDS
-    ) -> Kept | None:
+    ) -> BacklogReply | None:
         end = self._loop.time() + seconds
         while self._loop.time() < end:
             try:
@@ -232,8 +232,8 @@ class Bridge:
                 break
         return None
 
-    def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> Kept:
-        return Kept.from_bytes(self._messages.ask_bytes(question, write_question(wanted), seconds))
+    def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> BacklogReply:
+        return BacklogReply.from_bytes(self._messages.ask_bytes(question, write_question(wanted), seconds))
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""

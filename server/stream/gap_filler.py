@@ -9,9 +9,9 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 
 from robot_runtime.contract.topics import Block, Topic
-from robot_runtime.transport.replay_cache import Kept
+from robot_runtime.transport.replay_cache import BacklogReply
 
-Ask = Callable[[Mapping[str, int]], Awaitable[Kept | None]]
+Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]
 """Asks for the blocks from these numbers on, by the topics' names; None where nobody answers."""
 
 
@@ -38,7 +38,7 @@ class Source:
         """The question for all that is kept."""
         return {topic.name: 0 for topic in self.topics}
 
-    def go_on(self, kept: Kept | None) -> None:
+    def go_on(self, kept: BacklogReply | None) -> None:
         """Pass on what the process has kept, where it has told, and then what arrives."""
         self._waits = False
         self._merge(kept)
@@ -80,7 +80,7 @@ class Source:
             kept = await self._ask(self.everything())
         self.go_on(kept)
 
-    def _merge(self, kept: Kept | None) -> None:
+    def _merge(self, kept: BacklogReply | None) -> None:
         waiting, self._waiting = self._waiting, []
         first = waiting[0][0] if waiting else ""
         if kept is None:

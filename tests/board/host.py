@@ -16,7 +16,7 @@ from robot_runtime.contract.packets import (
     Stop,
     decode,
 )
-from robot_runtime.link.session import Session
+from robot_runtime.link.session import LinkSession
 from tests.board.rig import ROOT, Rig
 from tests.line_end import LineEnd
 
@@ -114,7 +114,7 @@ class Host:
     def __init__(self, rig: Rig, baud: int) -> None:
         self.rig = rig
         self.board = rig.board
-        self.session = Session(77, baud)
+        self.session = LinkSession(77, baud)
         self.command: Navigation | None = None
         self.heard: list[tuple[float, Packet]] = []
         self.now = 0.0

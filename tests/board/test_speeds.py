@@ -20,7 +20,7 @@ from robot_runtime.contract.packets import (
     Stop,
 )
 from robot_runtime.link.pace import airtime, periods
-from robot_runtime.link.session import Stage
+from robot_runtime.link.session import SessionStage
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from tests.board.host import TICK, Host
 from tests.board.rig import ROOT, Rig
@@ -52,7 +52,7 @@ def join(built: None, tmp_path: Path) -> Iterator[Join]:  # noqa: ARG001 - the b
 def test_it_does_at_each_speed_what_the_line_carries(join: Join, baud: int) -> None:
     host = join(baud, baud)
     frame = airtime(FRAME_BYTES_MAX, baud)
-    host.until(lambda: host.session.stage is Stage.ESTABLISHED, 0.5 + 4 * frame)
+    host.until(lambda: host.session.stage is SessionStage.ESTABLISHED, 0.5 + 4 * frame)
     # The lines of the start come through beside the telemetry.
     host.until(lambda: count(host.heard, Debug) == 7, 1.0 + 16 * frame)
     host.run(1.0 + 3 * periods(baud)[Status])
@@ -91,7 +91,7 @@ def test_it_does_at_each_speed_what_the_line_carries(join: Join, baud: int) -> N
 def test_a_wrong_speed_is_told_as_such(join: Join, board_baud: int, host_baud: int) -> None:
     host = join(board_baud, host_baud)
     host.until(lambda: host.session.garbled, 5.0)
-    assert host.session.stage is Stage.GREETING
+    assert host.session.stage is SessionStage.GREETING
     assert host.session.statistics().frames_received == 0
 
 

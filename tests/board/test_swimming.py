@@ -16,7 +16,7 @@ from robot_runtime.simulation.water.faults import Fault
 from robot_runtime.simulation.water.parameters import Parameters
 from robot_runtime.simulation.water.process import Process
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.board.host import TICK, Robot, all_of, last, start
 from tests.board.rig import ROOT, build, wait_for
 
@@ -29,10 +29,10 @@ SENSOR_HEIGHT = 0.05
 
 
 @pytest.fixture
-def messages() -> Iterator[Messages]:
+def messages() -> Iterator[ZenohTransport]:
     with (
         tempfile.TemporaryDirectory() as folder,  # short enough for the name of a Unix socket
-        Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made,
+        ZenohTransport("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made,
     ):
         yield made
 
@@ -103,7 +103,7 @@ def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simu
 
 @pytest.mark.usefixtures("built")
 def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
-    tmp_path: Path, water: Simulator, messages: Messages
+    tmp_path: Path, water: Simulator, messages: ZenohTransport
 ) -> None:
     build(ROOT / "firmware", "robot")
     with start("robot", tmp_path) as rig:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
 
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -72,7 +72,7 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportS
     complaints: list[str] = []
     # Every test finds the robot at the surface, wherever the one before has left it.
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
-    with Messages("turtle", connect=[runtime], client=True) as messages:
+    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
         messages.ask("simulator/reset", {}, RESET_SECONDS)
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(stack.url)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from robot_runtime.contract.packets import Debug, Imu, ResetCause, Start, Status, StatusFlag
-from robot_runtime.link.session import Session, Stage
+from robot_runtime.link.session import LinkSession, SessionStage
 from tests.firmware.robot import Robot
 from tests.runtime.link.line import Noise, Wire
 
@@ -42,7 +42,7 @@ class Pair:
     @property
     def joined(self) -> bool:
         board = self.session.board
-        established = self.session.stage is Stage.ESTABLISHED
+        established = self.session.stage is SessionStage.ESTABLISHED
         return established and board is not None and board.epoch == self.epoch
 
     def set_line(self, noise: Noise) -> None:
@@ -51,7 +51,7 @@ class Pair:
 
     def restart_host(self) -> None:
         self._host_epoch += 1
-        self.session = Session(self._host_epoch, BAUD)
+        self.session = LinkSession(self._host_epoch, BAUD)
         self.lines.clear()
 
     def restart_board(self) -> None:

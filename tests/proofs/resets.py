@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 from typing import Literal, NamedTuple, Self
 
 from robot_runtime.contract.packets import Debug, Hello, Navigation, Packet, Start, Status, StatusFlag
-from robot_runtime.link.session import Message, Session, Stage
+from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 from robot_runtime.simulation.boards.emulator_process import LineDirection, LineFault
 from tests.board.host import BAUD, start
 from tests.board.rig import ROOT, build
@@ -219,7 +219,7 @@ class World:
 
     def _start_host(self) -> None:
         self._host_epoch = (self._host_epoch + 1) & 0xFFFF
-        self._session = Session(self._host_epoch, BAUD)
+        self._session = LinkSession(self._host_epoch, BAUD)
         self._forget()
 
     def _await_watchdog(self) -> None:
@@ -270,7 +270,7 @@ class World:
             if not self._may_be_armed and self._rig.board.fins().powered:
                 self._problem("armed by itself", "motor power is on")
 
-    def _hear(self, message: Message) -> None:
+    def _hear(self, message: BoardMessage) -> None:
         if message.type == Hello.type:
             boot = Hello.from_bytes(message.payload).epoch
             if boot != self._boot:
@@ -284,7 +284,11 @@ class World:
     def _see(self, status: Status) -> None:
         if status.epoch != self._boot:
             self._problem("stale", f"a STATUS of boot {status.epoch} and not {self._boot}")
-        if not self.joined and self._session.stage is Stage.ESTABLISHED and status.epoch != self._last_boot:
+        if (
+            not self.joined
+            and self._session.stage is SessionStage.ESTABLISHED
+            and status.epoch != self._last_boot
+        ):
             self.joined = True
             self._may_be_armed = False
             self._joined_at = status.time

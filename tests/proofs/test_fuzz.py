@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robot_runtime.contract.packets import DEFINITIONS_HASH, FRAME_BYTES_MAX, PACKETS, Hello, encode
 from robot_runtime.link.framing import OPEN, Decoder, Frame, assemble
-from robot_runtime.link.session import Session, session_key
+from robot_runtime.link.session import LinkSession, session_key
 from tests.proofs import fuzz
 
 EXECUTIONS = 10_000
@@ -79,7 +79,7 @@ def test_both_decoders_believe_the_same_of_any_content(
 @settings(max_examples=300)
 @given(st.lists(st.tuples(contents(), st.sampled_from([OPEN, KEY])), max_size=20))
 def test_the_hosts_session_stands_whatever_it_hears(said: list[tuple[bytes, int]]) -> None:
-    session = Session(HOST, 250_000)
+    session = LinkSession(HOST, 250_000)
     hello = encode(Hello(definitions=DEFINITIONS_HASH, epoch=BOARD, credit=64))
     session.receive(framed(b"\0" + hello + b"\0", OPEN), 0.0)
     for step, (content, key) in enumerate(said):

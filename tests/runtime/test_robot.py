@@ -38,7 +38,7 @@ from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 pytestmark = pytest.mark.stack
@@ -132,7 +132,7 @@ class Board:
 class Listener:
     """Everything that the runtime publishes."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: ZenohTransport) -> None:
         self.documents: list[tuple[str, dict[str, Any]]] = []
         self.rows: list[tuple[str, float, Any]] = []
         self._changed = threading.Condition()
@@ -172,7 +172,7 @@ class Rig:
         run = folder / "run"
         run.mkdir(exist_ok=True)
         server, runtime = (f"unixsock-stream/{run}/{name}.sock" for name in ("server", "runtime"))
-        self.messages = Messages("turtle", [server], [runtime])
+        self.messages = ZenohTransport("turtle", [server], [runtime])
         self.listener = Listener(self.messages)
 
     def close(self) -> None:

@@ -11,8 +11,8 @@ from robot_runtime.contract.topics import Block, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import Refused
 from robot_runtime.transport.outbox import STREAM
-from robot_runtime.transport.replay_cache import Cache
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 COMMANDS = (
     *("stop", "arm", "mode", "check_fins", "acknowledge"),
@@ -34,7 +34,7 @@ class RuntimeEnd:
         self.driven: list[dict[str, Any]] = []
         self.refusal: str | None = None
         self.gates = {name: threading.Event() for name in COMMANDS}
-        self._messages = Messages(robot, listen=[f"unixsock-stream/{socket}"])
+        self._messages = ZenohTransport(robot, listen=[f"unixsock-stream/{socket}"])
         for name, gate in self.gates.items():
             gate.set()
             self._answer(name, gate)
@@ -50,7 +50,7 @@ class RuntimeEnd:
         self._messages.answer("query/parameters", lambda _: self.parameters)
         self.answer: dict[str, Any] = {}
         """What every command is answered with."""
-        self._cache = Cache(self._messages.run, SteadyClock())
+        self._cache = ReplayCache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
             self._messages.answer_bytes(name, self._cache.answer)
         self._messages.answer("command/lease", lambda question: self.epochs.append(question["epoch"]))

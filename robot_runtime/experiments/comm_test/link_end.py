@@ -1,6 +1,6 @@
 """The host's end of a cell over the robot's own link, driven by the line's clock.
 
-`Session` and `Channel` are those of the robot. Numbers, the question and the answer are reliable packets:
+`LinkSession` and `Channel` are those of the robot. Numbers, the question and the answer are reliable packets:
 they arrive exactly once and in order, and what the other end has no room for is sent again until it has. So
 nothing has to be timed: a cell ends when the answer is there. It is asked for behind the last number; where
 the board sends numbers too, once all of those are there.
@@ -11,7 +11,7 @@ from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.framings import Sequence
 from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, Line
 from robot_runtime.experiments.comm_test.results import Cell, CellResult, Counts, Finding, LinkCellResult
-from robot_runtime.link.session import Session, Stage
+from robot_runtime.link.session import LinkSession, SessionStage
 
 HOST_EPOCH = 1
 """The board's epoch differs in every cell, so this one need not."""
@@ -47,7 +47,7 @@ class _LinkCell:
     def __init__(self, test: CommTest, cell: Cell, line: Line) -> None:
         self._test, self._cell, self._line = test, cell, line
         self._patience = PATIENCE_FACTOR * estimate_link_seconds(test, cell) + PATIENCE
-        self._session = Session(HOST_EPOCH, cell.baud)
+        self._session = LinkSession(HOST_EPOCH, cell.baud)
         self._reaction = min(max(REACTION_BYTES * line.byte_time, REACTION_MIN), REACTION_MAX)
         sends = test.direction != "to_host"
         self._numbers = iter(range(test.from_val, test.to_val if sends else test.from_val + 1))
@@ -71,7 +71,7 @@ class _LinkCell:
 
     @property
     def _established(self) -> bool:
-        return self._session.stage is Stage.ESTABLISHED
+        return self._session.stage is SessionStage.ESTABLISHED
 
     @property
     def _all_here(self) -> bool:
@@ -80,7 +80,7 @@ class _LinkCell:
     def _hopeless(self) -> bool:
         if self._session.board is None:
             return self._line.now > GREETING_PATIENCE
-        refused = self._session.stage is Stage.REFUSED
+        refused = self._session.stage is SessionStage.REFUSED
         return refused or self._restarted or self._line.now > self._patience
 
     @property
@@ -163,7 +163,7 @@ class _LinkCell:
         if self._session.board is None:
             words = f"the chip did not answer a greeting within {GREETING_PATIENCE:g} s"
             return (("no link", f"{words}: it does not run the sketch, or at another baud"),)
-        if self._session.stage is Stage.REFUSED:
+        if self._session.stage is SessionStage.REFUSED:
             return (("other definitions", "the sketch was compiled with other packet definitions"),)
         if self._restarted:
             lost = self._session.counters.messages_discarded

@@ -11,7 +11,7 @@ from robot_runtime.contract.documents import Event
 from robot_runtime.core import Core
 from robot_runtime.experiments.scenario.cameras import SceneCamera
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.link.conversation import Conversation
+from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
 from robot_runtime.simulation.scene.availability import missing
@@ -53,7 +53,7 @@ class Robot(Core):
                 camera=scenario.vision.camera, rate=scenario.vision.rate, colour=scenario.vision.colour
             ),
         )
-        self.conversation = Conversation(
+        self.conversation = LinkDriver(
             "simulated",
             baud,
             clock,

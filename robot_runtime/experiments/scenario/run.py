@@ -16,7 +16,7 @@ from robot_runtime.experiments.scenario.cameras import needs_eyes
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Arm, Event, Line, Mark
 from robot_runtime.experiments.scenario.rig import MakeBoard, Stage
-from robot_runtime.link.conversation import PERIOD as GATHERING
+from robot_runtime.link.link_driver import PERIOD as GATHERING
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.requests import changes
 

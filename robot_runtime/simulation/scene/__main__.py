@@ -8,7 +8,7 @@ import sys
 from robot_runtime.clock import SteadyClock
 from robot_runtime.simulation.scene.process import Process
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
-from robot_runtime.transport.zenoh_transport import Messages, join
+from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 
 def main() -> None:
@@ -24,7 +24,7 @@ def main() -> None:
     joined = (
         join(arguments.robot, arguments.connect)
         if arguments.client
-        else Messages(arguments.robot, arguments.listen, arguments.connect)
+        else ZenohTransport(arguments.robot, arguments.listen, arguments.connect)
     )
     with joined as messages:
         process = Process(messages, SteadyClock())

@@ -27,7 +27,7 @@ from robot_runtime.simulation.scene.contents import Contents, Place, Targets
 from robot_runtime.simulation.scene.view import View
 from robot_runtime.simulation.water.parameters import Parameters
 from robot_runtime.simulation.water.surroundings import Basin, check_beacons
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 if TYPE_CHECKING:
     from robot_runtime.simulation.scene.scene import Scene
@@ -52,7 +52,7 @@ Question = dict[str, Any]
 class Process:
     """Answers and publishes until `end`; `run` must be called in the thread that is to render."""
 
-    def __init__(self, messages: Messages, clock: Clock) -> None:
+    def __init__(self, messages: ZenohTransport, clock: Clock) -> None:
         self._messages = messages
         self._clock = clock
         self._contents = Contents()

@@ -22,8 +22,8 @@ from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import Cache
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 log = logging.getLogger(__name__)
 
@@ -42,10 +42,10 @@ QUIET = 2.0
 class Loop:
     """Joins the simulator and a robot elsewhere. `run` returns after `end`."""
 
-    def __init__(self, simulator: Simulator, messages: Messages) -> None:
+    def __init__(self, simulator: Simulator, messages: ZenohTransport) -> None:
         self._simulator = simulator
         self._messages = messages
-        cache = Cache(messages.run, SteadyClock())
+        cache = ReplayCache(messages.run, SteadyClock())
         self._outbox = Outbox(messages.publish, messages.watched, cache)
         self._waiting: deque[bytes] = deque(maxlen=WAITING_MAX)
         self._arrived = threading.Event()

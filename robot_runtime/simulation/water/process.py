@@ -11,8 +11,8 @@ from robot_runtime.simulation.boards.board_line import LineError, Lines, read_fi
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import Cache
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 log = logging.getLogger(__name__)
 
@@ -29,10 +29,10 @@ PATIENCE = 0.1
 class Process:
     """Joins the simulator, the emulated board's socket and the other processes."""
 
-    def __init__(self, simulator: Simulator, board: Path, messages: Messages, clock: Clock) -> None:
+    def __init__(self, simulator: Simulator, board: Path, messages: ZenohTransport, clock: Clock) -> None:
         self._simulator = simulator
         self._board = board
-        cache = Cache(messages.run, clock)
+        cache = ReplayCache(messages.run, clock)
         self._outbox = Outbox(messages.publish, messages.watched, cache)
         self._clock = clock
         self._truth_due = clock.now()

@@ -10,7 +10,7 @@ from sqlmodel import col, func, select
 from robot_runtime.clock import boot
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, Topic
-from robot_runtime.transport.replay_cache import Kept
+from robot_runtime.transport.replay_cache import BacklogReply
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Store
 
@@ -77,7 +77,7 @@ def find_left(store: Store) -> Left | None:
     return Left(row, last)
 
 
-def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
+def find_missing(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> Missing:
     """Compare what is stored with what the sender of these topics has kept."""
     blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
     for block in kept.blocks:
@@ -108,7 +108,7 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: Kept) -> Missing:
     return Missing(first, same_run, whole, sent if known else {})
 
 
-def _new(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
+def _new(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> bool:
     """Whether nothing of this sender is stored yet, and it is the one that the session began with.
 
     That is known of the runtime, whose `state` is written down at the start; whichever simulator there is may
@@ -119,7 +119,7 @@ def _new(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
     return _STATE not in topics or _began(left, topics, kept)
 
 
-def _began(left: Left, topics: Sequence[Topic], kept: Kept) -> bool:
+def _began(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> bool:
     """Whether this is the runtime whose `state` was written down when the session began."""
     state = json.loads(left.row.robot_state)
     return _STATE in topics and isinstance(state, dict) and state.get("run") == kept.run

@@ -3,7 +3,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Event
 from robot_runtime.contract.packets import Packet, Sense
-from robot_runtime.control.hil_feed import SILENCE, InTheLoop
+from robot_runtime.control.hil_feed import SILENCE, HilFeed
 
 WORD = Sense(
     pressure=101_325,
@@ -21,7 +21,7 @@ class Rig:
         self.clock = SimulatedClock(100.0)
         self.sent: list[Packet] = []
         self.events: list[Event] = []
-        self.loop = InTheLoop(self.clock, self.sent.append, self.events.append)
+        self.loop = HilFeed(self.clock, self.sent.append, self.events.append)
 
 
 def test_a_word_goes_on_to_the_board_as_it_is() -> None:

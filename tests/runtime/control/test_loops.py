@@ -10,7 +10,7 @@ from robot_runtime.contract.documents import Mode, Turning
 from robot_runtime.contract.packets import Depth, Imu, Navigation
 from robot_runtime.control.attitude import GRAVITY
 from robot_runtime.control.controllers import BangBang
-from robot_runtime.control.loop import Loan
+from robot_runtime.control.loop import LoopOverride
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.errors import Refused
@@ -220,7 +220,7 @@ def test_the_pilots_input_goes_out_at_once_with_what_is_held() -> None:
 
 def test_a_loan_steers_until_the_mode_changes() -> None:
     rig = Rig("automatic")
-    rig.node.heading.lent = Loan(BangBang(), set_point=-1.0)
+    rig.node.heading.lent = LoopOverride(BangBang(), set_point=-1.0)
     command = rig.tick()
     assert command is not None
     assert command.yaw == -1.0

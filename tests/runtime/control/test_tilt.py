@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.topics import read_blocks, read_rows
-from robot_runtime.control.attitude import turned, wrapped
+from robot_runtime.control.attitude import euler_angles, wrap_angle
 from robot_runtime.control.controllers import Tilt
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -91,7 +91,7 @@ class _Truths:
             if block.topic.name == "truth":
                 for time, truth in read_rows(block):
                     assert isinstance(truth, Truth)
-                    self.taken.append((time, turned(truth.attitude)[0], truth.position[2] - 0.05))
+                    self.taken.append((time, euler_angles(truth.attitude)[0], truth.position[2] - 0.05))
 
     def event(self, event: str, **more: Any) -> None:
         assert event != "ended" or more["problem"] is None
@@ -103,6 +103,6 @@ def test_in_the_simulated_water_it_turns_and_stays_while_the_depth_is_held() -> 
     after = [(time, heading, depth) for time, heading, depth in truths.taken if TURN <= time < END]
     assert abs(degrees(after[0][1])) < 10
     assert all(abs(depth - DEPTH) < 0.1 for _, _, depth in after)
-    late = [degrees(wrapped(heading - pi / 2)) for time, heading, _ in after if time > TURN + 13]
+    late = [degrees(wrap_angle(heading - pi / 2)) for time, heading, _ in after if time > TURN + 13]
     assert all(abs(wrong) < 10 for wrong in late)
     assert max(late) - min(late) < 10

@@ -13,15 +13,15 @@ from robot_runtime.contract.packets import (
     encode,
 )
 from robot_runtime.link.dissection import dissect
-from robot_runtime.link.frame_ring import KeptFrame
+from robot_runtime.link.frame_ring import RecordedFrame
 from robot_runtime.link.framing import OPEN, assemble, build
 
 KEY = 0x0001_0004
 BEACON = Beacon(time=5, right=0, left=1)
 
 
-def kept(frame: bytes, key: int = KEY, sent: bool = False) -> KeptFrame:
-    return KeptFrame(1.5, sent, key, frame.removesuffix(b"\0"))
+def kept(frame: bytes, key: int = KEY, sent: bool = False) -> RecordedFrame:
+    return RecordedFrame(1.5, sent, key, frame.removesuffix(b"\0"))
 
 
 def test_a_frame_is_told_with_its_numbers_and_bytes() -> None:

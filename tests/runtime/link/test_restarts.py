@@ -9,7 +9,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from robot_runtime.contract.packets import DEFINITIONS_HASH, Beacon, Debug, Hello, Packet, Start, decode
 from robot_runtime.link.framing import Decoder
-from robot_runtime.link.session import Session, Stage
+from robot_runtime.link.session import LinkSession, SessionStage
 from tests.line_end import LineEnd
 from tests.runtime.link.line import Noise, Wire
 
@@ -37,19 +37,19 @@ class World:
         self._old_to_board: list[bytes] = []
         self._old_to_host: list[bytes] = []
         self._beacon_at = 0.0
-        self.session = Session(self._host_epoch, BAUD)
+        self.session = LinkSession(self._host_epoch, BAUD)
         self.restart_board()
 
     @property
     def joined(self) -> bool:
         """Whether both know of each other, so that what is sent now must arrive."""
         board = self.session.board
-        established = self.session.stage is Stage.ESTABLISHED
+        established = self.session.stage is SessionStage.ESTABLISHED
         return established and board is not None and board.epoch == self._board_epoch and self.board.joined
 
     def restart_host(self) -> None:
         self._host_epoch += 1
-        self.session = Session(self._host_epoch, BAUD)
+        self.session = LinkSession(self._host_epoch, BAUD)
         self._forget()
 
     def restart_board(self) -> None:

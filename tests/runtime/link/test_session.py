@@ -17,7 +17,7 @@ from robot_runtime.contract.packets import (
     encode,
 )
 from robot_runtime.link.framing import Decoder, Frame, build
-from robot_runtime.link.session import NO_BOOT, SILENCE, Session, Stage, session_key
+from robot_runtime.link.session import NO_BOOT, SILENCE, LinkSession, SessionStage, session_key
 
 BAUD = 250_000
 KEY = session_key(1, 4)
@@ -41,14 +41,14 @@ def keyed(*packets: Packet, number: int = 0, acknowledged: int = 0) -> bytes:
     return build(packets, number, acknowledged, KEY)
 
 
-def established(now: float = 0.0) -> Session:
-    session = Session(1, BAUD)
+def established(now: float = 0.0) -> LinkSession:
+    session = LinkSession(1, BAUD)
     greet(session, now)
     session.receive(build([hello()], 0, 0), now)
     return session
 
 
-def greet(session: Session, now: float) -> None:
+def greet(session: LinkSession, now: float) -> None:
     """The board says HELLO by itself; the host greets it."""
     session.receive(build([hello()], 15, 0), now)
     assert said(session.poll(now)) == [Hello.type]
@@ -59,19 +59,19 @@ def beacon(time: int = 0) -> Beacon:
 
 
 def test_greets_until_answered_then_beats() -> None:
-    session = Session(1, BAUD)
+    session = LinkSession(1, BAUD)
     greetings = b"".join(session.poll(step * 0.05) for step in range(21))
     assert said(greetings) == [Hello.type] * 5
     greet(session, 1.0)
     session.receive(build([hello()], 0, 0), 1.01)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
     assert session.statistics().round_trip == pytest.approx(0.01)
     beats = b"".join(session.poll(1.01 + step * 0.025) for step in range(21))
     assert said(beats) == [Heartbeat.type] * 4
 
 
 def test_on_a_slow_line_it_beats_and_waits_as_the_line_allows() -> None:
-    session = Session(1, 1200)
+    session = LinkSession(1, 1200)
     greet(session, 0.0)
     session.receive(build([hello()], 0, 0), 0.0)
     beats: list[float] = []
@@ -90,17 +90,17 @@ def test_on_a_slow_line_it_beats_and_waits_as_the_line_allows() -> None:
 
 @pytest.mark.parametrize(("baud", "limit"), [(250_000, SILENCE), (1200, 1.6)])
 def test_silence_is_measured_by_what_the_line_carries(baud: int, limit: float) -> None:
-    session = Session(1, baud)
+    session = LinkSession(1, baud)
     greet(session, 0.0)
     session.receive(build([hello()], 0, 0), 0.0)
     session.poll(limit)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
     session.poll(limit + 0.01)
-    assert session.stage is Stage.GREETING
+    assert session.stage is SessionStage.GREETING
 
 
 def test_nothing_is_taken_before_the_greeting() -> None:
-    session = Session(1, BAUD)
+    session = LinkSession(1, BAUD)
     assert session.receive(build([beacon()], 0, 0), 0.0) == []
     greet(session, 0.1)
     assert session.receive(build([beacon()], 0, 0), 0.1) == []
@@ -109,32 +109,32 @@ def test_nothing_is_taken_before_the_greeting() -> None:
 
 
 def test_other_definitions_are_refused_until_the_board_has_the_right_ones() -> None:
-    session = Session(1, BAUD)
+    session = LinkSession(1, BAUD)
     session.receive(build([hello(definitions=0xDEAD)], 0, 0), 0.0)
-    assert session.stage is Stage.REFUSED
+    assert session.stage is SessionStage.REFUSED
     assert session.receive(build([beacon()], 1, 0), 0.1) == []
     assert said(session.poll(5.0)) == [Hello.type]
     session.receive(build([hello(epoch=5)], 0, 0), 5.1)
     session.poll(5.1)
     session.receive(build([hello(epoch=5)], 1, 0), 5.1)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
 
 
 def test_a_silent_board_counts_as_lost_and_is_greeted_anew() -> None:
     session = established()
     session.poll(SILENCE)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
     assert said(session.poll(SILENCE + 0.01)) == [Hello.type]
-    assert session.stage is Stage.GREETING
+    assert session.stage is SessionStage.GREETING
     session.receive(build([hello()], 1, 0), SILENCE + 0.02)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
 
 
 def test_a_board_that_has_heard_needs_not_answer() -> None:
-    session = Session(1, BAUD)
+    session = LinkSession(1, BAUD)
     greet(session, 0.0)
     assert [one.type for one in session.receive(keyed(beacon()), 0.1)] == [Beacon.type]
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
 
 
 def test_a_board_that_lost_the_session_is_greeted_anew() -> None:
@@ -170,10 +170,10 @@ def test_a_restarted_board_is_greeted_anew_and_counts_from_its_own_start() -> No
     session.receive(keyed(beacon(), number=7), 0.1)
     session.send([Start(epoch=4)], 0.1)
     session.receive(build([hello(epoch=5)], 0, 0), 0.2)
-    assert session.stage is Stage.GREETING
+    assert session.stage is SessionStage.GREETING
     assert said(session.poll(0.2)) == [Hello.type]
     session.receive(build([hello(epoch=5)], 0, 0), 0.21)
-    assert session.stage is Stage.ESTABLISHED
+    assert session.stage is SessionStage.ESTABLISHED
     assert Start.type not in said(session.poll(1.0))
     session.receive(build([beacon()], 0, 0, session_key(1, 5)), 0.3)
     assert session.statistics().frames_missed == 0
@@ -204,11 +204,11 @@ def test_stop_goes_out_at_once_and_voids_a_start_that_is_under_way() -> None:
 
 
 def test_stop_goes_out_where_nobody_has_answered() -> None:
-    assert said(Session(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
+    assert said(LinkSession(1, BAUD).send([Stop(), Start(epoch=1)], 0.0)) == [Stop.type]
 
 
 def test_of_commands_that_wait_for_a_slow_line_the_newest_goes_out_unless_it_is_old() -> None:
-    session = Session(1, 1200)
+    session = LinkSession(1, 1200)
     session.receive(build([hello()], 0, 0) + keyed(beacon()), 0.0)
     commands = [Navigation(x=0.0, y=0.0, z=z, roll=0.0, pitch=0.0, yaw=0.0) for z in (0.1, 0.2, 0.3)]
     session.send([Stop()], 0.0)

@@ -11,7 +11,7 @@ from robot_runtime.config import Config
 from robot_runtime.contract.packets import Depth
 from robot_runtime.control.controllers import Pid
 from robot_runtime.core import Core
-from robot_runtime.link.conversation import Conversation
+from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
 
 TICK_SECONDS = 0.1
@@ -28,7 +28,7 @@ class Swimmer(Core):
 
     def __init__(self) -> None:
         clock = SimulatedClock()
-        line = Conversation("none", 250_000, clock, 1, lambda _: None, lambda: None)
+        line = LinkDriver("none", 250_000, clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
         super().__init__(Config(), clock, "0" * 16, line, outbox, watched=lambda _: False)
         self.control.choose("pid", {"kp": 1, "ki": 1, "kd": 1})

@@ -10,7 +10,7 @@ from robot_runtime.contract.documents import DebugLine
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block
 from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import Cache, Kept, write_question
+from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from tests.server.blocks import debug_block, depth_block, depth_record
 
 
@@ -19,7 +19,7 @@ class Writer:
 
     def __init__(self) -> None:
         self.clock = SimulatedClock(1000.0)
-        self.cache = Cache("0123456789abcdef", self.clock)
+        self.cache = ReplayCache("0123456789abcdef", self.clock)
         self.sent: list[bytes] = []
         self.outbox = Outbox(lambda _, data: self.sent.append(data), lambda _: False, self.cache)
 
@@ -32,8 +32,8 @@ class Writer:
         self.outbox.add_document("debug", DebugLine(time=self.clock.now(), level=1, text=text))
         self.outbox.flush()
 
-    def ask(self, **wanted: int) -> Kept:
-        return Kept.from_bytes(self.cache.answer(write_question(wanted)))
+    def ask(self, **wanted: int) -> BacklogReply:
+        return BacklogReply.from_bytes(self.cache.answer(write_question(wanted)))
 
 
 def test_blocks_are_answered_as_they_were_sent_oldest_first() -> None:
@@ -112,7 +112,7 @@ def test_bad_questions_are_refused(question: bytes, why: str) -> None:
 @given(st.binary(max_size=60))
 def test_nonsense_is_no_answer(data: bytes) -> None:
     with pytest.raises(LayoutError):
-        Kept.from_bytes(data)
+        BacklogReply.from_bytes(data)
 
 
 def test_a_cut_answer_is_refused() -> None:
@@ -120,4 +120,4 @@ def test_a_cut_answer_is_refused() -> None:
     writer.depths(0)
     answer = writer.cache.answer(json.dumps({"depth": 0}).encode())
     with pytest.raises(LayoutError):
-        Kept.from_bytes(answer[:-1])
+        BacklogReply.from_bytes(answer[:-1])

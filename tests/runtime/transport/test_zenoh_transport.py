@@ -5,21 +5,21 @@ from collections.abc import Iterator
 import pytest
 
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 
 @pytest.fixture
-def ends() -> Iterator[tuple[Messages, Messages]]:
+def ends() -> Iterator[tuple[ZenohTransport, ZenohTransport]]:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
         with (
-            Messages("turtle", listen=[endpoint]) as answering,
-            Messages("turtle", connect=[endpoint]) as asking,
+            ZenohTransport("turtle", listen=[endpoint]) as answering,
+            ZenohTransport("turtle", connect=[endpoint]) as asking,
         ):
             yield answering, asking
 
 
-def ask(asking: Messages, name: str, payload: bytes) -> bytes:
+def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:
     """Zenoh tells of new answerers in its own time."""
     while True:
         try:
@@ -29,13 +29,13 @@ def ask(asking: Messages, name: str, payload: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("payload", [b"", b"{}", b"\0\xff" * 1_000_000])
-def test_bytes_are_answered_with_bytes(ends: tuple[Messages, Messages], payload: bytes) -> None:
+def test_bytes_are_answered_with_bytes(ends: tuple[ZenohTransport, ZenohTransport], payload: bytes) -> None:
     answering, asking = ends
     answering.answer_bytes("picture", lambda question: question[::-1])
     assert ask(asking, "picture", payload) == payload[::-1]
 
 
-def test_a_refusal_is_told_in_its_words(ends: tuple[Messages, Messages]) -> None:
+def test_a_refusal_is_told_in_its_words(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
     answering, asking = ends
 
     def refuse(question: bytes) -> bytes:
@@ -47,7 +47,7 @@ def test_a_refusal_is_told_in_its_words(ends: tuple[Messages, Messages]) -> None
 
 
 def test_an_error_inside_is_no_detail_for_others(
-    ends: tuple[Messages, Messages], caplog: pytest.LogCaptureFixture
+    ends: tuple[ZenohTransport, ZenohTransport], caplog: pytest.LogCaptureFixture
 ) -> None:
     answering, asking = ends
 
@@ -60,7 +60,7 @@ def test_an_error_inside_is_no_detail_for_others(
     assert "secret" in caplog.text
 
 
-def test_who_does_not_answer_in_time_is_given_up(ends: tuple[Messages, Messages]) -> None:
+def test_who_does_not_answer_in_time_is_given_up(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
     answering, asking = ends
     gate = threading.Event()
     answering.answer_bytes("there", lambda _: b"")

@@ -11,7 +11,7 @@ from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.errors import Refused
 from robot_runtime.vision.camera import CameraError
 from robot_runtime.vision.colour_picker import Place, propose, range_of
-from robot_runtime.vision.node import Vision
+from robot_runtime.vision.node import VisionNode
 from robot_runtime.vision.patches import find_colour
 from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import ShakyCamera, drawn, find
@@ -112,10 +112,10 @@ def test_some_glare_and_noise_do_not_widen_it() -> None:
 
 
 class TestNode:
-    def vision(self, picture: Picture, clock: SimulatedClock) -> tuple[Vision, ShakyCamera]:
+    def vision(self, picture: Picture, clock: SimulatedClock) -> tuple[VisionNode, ShakyCamera]:
         camera = ShakyCamera(picture, clock)
         config = VisionConfig()
-        node = Vision(
+        node = VisionNode(
             config, clock, lambda _: None, lambda *_: None, lambda _: False, lambda _: None, camera.open
         )
         return node, camera

@@ -18,7 +18,7 @@ from robot_runtime.contract.documents import Detection, Event
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import Refused
 from robot_runtime.vision.camera import Camera, CameraError
-from robot_runtime.vision.node import RETRY, Vision
+from robot_runtime.vision.node import RETRY, VisionNode
 from tests.runtime.vision.harness import ShakyCamera, drawn
 
 DEADLINE = 10.0
@@ -36,8 +36,8 @@ class Listener:
 
     def node(
         self, clock: Clock, camera: Callable[[], Camera] | None = None, config: VisionConfig | None = None
-    ) -> Vision:
-        return Vision(
+    ) -> VisionNode:
+        return VisionNode(
             config or VisionConfig(),
             clock,
             self.detections.append,
@@ -287,7 +287,7 @@ class TestThread:
             raise RuntimeError("nobody wants to know")
 
         config = VisionConfig(rate=30.0, width=64, height=48)
-        node = Vision(config, SteadyClock(), fail, lambda *_: None, lambda _: False, lambda _: None)
+        node = VisionNode(config, SteadyClock(), fail, lambda *_: None, lambda _: False, lambda _: None)
         node.start()
         wait_for(lambda: len(calls) >= 3, "pictures")
         node.close()

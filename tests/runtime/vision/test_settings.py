@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robot_runtime.config import Config, ConfigError, load, parse
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from robot_runtime.vision.patches import find_colour
-from robot_runtime.vision.settings_file import Kept
+from robot_runtime.vision.settings_file import VisionSettingsFile
 
 WHOLE = (0, 255)
 GOOD = {"hue": [20, 35], "saturation": [100, 255], "value": [70, 255]}
@@ -119,7 +119,7 @@ def test_the_range_that_the_thesis_prints_holds_nothing() -> None:
 
 
 def test_what_was_kept_is_read_again(tmp_path: Path) -> None:
-    kept = Kept(tmp_path / "vision.json")
+    kept = VisionSettingsFile(tmp_path / "vision.json")
     assert kept.read() is None
     settings = VisionSettings(
         colour="Boje grün",
@@ -139,4 +139,4 @@ def test_what_was_kept_is_read_again(tmp_path: Path) -> None:
 def test_what_was_kept_and_is_damaged_is_told_of(tmp_path: Path, text: str) -> None:
     (tmp_path / "vision.json").write_bytes(text.encode("latin-1"))
     with pytest.raises(ConfigError, match=r"vision\.json"):
-        Kept(tmp_path / "vision.json").read()
+        VisionSettingsFile(tmp_path / "vision.json").read()

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME, Block
-from robot_runtime.transport.replay_cache import Cache, Kept, write_question
+from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.stream.gap_filler import Source
 from tests.server.blocks import debug_block, depth_block
 from tests.server.waiting import until
@@ -21,7 +21,7 @@ class Sender:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.cache = Cache(name, SimulatedClock())
+        self.cache = ReplayCache(name, SimulatedClock())
         self.next = 0
 
     def send(self, count: int = 5) -> Block:
@@ -53,11 +53,11 @@ class Receiver:
     async def settle(self, count: int) -> None:
         await until(lambda: len(self.delivered) >= count, f"{count} blocks")
 
-    async def _ask(self, wanted: Mapping[str, int]) -> Kept | None:
+    async def _ask(self, wanted: Mapping[str, int]) -> BacklogReply | None:
         self.asked.append(wanted)
         answer = self.alive and self.alive.cache.answer(write_question(wanted))
         await self.gate.wait()
-        return Kept.from_bytes(answer) if answer else None
+        return BacklogReply.from_bytes(answer) if answer else None
 
 
 def play(scenario: Callable[[Receiver], Awaitable[None]]) -> None:

@@ -11,7 +11,7 @@ from robot_runtime.experiments.comm_test.faults import Faults
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER
 from robot_runtime.link.port import Port
-from robot_runtime.link.session import Session, Stage
+from robot_runtime.link.session import LinkSession, SessionStage
 from robot_runtime.simulation.boards.emulator_process import BoardProcess
 from tests.board.host import BAUD
 from tests.board.rig import ROOT, build, wait_for
@@ -51,13 +51,13 @@ def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
 def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
     """The robot's firmware is uploaded, and answers a greeting once the boot loader has waited in vain."""
     assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
-    session = Session(1, BAUD)
+    session = LinkSession(1, BAUD)
     with Port(str(arduino.tty), BAUD) as port:
-        while session.stage is not Stage.ESTABLISHED:
+        while session.stage is not SessionStage.ESTABLISHED:
             port.write(session.poll(monotonic()))
             if port.wait(session.due() - monotonic()):
                 list(session.receive(port.read(), monotonic()))
-            assert session.stage is not Stage.REFUSED
+            assert session.stage is not SessionStage.REFUSED
 
 
 def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:

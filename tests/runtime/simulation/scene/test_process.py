@@ -29,8 +29,8 @@ from robot_runtime.simulation.scene.process import Process
 from robot_runtime.simulation.water.parameters import Parameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.transport.zenoh_transport import Messages
-from robot_runtime.vision.node import Vision
+from robot_runtime.transport.zenoh_transport import ZenohTransport
+from robot_runtime.vision.node import VisionNode
 from tests.runtime.simulation.scene.harness import truth
 
 rendered = pytest.mark.skipif(missing() is not None, reason=str(missing()))
@@ -42,7 +42,7 @@ SLOW = 30.0
 class Ends:
     """The scene's process, and the other end of its conversation."""
 
-    def __init__(self, process: Process, other: Messages) -> None:
+    def __init__(self, process: Process, other: ZenohTransport) -> None:
         self.process = process
         self.other = other
 
@@ -77,7 +77,10 @@ def patiently(ask: Callable[[], Any]) -> Any:
 def conversation() -> Iterator[Ends]:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
-        with Messages("turtle", [endpoint]) as other, Messages("turtle", connect=[endpoint]) as own:
+        with (
+            ZenohTransport("turtle", [endpoint]) as other,
+            ZenohTransport("turtle", connect=[endpoint]) as own,
+        ):
             process = Process(own, SteadyClock())
             thread = threading.Thread(target=process.run)
             thread.start()
@@ -227,11 +230,11 @@ def wait_until(condition: Callable[[], bool]) -> None:
         time.sleep(0.01)
 
 
-def look(messages: Messages, until: Callable[[Vision], bool], config: VisionConfig) -> list[Event]:
+def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: VisionConfig) -> list[Event]:
     """Let a vision node look through the camera "scene" until something holds; what it told."""
     events: list[Event] = []
     found: list[Detection] = []
-    vision = Vision(
+    vision = VisionNode(
         config,
         SteadyClock(),
         found.append,
@@ -278,8 +281,8 @@ def test_without_a_scene_there_is_no_picture_and_it_is_news_only_after_a_while()
     events: list[Event] = []
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         clock = SimulatedClock()
-        with Messages("turtle", [f"unixsock-stream/{folder}/zenoh"]) as alone:
-            vision = Vision(
+        with ZenohTransport("turtle", [f"unixsock-stream/{folder}/zenoh"]) as alone:
+            vision = VisionNode(
                 VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda _: False,
                 events.append, messages=alone,
             )  # fmt: skip

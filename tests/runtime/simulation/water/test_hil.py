@@ -15,7 +15,7 @@ from robot_runtime.errors import Refused
 from robot_runtime.simulation.water.hil import GAP_MAX, Loop
 from robot_runtime.simulation.water.parameters import Parameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 DEADLINE = 10.0
 PERIOD = 0.02
@@ -24,7 +24,7 @@ PERIOD = 0.02
 class Robot:
     """The runtime's end: fins out, words in."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: ZenohTransport) -> None:
         self.words: list[Sense] = []
         self._messages = messages
         self._number = 0
@@ -60,9 +60,12 @@ def simulator() -> Simulator:
 
 @pytest.fixture
 def robot(simulator: Simulator) -> Iterator[Robot]:
-    with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
+    ):
         robot = Robot(here)
-        with Messages("turtle", connect=[f"unixsock-stream/{folder}/z"], client=True) as there:
+        with ZenohTransport("turtle", connect=[f"unixsock-stream/{folder}/z"], client=True) as there:
             loop = Loop(simulator, there)
             thread = threading.Thread(target=loop.run)
             thread.start()
@@ -113,7 +116,10 @@ def test_a_clock_that_stands_or_runs_back_moves_nothing(robot: Robot, simulator:
 
 
 def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simulator) -> None:
-    with tempfile.TemporaryDirectory() as folder, Messages("turtle", [f"unixsock-stream/{folder}/z"]) as here:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
+    ):
         Loop(simulator, here)
         here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
         with pytest.raises(Refused, match="has no buses"):

@@ -21,7 +21,7 @@ from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.simulation.water.process import PERIOD, Process
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.transport.zenoh_transport import Messages
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
 
 DEADLINE = 10.0
@@ -89,8 +89,8 @@ def board(folder: Path) -> Iterator[Board]:
 
 
 @pytest.fixture
-def messages(folder: Path) -> Iterator[Messages]:
-    with Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made:
+def messages(folder: Path) -> Iterator[ZenohTransport]:
+    with ZenohTransport("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as made:
         yield made
 
 
@@ -100,7 +100,7 @@ def clock() -> SimulatedClock:
 
 
 @pytest.fixture
-def process(folder: Path, board: Board, messages: Messages, clock: SimulatedClock) -> Iterator[Process]:
+def process(folder: Path, board: Board, messages: ZenohTransport, clock: SimulatedClock) -> Iterator[Process]:
     del board
     made = Process(Simulator(QUIET, seed=1), folder / "board", messages, clock)
     thread = threading.Thread(target=made.run)
@@ -172,7 +172,7 @@ class TestAttached:
         assert caplog.text.count("no board at") == 1
 
     def test_truth_comes_twenty_times_a_second(
-        self, board: Board, messages: Messages, clock: SimulatedClock
+        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
         subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
@@ -194,7 +194,7 @@ class TestAttached:
         assert last.fins == pytest.approx((-1.57,) * 4)
 
     def test_a_board_that_was_away_leaves_no_truth_to_catch_up_with(
-        self, board: Board, messages: Messages, clock: SimulatedClock
+        self, board: Board, messages: ZenohTransport, clock: SimulatedClock
     ) -> None:
         received: list[bytes] = []
         subscription = messages.subscribe("truth", lambda _, payload: received.append(payload))
@@ -210,7 +210,7 @@ class TestAttached:
         subscription.close()
         assert len(received) == 3
 
-    def test_reset_brings_it_back_to_the_surface(self, board: Board, messages: Messages) -> None:
+    def test_reset_brings_it_back_to_the_surface(self, board: Board, messages: ZenohTransport) -> None:
         board.accept()
         surface = board.exchange()[0]
         for _ in range(200):
@@ -218,7 +218,7 @@ class TestAttached:
         assert messages.ask("simulator/reset", {}) == {"accepted": True}
         assert board.exchange()[0] == pytest.approx(surface, abs=5)
 
-    def test_current_carries_it_away(self, board: Board, messages: Messages) -> None:
+    def test_current_carries_it_away(self, board: Board, messages: ZenohTransport) -> None:
         answer = messages.ask("simulator/current", {"north": 1, "east": -0.5, "down": 0.0})
         assert answer == {"accepted": True}
         board.accept()
@@ -238,12 +238,14 @@ class TestAttached:
             {"north": 10**400, "east": 0, "down": 0},
         ],
     )
-    def test_impossible_currents_are_refused(self, messages: Messages, question: dict[str, object]) -> None:
+    def test_impossible_currents_are_refused(
+        self, messages: ZenohTransport, question: dict[str, object]
+    ) -> None:
         with pytest.raises(Refused, match=r"takes|number|at most 2 m/s"):
             messages.ask("simulator/current", question)
 
     def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
-        self, board: Board, messages: Messages
+        self, board: Board, messages: ZenohTransport
     ) -> None:
         board.accept()
         messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
@@ -274,13 +276,13 @@ class TestAttached:
         ],
     )
     def test_everything_can_be_asked_for_over_zenoh(
-        self, messages: Messages, name: str, question: dict[str, object]
+        self, messages: ZenohTransport, name: str, question: dict[str, object]
     ) -> None:
         assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
         with pytest.raises(Refused, match="takes"):
             messages.ask(f"simulator/{name}", {})
 
-    def test_reset_takes_no_depth(self, messages: Messages) -> None:
+    def test_reset_takes_no_depth(self, messages: ZenohTransport) -> None:
         with pytest.raises(Refused, match="not depth"):
             messages.ask("simulator/reset", {"depth": 1})
 
@@ -291,14 +293,14 @@ def command(folder: Path, *more: str) -> list[str]:
     return [*program, "--board", str(folder / "board"), "--connect", endpoint, "--robot", "turtle", *more]
 
 
-def accepted(messages: Messages) -> bool:
+def accepted(messages: ZenohTransport) -> bool:
     try:
         return messages.ask("simulator/reset", {}, timeout=0.5) == {"accepted": True}
     except NoAnswer:
         return False
 
 
-def test_program_swims_and_ends_when_asked(folder: Path, board: Board, messages: Messages) -> None:
+def test_program_swims_and_ends_when_asked(folder: Path, board: Board, messages: ZenohTransport) -> None:
     with subprocess.Popen(command(folder, "--seed", "2")) as program:
         assert board.accept() == f"attach {PERIOD}"
         board.exchange()
@@ -315,7 +317,7 @@ def test_program_waits_for_board_and_peers_that_are_not_there(folder: Path) -> N
         late.accept()
         late.exchange()
         late.close()
-        with Messages("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as messages:
+        with ZenohTransport("turtle", listen=[f"unixsock-stream/{folder}/zenoh"]) as messages:
             wait_for(lambda: accepted(messages), "answer")
         program.send_signal(signal.SIGTERM)
         assert program.wait(DEADLINE) == 0

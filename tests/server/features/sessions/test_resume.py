@@ -10,7 +10,7 @@ from sqlalchemy import update
 import robot_runtime.transport.replay_cache as cache_module
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, row
-from robot_runtime.transport.replay_cache import Cache, Kept, write_question
+from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.resume import Missing, find_missing
 from server.platform.models import SessionRow
@@ -42,7 +42,7 @@ class Wreck:
     def __init__(self, store: Store, settings: Settings) -> None:
         self.before = Deck(store, settings)
         self.after = Deck(store, settings)
-        self.kept = {name: Cache(f"{name} run", self.before.clock) for name in SENT_BY}
+        self.kept = {name: ReplayCache(f"{name} run", self.before.clock) for name in SENT_BY}
         self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
         self.session = 0
 
@@ -56,12 +56,12 @@ class Wreck:
                 self.before.recorder.add(block)
 
     def restart(self, name: str) -> None:
-        self.kept[name] = Cache(f"another {name} run", self.before.clock)
+        self.kept[name] = ReplayCache(f"another {name} run", self.before.clock)
         self.following[name] = dict.fromkeys(BY_NAME, 0)
 
-    def answers(self) -> dict[str, Kept]:
+    def answers(self) -> dict[str, BacklogReply]:
         question = write_question(dict.fromkeys(BY_NAME, 0))
-        return {name: Kept.from_bytes(cache.answer(question)) for name, cache in self.kept.items()}
+        return {name: BacklogReply.from_bytes(cache.answer(question)) for name, cache in self.kept.items()}
 
     async def start(self, first: int = 0) -> None:
         """Record for a while; then all that was recorded is stored, and some more is not."""

@@ -5,14 +5,14 @@ import time
 from collections.abc import Callable
 
 from robot_runtime.clock import Clock
-from robot_runtime.link.conversation import PERIOD, Conversation
+from robot_runtime.link.link_driver import PERIOD, LinkDriver
 from robot_runtime.link.port import Port, PortError
-from robot_runtime.link.session import Message
+from robot_runtime.link.session import BoardMessage
 
 _RETRY = 0.25
 
 
-class Connection(Conversation):
+class SerialLink(LinkDriver):
     """Keeps a serial connection to the board alive; its callbacks run on its own thread."""
 
     def __init__(
@@ -21,7 +21,7 @@ class Connection(Conversation):
         baud: int,
         clock: Clock,
         epoch: int,
-        on_messages: Callable[[list[Message]], None],
+        on_messages: Callable[[list[BoardMessage]], None],
         on_change: Callable[[], None],
     ) -> None:
         super().__init__(path, baud, clock, epoch, on_messages, on_change)

@@ -9,10 +9,10 @@ import pytest
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Debug, Heartbeat, Hello, Stop
-from robot_runtime.link.connection import Connection
 from robot_runtime.link.framing import build
 from robot_runtime.link.port import Port, PortError
-from robot_runtime.link.session import Message
+from robot_runtime.link.serial_link import SerialLink
+from robot_runtime.link.session import BoardMessage
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello
 
 
@@ -21,9 +21,9 @@ class Host:
 
     def __init__(self, path: Path) -> None:
         self.changes = 0
-        self.messages: list[Message] = []
+        self.messages: list[BoardMessage] = []
         self._changed = threading.Condition()
-        self.connection = Connection(str(path), 250_000, SteadyClock(), 1, self._take, self._change)
+        self.connection = SerialLink(str(path), 250_000, SteadyClock(), 1, self._take, self._change)
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
@@ -33,7 +33,7 @@ class Host:
         self.changes += 1
         self._wake()
 
-    def _take(self, messages: list[Message]) -> None:
+    def _take(self, messages: list[BoardMessage]) -> None:
         self.messages += messages
         self._wake()
 

@@ -9,8 +9,8 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.packets import Hello, Packet, Status, Stop
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.link.frame_ring import KeptFrame
-from robot_runtime.link.session import Message, Session, Stage
+from robot_runtime.link.frame_ring import RecordedFrame
+from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 
 log = logging.getLogger(__name__)
 
@@ -27,15 +27,15 @@ class LineError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class LinkFault:
     """What went wrong at `time` (s), in words, and the last frames each way until then."""
 
     time: float
     text: str
-    frames: list[KeptFrame]
+    frames: list[RecordedFrame]
 
 
-class Conversation:
+class LinkDriver:
     """Keeps a session with the board from one opening of the line to the next.
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
@@ -49,27 +49,27 @@ class Conversation:
         baud: int,
         clock: Clock,
         epoch: int,
-        on_messages: Callable[[list[Message]], None],
+        on_messages: Callable[[list[BoardMessage]], None],
         on_change: Callable[[], None],
     ) -> None:
         self.path = path
         self.baud = baud
         self.text = "not opened yet"
-        self.fault: Fault | None = None
+        self.fault: LinkFault | None = None
         self._clock = clock
         self._epoch = epoch
         self._on_messages = on_messages
         self._on_change = on_change
         self._write: Write | None = None
-        self._session = Session(epoch, baud)
-        self._stage: Stage | None = None
+        self._session = LinkSession(epoch, baud)
+        self._stage: SessionStage | None = None
         self._faults = 0
         self._writing = threading.Lock()
 
     @property
     def connected(self) -> bool:
         """Whether the board answers and speaks the same definitions."""
-        return self._write is not None and self._session.stage is Stage.ESTABLISHED
+        return self._write is not None and self._session.stage is SessionStage.ESTABLISHED
 
     @property
     def board(self) -> Hello | None:
@@ -103,7 +103,7 @@ class Conversation:
         """What the line carried since it was opened."""
         return self._session.statistics()
 
-    def frames(self) -> list[KeptFrame]:
+    def frames(self) -> list[RecordedFrame]:
         """The last frames each way since the line was opened, in the order of time."""
         with self._writing:
             return self._session.ring.frames()
@@ -113,7 +113,7 @@ class Conversation:
         with self._writing:
             # Another epoch each time: the board must not take this for the conversation before.
             self._epoch = (self._epoch + 1) & 0xFFFF
-            self._session = Session(self._epoch, self.baud)
+            self._session = LinkSession(self._epoch, self.baud)
             self._write = write
         self._stage = None
 
@@ -124,13 +124,13 @@ class Conversation:
 
     def lose(self) -> None:
         """Keep what was on the line when it went away, where a board was there."""
-        if self._stage is Stage.ESTABLISHED:
+        if self._stage is SessionStage.ESTABLISHED:
             self._dump("the port went away")
 
     def poll(self) -> None:
         """Say how things stand, and what is due. Raises LineError."""
         if self._session.stage is not self._stage:
-            if self._stage is Stage.ESTABLISHED:
+            if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")
             self._stage = self._session.stage
         self.tell(_words(self._stage, self._session))
@@ -175,18 +175,18 @@ class Conversation:
     def _dump(self, why: str) -> None:
         with self._writing:
             ring = self._session.ring
-            self.fault = Fault(self._clock.now(), why, ring.frames())
+            self.fault = LinkFault(self._clock.now(), why, ring.frames())
             dump = ring.dump()
         log.info("link: %s; the last frames, bytes as on the line:\n%s", why, dump)
 
 
-def _words(stage: Stage, session: Session) -> str:
-    if stage is Stage.GREETING and session.garbled:
+def _words(stage: SessionStage, session: LinkSession) -> str:
+    if stage is SessionStage.GREETING and session.garbled:
         return (
             "bytes come from the board, but no valid frame: does its firmware run at another speed than"
             f" link.baud, {session.baud} baud? `make firmware` builds it for that; then upload it"
         )
-    if stage is not Stage.REFUSED or session.board is None:
+    if stage is not SessionStage.REFUSED or session.board is None:
         return stage.value
     return (
         f"{stage.value} (board {session.board.definitions:08x}): build and upload the firmware that"
