@@ -20,6 +20,8 @@ from server.features.layouts import routes as layouts
 from server.features.layouts.library import UnknownLayout
 from server.features.lease import routes as control
 from server.features.lease.lease import NotInControl
+from server.features.live import history_routes as past
+from server.features.live import routes as live
 from server.features.operate import link_routes as link
 from server.features.operate import routes as robot
 from server.features.operate import scene_routes as scene
@@ -54,8 +56,6 @@ from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
 from server.platform.store import StoreError
 from server.processes.supervisor import Command
-from server.stream import history_routes as past
-from server.stream import routes as live
 from server.stream.bridge import RuntimeSilent
 
 

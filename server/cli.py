@@ -22,8 +22,8 @@ from server.platform.settings import DataFolder, Settings, SetupError, make_fold
 from server.processes.keeper import Keeper, keeper_of, relieve
 
 if TYPE_CHECKING:
-    from server.http.certificate import Certificate
     from server.http.sign_in.access import Access
+    from server.platform.certificate import Certificate
 
     Actions = argparse._SubParsersAction[argparse.ArgumentParser]
 
@@ -238,8 +238,8 @@ def _run(settings: Settings) -> int:
     # Loaded only now: a wrong command line should be told at once, also on a slow computer.
     from robot_runtime.simulation.boards.firmware import BuildError, build_firmware
     from server.app import create_app
-    from server.http.certificate import prepare_certificate
     from server.http.serving import make_server, open_socket
+    from server.platform.certificate import prepare_certificate
     from server.platform.running_server import announce
     from server.platform.schema import prepare
     from server.processes.supervisor import plan

@@ -44,9 +44,9 @@ from server.http.page import Page
 from server.http.sign_in.access import Access
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
+from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
-from server.processes.pidfile import running_parts
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
 from server.stream.bridge import SENT_BY, Bridge, RuntimeSilent
 from server.stream.hub import Hub

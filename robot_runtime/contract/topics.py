@@ -78,6 +78,8 @@ TOPICS: tuple[Topic, ...] = (
     Topic(36, "balanced", Kind.PICTURE, None, "the camera's picture after the white balance"),
 )
 BY_NAME = {topic.name: topic for topic in TOPICS}
+RECORDED = tuple(topic for topic in TOPICS if topic.kind is not Kind.PICTURE or topic.name == "thumbnail")
+"""The topics of a recording: all but the large pictures, which only a viewer is sent."""
 BY_ID = {topic.id: topic for topic in TOPICS}
 ROW_BYTES = {topic.id: topic.row_bytes for topic in TOPICS if topic.kind is Kind.ROWS}
 """Of one row with its time, by the topic's number."""

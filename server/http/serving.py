@@ -5,8 +5,8 @@ import socket
 import uvicorn
 from fastapi import FastAPI
 
-from server.http.certificate import Certificate
 from server.http.sockets import Sockets
+from server.platform.certificate import Certificate
 from server.platform.settings import SetupError
 
 SEND_BUFFER_BYTES = 65_536

@@ -4,6 +4,9 @@ from uuid import uuid4
 
 from sqlmodel import Field, Index, SQLModel, UniqueConstraint
 
+IDENTIFIER_MAX = 2**63 - 1
+"""SQLite's largest number."""
+
 
 class SessionRow(SQLModel, table=True):
     """One recording. Times are UTC (s since 1970) and steady (s, the computer's steady clock).

@@ -11,7 +11,7 @@ from typing import IO, Any
 
 from migrations import HEAD
 from robot_runtime.durable_files import write_whole
-from server.http.certificate import trust_only
+from server.platform.certificate import trust_only
 from server.platform.schema import prepare, read_revision
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.store import Reader

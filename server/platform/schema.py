@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from migrations import HEAD
-from server.features.backup.backup import copy_database, open_database, place, thin_out
+from server.platform.database_copies import copy_database, open_database, place, thin_out
 from server.platform.settings import DataFolder, SetupError
 
 INCREMENTAL = 2

@@ -11,7 +11,7 @@ from typing import Literal
 
 from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
 from robot_runtime.durable_files import make_folder
-from server.processes.pidfile import running_parts
+from server.platform.pidfile import running_parts
 
 SOCKET_PATH_BYTES_MAX = 107
 """Linux's limit for the path of a Unix socket (sockaddr_un), without its closing zero."""

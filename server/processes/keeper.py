@@ -24,9 +24,9 @@ from struct import Struct
 from typing import NoReturn
 
 from robot_runtime.transport.lifetime import is_served
+from server.platform.pidfile import PidFile
 from server.platform.settings import DataFolder
 from server.processes.backoff import Backoff, describe_pause
-from server.processes.pidfile import PidFile
 from server.processes.process import describe_status, started_at
 
 Serve = Callable[[str], int]

@@ -22,10 +22,10 @@ from robot_runtime.contract.documents import Severity
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
+from server.platform.pidfile import end_parts, pid_file
 from server.platform.settings import DataFolder, Settings
 from server.processes.backoff import Backoff, describe_pause
 from server.processes.logs import PartLog
-from server.processes.pidfile import end_parts, pid_file
 from server.processes.process import AdoptedProcess, Process, describe_status
 
 log = logging.getLogger(__name__)

@@ -15,14 +15,13 @@ from functools import partial
 from typing import Any
 
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, Block, read_blocks
+from robot_runtime.contract.topics import BY_NAME, RECORDED, Block, read_blocks
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import Refused
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
 from robot_runtime.transport.zenoh_transport import NoAnswer, Subscription, ZenohTransport
-from server.features.sessions.chunks import RECORDED
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import Source
 

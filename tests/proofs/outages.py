@@ -16,8 +16,8 @@ from typing import Literal
 import httpx
 import psutil
 
+from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
-from server.processes.pidfile import running_parts
 from tests.proofs.watching import Fins, Viewer, wait
 from tests.stack import Stack
 

@@ -16,8 +16,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from robot_runtime.errors import Refused
 from server.app import create_app
 from server.container import Assembly
-from server.http.certificate import prepare_certificate, trust_only
 from server.http.serving import make_server, open_socket
+from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.processes.supervisor import Command

@@ -14,9 +14,9 @@ import psutil
 import pytest
 
 from server import VERSION
+from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from server.processes.keeper import keeper_of
-from server.processes.pidfile import pid_file, running_parts
 from tests.server.waiting import alive
 
 pytestmark = pytest.mark.stack

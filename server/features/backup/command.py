@@ -7,7 +7,7 @@ from contextlib import closing
 from pathlib import Path
 
 from robot_runtime.durable_files import sync, write_whole
-from server.features.backup.backup import (
+from server.platform.database_copies import (
     CHECKSUM,
     copy_database,
     open_database,

@@ -15,8 +15,8 @@ from starlette.types import Receive, Scope, Send
 
 from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import Refused
-from server.features.backup.backup import copy_database, place
-from server.features.sessions.storage import DIVE_BYTES
+from server.platform.database_copies import copy_database, place
+from server.platform.disk_space import DIVE_BYTES
 from server.platform.settings import DataFolder
 
 PIECE_BYTES = 1 << 18

@@ -20,11 +20,11 @@ from server.features.comm_tests.reference import Place as Cell
 from server.features.comm_tests.runs import KeptRuns, Runs
 from server.features.comm_tests.schemas import Place
 from server.platform.models import CommTestRun
+from server.platform.pidfile import end_parts
 from server.platform.running_server import Claim, open_reader
 from server.platform.schema import prepare
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store, StoreError
-from server.processes.pidfile import end_parts
 
 
 def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:

@@ -26,9 +26,8 @@ from server.features.comm_tests.schemas import (
 )
 from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.http.problems import answers
-from server.platform.models import CommTestRun
+from server.platform.models import IDENTIFIER_MAX, CommTestRun
 
 UNKNOWN = answers(_404="There is no such run")
 

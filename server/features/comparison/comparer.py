@@ -8,8 +8,8 @@ from math import isfinite
 import numpy as np
 
 from server.features.comparison.alignment import NoMomentError, find_moment
-from server.features.comparison.decimation import Floats, decimate
-from server.features.comparison.definitions import FIGURES, Figure
+from server.features.comparison.decimation import decimate
+from server.features.comparison.definitions import FIGURES
 from server.features.comparison.differences import find_differences
 from server.features.comparison.figures import (
     MEASURED,
@@ -44,6 +44,8 @@ from server.features.comparison.schemas import (
     WantedLines,
 )
 from server.features.comparison.signals import Signal, list_signals, split
+from server.features.metrics.figure import Figure
+from server.features.metrics.series import Floats
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.models import SessionRow

@@ -8,11 +8,8 @@ spike is lost that way.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from server.features.comparison.samples import Series
-
-Floats = NDArray[np.float64]
+from server.features.metrics.series import Floats, Series
 
 GAP_PERIODS = 5.0
 GAP_LEAST = 1.0

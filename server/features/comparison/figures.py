@@ -5,14 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from server.features.comparison.definitions import FIGURES, Figure, FigureMark
+from server.features.comparison.definitions import FIGURES
 from server.features.comparison.history import read_gaps, set_point_steps
-from server.features.comparison.limit_cycle import LimitCycle, find_limit_cycle
 from server.features.comparison.moments import History, Span
-from server.features.comparison.samples import Samples, Series, read_topic
-from server.features.comparison.step_response import StepResponse, measure_step
-from server.features.comparison.strokes import count_strokes
-from server.features.comparison.tracking import effort, rms
+from server.features.comparison.samples import Samples, read_topic
+from server.features.metrics.figure import Figure, FigureMark
+from server.features.metrics.limit_cycle import LimitCycle, find_limit_cycle
+from server.features.metrics.series import Series
+from server.features.metrics.step_response import StepResponse, measure_step
+from server.features.metrics.strokes import count_strokes
+from server.features.metrics.tracking import effort, rms
 from server.features.sessions.recording import Recording
 from server.platform.store import Reader
 

@@ -7,7 +7,8 @@ import numpy as np
 from sqlmodel import col, select
 
 from server.features.comparison.moments import Control, History, Moment, Span, Tuned
-from server.features.comparison.samples import Samples, Series
+from server.features.comparison.samples import Samples
+from server.features.metrics.series import Series
 from server.features.sessions.recording import Recording
 from server.platform.models import Gap, Marker
 from server.platform.store import Reader

@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from server.container import Assembly
 from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.features.comparison.signals import Signal
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.http.problems import answers
+from server.platform.models import IDENTIFIER_MAX
 
 REPORT_POINTS = 2000
 UNKNOWN = answers(_404="There is no such session", _503="The database does not work")

@@ -2,38 +2,16 @@
 
 from collections import OrderedDict
 from collections.abc import Iterable
-from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from server.features.comparison.signals import DOCUMENT_COLUMNS, split
+from server.features.metrics.series import Floats, Series
 from server.features.sessions.recording import Recording
 
-Floats = NDArray[np.float64]
-
 KEPT_BYTES = 32_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class Series:
-    """A signal's samples in the order of time: s since the session's start, and the unit of the signal."""
-
-    times: Floats
-    values: Floats
-
-    def within(self, start: float, end: float) -> "Series":
-        """The samples between these times."""
-        first = int(np.searchsorted(self.times, start, "left"))
-        last = int(np.searchsorted(self.times, end, "right"))
-        return Series(self.times[first:last], self.values[first:last])
-
-    @property
-    def bytes(self) -> int:
-        """Memory that it takes."""
-        return self.times.nbytes + self.values.nbytes
 
 
 class Samples:

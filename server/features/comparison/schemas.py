@@ -5,10 +5,10 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.features.comparison.alignment import Align
-from server.features.comparison.definitions import Figure, FigureMeaning
 from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
-from server.features.sessions.session import IDENTIFIER_MAX
+from server.features.metrics.figure import Figure, FigureMeaning
+from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
 SIGNALS_MAX = 24

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.features.sessions.session import IDENTIFIER_MAX
+from server.platform.models import IDENTIFIER_MAX
 
 Format = Literal["csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report"]
 State = Literal["waiting", "running", "done", "failed"]

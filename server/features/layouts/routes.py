@@ -10,8 +10,8 @@ from server.container import Assembly
 from server.features.layouts.document import LayoutDocument
 from server.features.layouts.library import KeptLayout, WholeLayout
 from server.features.sessions.routes import STORING
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.http.problems import answers
+from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such layout")
 

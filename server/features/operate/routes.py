@@ -7,9 +7,9 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.documents import State, Steering
 from server.container import Assembly
-from server.features.sessions.storage import check_room
 from server.http.problems import answers
 from server.http.sign_in.identity import Identity
+from server.platform.disk_space import check_room
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
 COMMAND = {

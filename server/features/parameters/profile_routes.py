@@ -11,9 +11,9 @@ from server.features.operate.routes import COMMAND, SILENT
 from server.features.parameters.profiles import ProfileError, file_name, read_file, write_file
 from server.features.parameters.routes import ask_parameters
 from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Restored
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.http.problems import answers
 from server.http.sign_in.identity import Identity
+from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such profile")
 STORED = answers(_503="The database does not work")

@@ -18,13 +18,13 @@ from server.features.people.schemas import (
     NewToken,
     Pairing,
 )
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.http.problems import answers
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Device
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTries, WrongCode
 from server.http.sign_in.policy import OPERATIONS, Need
+from server.platform.models import IDENTIFIER_MAX
 
 COOKIE_SECONDS = 400 * 86400
 """As long as browsers keep any. Access ends by signing out and by revocation; a Raspberry Pi without a

@@ -5,8 +5,8 @@ from urllib.parse import urlsplit
 
 from server import VERSION
 from server.features.people.pairing_links import pairing_link, qr_text
-from server.http.certificate import Certificate
 from server.http.sign_in.access import Access
+from server.platform.certificate import Certificate
 from server.platform.settings import Settings, is_loopback
 
 

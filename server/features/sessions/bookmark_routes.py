@@ -7,8 +7,9 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from server.container import Assembly
 from server.features.sessions.routes import STORING, Identifier
-from server.features.sessions.session import IDENTIFIER_MAX, Mark
+from server.features.sessions.session import Mark
 from server.http.problems import answers
+from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such session, or it has no such mark")
 

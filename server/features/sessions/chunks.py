@@ -18,13 +18,11 @@ from struct import Struct
 from typing import Any
 
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
+from robot_runtime.contract.topics import RECORDED, TIME, Kind, Topic
 
 ROWS_ENCODING = "shuffle-zlib"
 DOCUMENTS_ENCODING = "lines-zlib"
 PICTURES_ENCODING = "pictures"
-RECORDED = tuple(topic for topic in TOPICS if topic.kind is not Kind.PICTURE or topic.name == "thumbnail")
-"""All but the pictures that only a watcher is shown."""
 PICTURE_SIZE = Struct("<I")
 LEVEL = 1
 """zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""

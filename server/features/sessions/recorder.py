@@ -22,8 +22,8 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, Topic
-from server.features.sessions.chunks import RECORDED, encode
+from robot_runtime.contract.topics import BY_NAME, NUMBERS, RECORDED, Block, Topic
+from server.features.sessions.chunks import encode
 from server.features.sessions.resume import Left, Missing, find_left
 from server.features.sessions.session import Session, from_row
 from server.platform.models import Chunk, Gap, SessionRow

@@ -16,7 +16,6 @@ from server.features.exports.tables import stream_tables
 from server.features.sessions.recorder import RecordingRefused
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import (
-    IDENTIFIER_MAX,
     Name,
     Note,
     Origin,
@@ -26,6 +25,7 @@ from server.features.sessions.session import (
     new_row,
 )
 from server.http.problems import answers
+from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such session")
 STORING = answers(_409="Refused now", _503="The database does not work")

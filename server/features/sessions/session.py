@@ -17,8 +17,6 @@ from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Reader
 
-IDENTIFIER_MAX = 2**63 - 1
-"""SQLite's largest number."""
 REMOVING = "removing"
 """State of a row whose samples are being removed: to everybody it is gone already."""
 IMPORTING = "importing"

@@ -6,15 +6,12 @@ from pathlib import Path
 from pydantic import BaseModel, Field
 from sqlmodel import col, func, select
 
-from robot_runtime.errors import Refused
 from server.features.sessions.session import HIDDEN
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder, Settings
 from server.platform.store import Store
 
 GIGABYTE = 1_000_000_000
-DIVE_BYTES = 20_000_000
-"""Room for an hour of recording without pictures; with less, nobody would know later what the robot did."""
 
 
 class Storage(BaseModel):
@@ -64,16 +61,6 @@ def measure(store: Store, settings: Settings) -> Storage:
         keep_days=rules.keep_days,
         keep_free=rules.keep_free,
     )
-
-
-def check_room(folder: DataFolder) -> None:
-    """Raises Refused where there is no room to record a dive."""
-    free = shutil.disk_usage(folder.path).free
-    if free < DIVE_BYTES:
-        raise Refused(
-            f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
-            f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
-        )
 
 
 def _database_files(folder: DataFolder) -> list[Path]:

@@ -1,6 +1,6 @@
 """What the figures of a step response are, without the means to compute them."""
 
-from server.features.comparison.definitions import FigureMeaning
+from server.features.metrics.figure import FigureMeaning
 
 NEAR = 0.02
 """m, and 2 for angles in degrees: the band of one settling time, whatever the step."""

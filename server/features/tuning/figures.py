@@ -4,11 +4,11 @@ from math import degrees
 
 import numpy as np
 
-from server.features.comparison.definitions import Figure
-from server.features.comparison.samples import Floats, Series
-from server.features.comparison.step_response import StepResponse, measure_step
-from server.features.comparison.strokes import count_strokes
-from server.features.comparison.tracking import effort, integral_absolute, rms, travel
+from server.features.metrics.figure import Figure
+from server.features.metrics.series import Floats, Series
+from server.features.metrics.step_response import StepResponse, measure_step
+from server.features.metrics.strokes import count_strokes
+from server.features.metrics.tracking import effort, integral_absolute, rms, travel
 from server.features.tuning.curve import Curve, Gathering
 from server.features.tuning.figure_definitions import is_angle, near
 

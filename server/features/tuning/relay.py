@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from server.features.comparison.samples import Floats
+from server.features.metrics.series import Floats
 from server.features.tuning.curve import Curve
 from server.features.tuning.rules import ultimate_gain
 from server.features.tuning.schemas import LimitCycleFound

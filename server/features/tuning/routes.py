@@ -7,7 +7,6 @@ from fastapi.concurrency import run_in_threadpool
 
 from server.container import Assembly
 from server.features.operate.routes import COMMAND
-from server.features.sessions.session import IDENTIFIER_MAX
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.schemas import (
     LoopName,
@@ -19,6 +18,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.problems import answers
+from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such run", _409="Refused now", _503="The database does not work")
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
-from server.features.comparison.definitions import Figure, FigureMeaning
+from server.features.metrics.figure import Figure, FigureMeaning
 
 LoopName = Literal["depth", "heading", "pitch", "roll"]
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]

@@ -15,9 +15,9 @@ import server.processes.backoff as backoff_module
 import server.processes.supervisor as parts_module
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig
+from server.platform.pidfile import end_parts, pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.processes.logs import PartLog
-from server.processes.pidfile import end_parts, pid_file, running_parts
 from server.processes.supervisor import Command, Part, Parts, plan
 from tests.server.waiting import alive, until
 

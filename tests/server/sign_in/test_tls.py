@@ -8,7 +8,7 @@ from dataclasses import replace
 import httpx
 import pytest
 
-from server.http.certificate import prepare_certificate
+from server.platform.certificate import prepare_certificate
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
 from tests.server.serving import Served, next_text, serve

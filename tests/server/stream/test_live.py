@@ -12,9 +12,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 import server.stream.hub as hub_module
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.contract.topics import Block, read_blocks
+from server.features.live.routes import NONSENSE_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
 from server.platform.settings import Settings
-from server.stream.routes import NONSENSE_MAX
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.serving import Served, next_text, play
 from tests.server.waiting import until

@@ -17,9 +17,9 @@ import pytest
 
 from migrations import HEAD
 from server.cli import main
-from server.features.backup import backup
 from server.features.backup import command as backup_command
 from server.features.sessions.catalogue import Listing
+from server.platform import database_copies
 from server.platform.schema import prepare, read_revision
 from server.platform.settings import Settings
 from server.platform.store import Reader, Store
@@ -78,7 +78,7 @@ def test_a_backup_is_of_one_moment_while_it_is_written(settings: Settings, tmp_p
         try:
             for number in range(5):
                 path = tmp_path / f"{number}.db"
-                backup.copy_database(settings.data.database, path)
+                database_copies.copy_database(settings.data.database, path)
                 with closing(sqlite3.connect(path)) as copy:
                     found = copy.execute(
                         "SELECT session.samples, coalesce(sum(count), 0) FROM session "
@@ -212,11 +212,11 @@ def test_the_newest_backups_are_kept(settings: Settings, monkeypatch: pytest.Mon
     fill(settings, "one")
     moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
     monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
-    for _ in range(backup.KEPT + 2):
+    for _ in range(database_copies.KEPT + 2):
         backup_command.back_up(settings.data, None)
     kept = sorted(path.name for path in settings.data.backups.glob("*.db"))
     assert kept == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
-    assert len(list(settings.data.backups.iterdir())) == 2 * backup.KEPT
+    assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.KEPT
 
 
 def test_a_second_writer_is_refused(settings: Settings) -> None:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from server.features.comparison.decimation import decimate
-from server.features.comparison.samples import Series
+from server.features.metrics.series import Series
 
 
 def test_few_samples_are_passed_on_as_they_are() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from server.features.comparison.samples import Floats
+from server.features.metrics.series import Floats
 
 
 def rms(errors: Floats) -> float:

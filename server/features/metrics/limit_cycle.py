@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from server.features.comparison.samples import Series
+from server.features.metrics.series import Series
 
 Floats = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Figures computed from signals over time, for comparisons of sessions and for tuning runs."""
