@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.config import ConfigError, load
+from robot_runtime.config import load
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.robot import Robot
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.transport.zenoh_transport import ZenohTransport

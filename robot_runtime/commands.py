@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from robot_runtime.config import parse
 from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.experiment_request import read_experiment
 from robot_runtime.control.supervisor import ALONE_MAX

@@ -6,8 +6,9 @@ from dataclasses import asdict
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.commands import Commands
-from robot_runtime.config import Config, ConfigError
+from robot_runtime.config import Config
 from robot_runtime.contract.documents import Event
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import PILOT

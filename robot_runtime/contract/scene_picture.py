@@ -8,8 +8,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.config import ConfigError, Range, parse
 from robot_runtime.contract.card_colours import Paint
+from robot_runtime.contract.limits import ConfigError, Range
+from robot_runtime.contract.parsing import parse
 
 HEADER = Struct("<dII")
 BYTE_MAX = 255

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import Range
+from robot_runtime.contract.limits import Range
 from robot_runtime.control.experiment import (
     LoopExperiment,
     RelayExperiment,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import degrees, pi
 from typing import Literal
 
-from robot_runtime.config import SET_POINT, Range
+from robot_runtime.contract.limits import SET_POINT, Range
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import Refused

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
-from robot_runtime.config import SET_POINT, VISION_RATE
+from robot_runtime.contract.limits import SET_POINT, VISION_RATE
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.loop import ControlLoop

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_runtime.config import Range
+from robot_runtime.contract.limits import Range
 from robot_runtime.contract.vision_settings import BYTE_MAX, HUE_MAX, ColourRange
 from robot_runtime.errors import Refused
 from robot_runtime.vision.patches import find_colour

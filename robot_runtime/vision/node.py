@@ -8,9 +8,10 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import VisionConfig, parse
+from robot_runtime.config import VisionConfig
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
 from robot_runtime.contract.documents import Detection, Event, Severity
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import Refused
 from robot_runtime.transport.zenoh_transport import ZenohTransport

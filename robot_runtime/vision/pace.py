@@ -1,7 +1,7 @@
 """When the next picture is due."""
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import VISION_RATE
+from robot_runtime.contract.limits import VISION_RATE
 
 
 class Pace:

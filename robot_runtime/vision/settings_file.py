@@ -4,7 +4,8 @@ import json
 import os
 from pathlib import Path
 
-from robot_runtime.config import ConfigError, read_value
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import read_value
 from robot_runtime.contract.vision_settings import VisionSettings
 
 

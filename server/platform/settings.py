@@ -9,7 +9,8 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.config import ConfigError, HilConfig, LinkConfig, SessionsConfig, load
+from robot_runtime.config import HilConfig, LinkConfig, SessionsConfig, load
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder
 from server.platform.pidfile import running_parts
 

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.config import Config, ConfigError, load, parse
+from robot_runtime.config import Config, load
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse
 from robot_runtime.control.controllers import CONTROLLERS
 
 SHIPPED = Path(__file__).resolve().parents[2] / "robot.toml"

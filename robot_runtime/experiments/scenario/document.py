@@ -8,7 +8,9 @@ import tomllib
 from dataclasses import asdict, dataclass, field, fields, is_dataclass
 from typing import Annotated, Any, Literal, get_type_hints
 
-from robot_runtime.config import VISION_RATE, ConfigError, ControlConfig, Range, parse, place, read_value
+from robot_runtime.config import ControlConfig
+from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
+from robot_runtime.contract.parsing import parse, place, read_value
 from robot_runtime.experiments.scenario.events import Colour, Event, WavesChange, check_controller, read_event
 from robot_runtime.simulation.water.parameters import Parameters, Quality, Vector
 from robot_runtime.simulation.water.surroundings import (

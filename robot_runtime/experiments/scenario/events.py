@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, fields
 from math import hypot
 from typing import Annotated, Any, ClassVar, Literal
 
-from robot_runtime.config import SET_POINT, VISION_RATE, ConfigError, Range, parse, place
 from robot_runtime.contract.documents import Steering
+from robot_runtime.contract.limits import SET_POINT, VISION_RATE, ConfigError, Range
+from robot_runtime.contract.parsing import parse, place
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.control.loop import SET_POINTS, LoopName
 from robot_runtime.control.supervisor import ALONE_MAX

@@ -11,7 +11,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from robot_runtime.config import ConfigError, LinkConfig, load
+from robot_runtime.config import LinkConfig, load
+from robot_runtime.contract.limits import ConfigError
 
 _SOURCES = Path(__file__).parents[3] / "firmware"
 _LINES_TOLD = 5

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from robot_runtime.config import Range
 from robot_runtime.contract.card_colours import PAINTS, Paint
+from robot_runtime.contract.limits import Range
 from robot_runtime.simulation.scene.water import TURBIDITY, Kind
 from robot_runtime.simulation.water.parameters import Parameters, Vector
 from robot_runtime.simulation.water.surroundings import FAR, Basin, check_beacons

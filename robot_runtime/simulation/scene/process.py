@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 import cv2
 
 from robot_runtime.clock import Clock
-from robot_runtime.config import ConfigError, parse
 from robot_runtime.contract.card_colours import Paint
 from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.packets.layout import LayoutError
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.scene_picture import Picture, Request, read_request, write_picture
 from robot_runtime.contract.topics import BY_NAME, Block, read_blocks, read_rows, row
 from robot_runtime.errors import NoAnswer, Refused

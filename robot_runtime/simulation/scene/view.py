@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import atan2, cos, radians, sin
 from typing import Annotated, Literal
 
-from robot_runtime.config import Range
 from robot_runtime.contract.documents import Truth
+from robot_runtime.contract.limits import Range
 from robot_runtime.simulation.water.geometry import Matrix, rotation
 from robot_runtime.simulation.water.parameters import Vector
 

@@ -10,7 +10,7 @@ way down.
 from dataclasses import dataclass
 from typing import Literal
 
-from robot_runtime.config import Range
+from robot_runtime.contract.limits import Range
 
 Kind = Literal["pool", "natural"]
 Colours = tuple[float, float, float]

@@ -5,7 +5,7 @@ from typing import Any
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import PlainTextResponse
 
-from robot_runtime.config import ConfigError
+from robot_runtime.contract.limits import ConfigError
 from server.container import Assembly
 from server.features.operate.routes import COMMAND, SILENT, tune
 from server.features.vision.schemas import (

@@ -5,7 +5,9 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
-from robot_runtime.config import ConfigError, VisionConfig, parse, read_value
+from robot_runtime.config import VisionConfig
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse, read_value
 
 BARE = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")
 

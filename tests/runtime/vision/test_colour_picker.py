@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.config import VisionConfig
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.errors import Refused
 from robot_runtime.vision.camera import CameraError

@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.config import Config, ConfigError, load, parse
+from robot_runtime.config import Config, load
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from robot_runtime.vision.patches import find_colour
 from robot_runtime.vision.settings_file import VisionSettingsFile

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from robot_runtime.clock import SimulatedClock, SteadyClock
-from robot_runtime.config import ConfigError, VisionConfig
+from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event, Truth
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.scene_picture import (
     Picture,
     read_picture,

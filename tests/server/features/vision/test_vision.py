@@ -9,7 +9,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.config import parse
+from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
 from server.features.vision.toml_document import read_document, write_document
 from server.platform.settings import Settings
