@@ -1,8 +1,8 @@
 """The depth controllers beside each other, in simulated time: nominal craft, and each thing 30 % off.
 
 `measure` gives the figures of the best; `python -m bench.control [FILE]` writes the table of all into the
-marked place of docs/control.md. What is judged is the depth that the simulated sensor really had, without
-its noise.
+marked place of docs/develop/proofs/control.md. What is judged is the depth that the simulated sensor really
+had, without its noise.
 """
 
 import os
@@ -247,7 +247,7 @@ def table(found: dict[tuple[str, str], list[Figures]]) -> str:
 
 def main() -> None:
     """Write the table into the document."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/control.md")
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/develop/proofs/control.md")
     made = table(perform_all())
     text = path.read_text(encoding="utf-8")
     head, rest = text.split(_BEGIN, 1)

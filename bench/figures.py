@@ -1,6 +1,6 @@
 """`python -m bench.figures SESSION --data FOLDER --out FOLDER`: the thesis's Figures 14 to 16 from a session.
 
-Writes figure_14.svg, figure_15.svg and figure_16.svg, and prints what docs/experiments.md says of them. The
+Writes figure_14.svg, figure_15.svg and figure_16.svg, and prints what docs/use/thesis.md says of them. The
 session is one of the shipped scenario figure_14; `make figures` runs that first.
 """
 
@@ -49,7 +49,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m bench.figures", description=__doc__)
     parser.add_argument("session", type=int)
     parser.add_argument("--data", type=Path, default=Path("data"))
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/use"))
     options = parser.parse_args()
     with closing(Reader(options.data / "mucat.db")) as store:
         row = find_row(store, options.session)

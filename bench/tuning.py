@@ -1,7 +1,7 @@
 """What relay tuning is worth: the depth's limit cycle, and a step with the gains that each rule proposes.
 
 In simulated time, with the robot's own firmware on this computer. `python -m bench.tuning` prints the
-tables of docs/tuning.md.
+tables of docs/develop/proofs/tuning.md.
 """
 
 from collections.abc import Mapping

@@ -74,7 +74,7 @@ def test_an_old_node_is_named_with_its_version(path: Path) -> None:
 
 
 def test_every_make_command_of_the_documents_exists() -> None:
-    texts = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    texts = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     named = {
         match for text in texts for match in re.findall(r"(?m)(?:`|^)make ([a-z][a-z-]*)", text.read_text())
     }

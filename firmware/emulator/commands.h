@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands that come over the socket; docs/architecture.md lists them.
+// The commands that come over the socket; docs/reference/emulator.md lists them.
 #ifndef COMMANDS_H
 #define COMMANDS_H
 

@@ -1,4 +1,4 @@
-"""The question for a picture, and its answer, as they travel: see `scene/picture` in docs/architecture.md."""
+"""Request and answer of a picture query on the wire: see `scene/picture` in docs/reference/zenoh.md."""
 
 import json
 from dataclasses import asdict, dataclass

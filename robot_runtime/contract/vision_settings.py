@@ -65,7 +65,7 @@ COLOURS: Mapping[str, ColourRange] = {
     "green": ColourRange(hue=(40, 85), saturation=(80, 255), value=(50, 255)),
     "blue": ColourRange(hue=(104, 130), saturation=(140, 255), value=(70, 255)),
 }
-"""Taken where the configuration names no colours; docs/vision.md tells how they were chosen."""
+"""Taken where the configuration names no colours; docs/use/vision.md tells how they were chosen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,7 @@ ARRIVAL = 0.05
 DEPTH_MIN, DEPTH_MAX = -1.0, 20.0
 """m: air pressure and the sensor's own drift stay above, and the robot's set point ends at 10 m."""
 REPEATS = 10
-"""Equal readings of the pressure in a row that no sound sensor gives; see docs/safety.md."""
+"""Equal readings of the pressure in a row that no sound sensor gives; see docs/reference/safety.md."""
 TILT_MAX = 75 * pi / 180
 """rad between the robot's down and the world's; steering alone stays far below."""
 AT_SURFACE = 0.2

@@ -1,6 +1,6 @@
 """Every fault that the runtime looks for: how soon it is noticed, what is done, and what a person is told.
 
-What the chip does by itself, and how each is tested, is in docs/safety.md.
+What the chip does by itself, and how each is tested, is in docs/reference/safety.md.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The supervisor's states, and every way from one to another; docs/safety.md shows this very table."""
+"""The supervisor's states and transitions; docs/reference/safety.md shows this table."""
 
 from typing import Literal, NamedTuple
 

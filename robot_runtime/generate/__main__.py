@@ -21,8 +21,12 @@ def main() -> int:
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
-        "docs/parameters.md": parameters.weave((ROOT / "docs/parameters.md").read_text(encoding="utf-8")),
-        "docs/safety.md": safety.weave((ROOT / "docs/safety.md").read_text(encoding="utf-8")),
+        "docs/reference/parameters.md": parameters.weave(
+            (ROOT / "docs/reference/parameters.md").read_text(encoding="utf-8")
+        ),
+        "docs/reference/safety.md": safety.weave(
+            (ROOT / "docs/reference/safety.md").read_text(encoding="utf-8")
+        ),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

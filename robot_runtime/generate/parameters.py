@@ -1,4 +1,4 @@
-"""The part of docs/parameters.md that says what may be tuned."""
+"""The part of docs/reference/parameters.md that says what may be tuned."""
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
@@ -15,7 +15,7 @@ def weave(text: str) -> str:
     before, _, rest = text.partition(_BEGIN)
     _, found, after = rest.partition(_END)
     if not found:
-        raise ValueError("docs/parameters.md lacks its marks")
+        raise ValueError("docs/reference/parameters.md lacks its marks")
     rows = "".join(_row(one) for one in _listed())
     head = "| parameter | range | default | meaning |\n|---|---|---|---|\n"
     return before + _BEGIN + head + rows + _END + after

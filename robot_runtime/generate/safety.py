@@ -1,4 +1,4 @@
-"""The parts of docs/safety.md that say what the code does: the supervisor's states, and the faults."""
+"""The generated parts of docs/reference/safety.md: the supervisor's states, and the faults."""
 
 from robot_runtime.control.faults import FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
@@ -13,7 +13,7 @@ def weave(text: str) -> str:
         before, _, rest = text.partition(begin)
         _, found, after = rest.partition(end)
         if not found:
-            raise ValueError(f"docs/safety.md lacks its marks of {part}")
+            raise ValueError(f"docs/reference/safety.md lacks its marks of {part}")
         text = before + begin + made + end + after
     return text
 

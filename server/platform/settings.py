@@ -132,7 +132,7 @@ class DataFolder:
 
     @property
     def panels(self) -> Path:
-        """Panels of one's own for the page (docs/panels.md)."""
+        """Panels of one's own for the page (docs/use/panels.md)."""
         return self.path / "panels"
 
     @property

@@ -1,7 +1,8 @@
 """The database: one writing connection in a thread of its own, and connections that only read.
 
 SQLite before 3.51.3 can corrupt a write-ahead log that two connections write, so nothing else may write: who
-does holds the database's folder. What `write` has returned from survives a power cut (docs/durability.md).
+does holds the database's folder. What `write` has returned from survives a power cut
+(docs/reference/durability.md).
 """
 
 import asyncio

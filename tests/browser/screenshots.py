@@ -1,6 +1,6 @@
 """`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot at work.
 
-For docs/pages.md: look at them before they are committed.
+For docs/use/start.md: look at them before they are committed.
 """
 
 import re

@@ -170,7 +170,7 @@ def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stac
     page = fresh
     folder = stack.data / "panels"
     folder.mkdir()
-    shutil.copy(ROOT / "docs/panels/climb-rate.js", folder)
+    shutil.copy(ROOT / "docs/use/climb-rate.js", folder)
     (folder / "nosy.js").write_text(NOSY)
     (folder / "broken.js").write_text("export default 1;")
     answered: list[str] = []

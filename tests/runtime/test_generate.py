@@ -61,7 +61,7 @@ def test_the_page_knows_every_topic() -> None:
 
 
 def test_the_document_shows_the_states_and_the_faults_as_they_are_in_the_code() -> None:
-    text = (Path(__file__).resolve().parents[2] / "docs/safety.md").read_text()
+    text = (Path(__file__).resolve().parents[2] / "docs/reference/safety.md").read_text()
     assert safety.weave(text) == text
     for one in TRANSITIONS:
         assert f"    {one.before} --> {one.after}: {one.trigger}\n" in text

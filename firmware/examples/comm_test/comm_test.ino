@@ -1,5 +1,5 @@
 // The communication test: numbers over the serial line, with a delay after each, and counts of what arrived.
-// Each framing brings its own end of the line. See docs/communication.md.
+// Each framing brings its own end of the line. See docs/reference/comm-test.md.
 #include "counts.h"
 #include "parameters.h"
 

@@ -4602,7 +4602,7 @@ export interface components {
         };
         /**
          * VisionSettings
-         * @description How the vision node looks, all of it; docs/vision.md explains each.
+         * @description How the vision node looks, all of it; docs/use/vision.md explains each.
          */
         VisionSettings: {
             /**

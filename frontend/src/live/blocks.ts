@@ -1,4 +1,4 @@
-/** Blocks as they come through the socket; docs/architecture.md and robot_runtime/contract/topics.py say how they lie. */
+/** Blocks as they come through the socket; docs/reference/live-socket.md and robot_runtime/contract/topics.py say how they lie. */
 
 export const Kind = { ROWS: 0, DOCUMENTS: 1, PICTURE: 2 } as const;
 

@@ -10,7 +10,7 @@ import { ownTitle, type PanelKind, type Plain, type Size } from '../parts/panelK
 /** What an operator looks at first comes with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
 
-/** Every panel that comes with the program, but for charts, of which there may be several (docs/panels.md). */
+/** Every panel that comes with the program, but for charts, of which there may be several (docs/use/panels.md). */
 export const PANELS: readonly PanelKind[] = [
   {
     name: 'camera',

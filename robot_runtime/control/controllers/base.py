@@ -1,7 +1,7 @@
 """What every controller is: from set point and measured value to a command between -1 and 1.
 
 A controller is one small class: a name, a title, its gains with their limits, and `step`.
-docs/control.md says how one is added.
+docs/develop/add-a-controller.md says how one is added.
 """
 
 import math

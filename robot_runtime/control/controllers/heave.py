@@ -1,9 +1,9 @@
 """What the craft's four fins do to its depth: the model by which `Predictive` thinks ahead.
 
 Depth z (m) and its speed v (m/s) count downwards, forces are accelerations of the hull with the water that it
-takes along. The numbers are those of the simulated robot (docs/simulation.md), which are as good as what was
-published: thrust of a flapping fin ∝ 1 - cos A, where A is its amplitude from peak to peak; a fin that turns
-round pushes like a paddle, and the water along its blade, as in `simulation/fins.py`.
+takes along. The numbers are those of the simulated robot (docs/reference/simulation.md), which are as good as
+what was published: thrust of a flapping fin ∝ 1 - cos A, where A is its amplitude from peak to peak; a fin
+that turns round pushes like a paddle, and the water along its blade, as in `simulation/fins.py`.
 """
 
 from dataclasses import dataclass, field

@@ -2,7 +2,7 @@
 
 On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again.
 
-On its standard output are JSON objects, one to a line; docs/communication.md lists them.
+On its standard output are JSON objects, one to a line; docs/reference/comm-test.md lists them.
 """
 
 import argparse

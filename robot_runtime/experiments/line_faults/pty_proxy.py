@@ -7,7 +7,7 @@ The host opens the link instead of the port. What is harmed are bytes and not th
 the eight of data, so that no framing errors arise. The emulated board does this on its wire.
 
 On its standard input the program takes the commands `line`, `seed` and `stats` of the emulated board's
-socket, which docs/architecture.md describes.
+socket, which docs/reference/emulator.md describes.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """The scenario: a TOML document that says everything about an experiment, read strictly.
 
-SI units; world axes north, east, down from the start, angles in rad. docs/simulation.md has the table.
+SI units; world axes north, east, down from the start, angles in rad. docs/use/scenarios.md has the table.
 """
 
 import re

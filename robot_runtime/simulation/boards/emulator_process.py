@@ -1,4 +1,4 @@
-"""The emulated board as a process, and a connection to its socket. See docs/architecture.md."""
+"""The emulated board as a process, and a connection to its socket. See docs/reference/emulator.md."""
 
 import select
 import socket

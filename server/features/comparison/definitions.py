@@ -1,4 +1,4 @@
-"""The figures by which sessions are compared, and what each means. docs/comparison.md has the formulas."""
+"""The figures by which sessions are compared, and what each means. docs/use/compare.md has the formulas."""
 
 from server.features.metrics.figure import FigureMeaning
 

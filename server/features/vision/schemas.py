@@ -34,7 +34,7 @@ class ColourRange(BaseModel):
 
 
 class VisionSettings(BaseModel):
-    """How the vision node looks, all of it; docs/vision.md explains each."""
+    """How the vision node looks, all of it; docs/use/vision.md explains each."""
 
     model_config = ConfigDict(extra="forbid")
     rate: Annotated[FiniteFloat, Field(ge=2, le=30, description="Hz")]

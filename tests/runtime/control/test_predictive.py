@@ -135,7 +135,7 @@ def test_after_a_pause_it_begins_anew() -> None:
 
 @pytest.mark.parametrize("craft", ["nominal", "thrust +30 %", "mass +30 %"])
 def test_in_the_simulated_water_it_rests_where_the_thesiss_controller_swings(craft: str) -> None:
-    """The nominal craft, and two of the worst of docs/control.md's table."""
+    """The nominal craft, and two of the worst of docs/develop/proofs/control.md's table."""
     robot = variants()[craft]
     found = perform(BEST, robot, sine=False)
     assert found.steady <= 0.02

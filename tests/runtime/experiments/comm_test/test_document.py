@@ -45,7 +45,7 @@ def test_halves_of_characters_are_refused(changes: dict[str, Any]) -> None:
 
 
 def test_the_documents_print_the_example_that_ships() -> None:
-    assert f"```json\n{THESIS}```" in (ROOT / "docs/communication.md").read_text()
+    assert f"```json\n{THESIS}```" in (ROOT / "docs/use/comm-tests.md").read_text()
 
 
 @pytest.mark.parametrize("path", ["comm_test/comm_test.ino", "/comm_test/comm_test.ino"])

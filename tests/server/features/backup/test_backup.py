@@ -232,7 +232,7 @@ def test_the_documented_commands_do_what_they_say(
     settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fill(settings, "one")
-    text = (ROOT / "docs/durability.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/run/backup.md").read_text(encoding="utf-8")
     commands = re.findall(r"^\.venv/bin/mucat (.*)$", text, re.MULTILINE)
     assert len(commands) == 3
     monkeypatch.chdir(tmp_path)

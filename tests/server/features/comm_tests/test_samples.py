@@ -1,4 +1,4 @@
-"""The runs that ship: whole, and what docs/communication.md says of them is what is in them."""
+"""The runs that ship: whole, and what docs/use/comm-tests.md says of them is what is in them."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from server.features.comm_tests.reference import Place
 from server.features.comm_tests.samples.__main__ import FOLDER, SAMPLES
 from tests.board.rig import ROOT
 
-DOCUMENT = ROOT / "docs/communication.md"
+DOCUMENT = ROOT / "docs/use/comm-tests.md"
 TABLE_6 = re.compile(r"^\| (\d+) \| ([\d.]+) \|(.*)\|$", re.MULTILINE)
 PI_DELAYS = (0.0, 0.5, 1.0)
 

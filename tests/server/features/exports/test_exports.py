@@ -342,9 +342,9 @@ def test_the_example_of_the_docs_runs(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    text = (Path(__file__).parents[4] / "docs/export.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[4] / "docs/use/export.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     (tmp_path / "dive.zip").write_bytes(write(store, session, format="csv").getvalue())
     monkeypatch.chdir(tmp_path)
-    exec(compile(example, "docs/export.md", "exec"), {})
+    exec(compile(example, "docs/use/export.md", "exec"), {})
     assert "count    100.0" in capsys.readouterr().out
