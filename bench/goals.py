@@ -76,7 +76,6 @@ GOALS = {
     **_fault("runtime_killed", _AGAIN, 1.1),
     **_fault("server_killed", _AGAIN),
     **_fault("server_hung", _AGAIN, 5),
-    **_fault("keeper_killed", _AGAIN),
     **_fault("simulator_killed", _AGAIN, 1),
     **_fault("board_killed", _AGAIN),
     "firmware.missed_ticks": _most(0),

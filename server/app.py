@@ -67,7 +67,7 @@ def create_app(
     `started` is called once everything is there, before anybody is served.
     """
 
-    # One for all servers that a keeper starts one after the other: who asks meanwhile is known to the next.
+    # Made before the fork, so that it stays valid when the server is started again.
     token = make_token(TOKEN_PREFIX)
 
     @asynccontextmanager

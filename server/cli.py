@@ -19,7 +19,7 @@ from server.features.people.options import add_access, add_pair
 from server.features.sessions.options import add_record, add_sessions
 from server.features.simulator import command as simulator_command
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
-from server.processes.keeper import Keeper, keeper_of, relieve
+from server.processes.server_runner import ServerRunner, runner_of
 
 if TYPE_CHECKING:
     from server.http.sign_in.access import Access
@@ -53,7 +53,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _access(options, settings)
         if options.command in ("backup", "restore"):
             return _back_up(options, settings)
-        relieve(settings.data)
         with _claim(settings.data):
             return _run(settings)
     except SetupError as problem:
@@ -170,8 +169,8 @@ def _claim(folder: DataFolder) -> Iterator[None]:
         raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
     with handle:
         if not _lock(handle):
-            keeper = keeper_of(folder)
-            process = f" (process {keeper})" if keeper is not None else ""
+            runner = runner_of(folder)
+            process = f" (process {runner})" if runner is not None else ""
             raise SetupError(
                 f"Another server works on {folder.path}{process}. End it, or choose another folder with "
                 "--data."
@@ -274,7 +273,7 @@ def _run(settings: Settings) -> int:
             server.run(sockets=[listener])
             return 0
 
-        return Keeper(serve, settings.data).run()
+        return ServerRunner(serve, settings.data).run()
 
 
 def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:

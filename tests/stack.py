@@ -15,7 +15,6 @@ import httpx
 import psutil
 
 from server.platform.settings import DataFolder
-from server.processes.keeper import keeper_of
 from tests.control import Commander
 from tests.shell import ShellToken
 
@@ -61,11 +60,9 @@ class Stack:
 
     @property
     def process(self) -> psutil.Process:
-        """The process that was started, or the one that has taken its place: the keeper of the server."""
-        pid = keeper_of(DataFolder(self.data))
-        if pid is None:
-            raise LookupError("no keeper runs")
-        return psutil.Process(pid)
+        """The process that was started: the runner of the server."""
+        assert self._process is not None
+        return psutil.Process(self._process.pid)
 
     @property
     def server(self) -> psutil.Process:
@@ -106,7 +103,7 @@ class Stack:
         health: dict[str, Any] = {}
         while time.monotonic() < end:
             assert self._process is not None
-            if self._process.poll() is not None and keeper_of(DataFolder(self.data)) is None:
+            if self._process.poll() is not None:
                 break
             try:
                 health = self.api.get("/health").json()
@@ -124,7 +121,7 @@ class Stack:
         return found[0]
 
     def kill(self) -> None:
-        """Kill the server alone, with -9; its keeper starts the next one."""
+        """Kill the server alone, with -9; its runner starts the next one."""
         server = self.server
         server.kill()
         psutil.wait_procs([server])
@@ -134,10 +131,9 @@ class Stack:
         self.api.close()
         if self._process is None:
             return
-        if keeper_of(DataFolder(self.data)) is not None:
-            keeper = self.process
-            keeper.send_signal(signal.SIGINT)
-            if psutil.wait_procs([keeper], _STOP_SECONDS)[1]:
-                os.killpg(self._process.pid, signal.SIGKILL)
-                raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}")
-        self._process.wait()
+        self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(_STOP_SECONDS)
+        except subprocess.TimeoutExpired:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            raise AssertionError(f"Ctrl-C did not end it:\n{self.log.read_text()[-4000:]}") from None

@@ -71,8 +71,8 @@ class DataFolder:
         return self.path / "server.lock"
 
     @property
-    def keeper(self) -> Path:
-        """Which process keeps the server of this folder running."""
+    def runner(self) -> Path:
+        """The process that runs the server of this folder."""
         return self.path / "server.pid"
 
     @property

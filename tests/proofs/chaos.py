@@ -49,7 +49,7 @@ JUMPS = (-86_400, -3600, 3600, 86_400, 10 * 365 * 86_400)
 SAMPLE = 1.0
 """s between two looks at the memory."""
 PARTS = ("runtime", "board", "simulator", "scene")
-VICTIMS = (*PARTS, "server", "keeper", "second")
+VICTIMS = (*PARTS, "server")
 WARM_UP = 0.25
 """Of the time in which nobody is killed: in it memory may still grow."""
 LINE_SECONDS = (20.0, 600.0)
@@ -229,7 +229,7 @@ class Storm:
             time.sleep(min(0.1, max(end - time.monotonic(), 0.0)))
 
     def _weigh(self) -> None:
-        for name in ("server", "keeper", "runtime"):
+        for name in ("server", "runner", "runtime"):
             with suppress(psutil.Error, LookupError):
                 process = self._world.find(name)
                 _, weights = self._memory.setdefault(process.pid, (name, []))

@@ -66,8 +66,6 @@ OUTAGES = (
     Outage("runtime", "hang", "runtime_silent", NEUTRAL, DISARMED),
     Outage("server", "kill", "server_restarted"),
     Outage("server", "stop", "server_silent", HEARTBEAT, HEARTBEAT, lasts=5.5),
-    Outage("keeper", "kill", None),
-    Outage("second", "kill", None),
     Outage("simulator", "kill", "simulator_down", 1.0, 1.0),
     Outage("simulator", "stop", "simulator_silent", 1.0, 1.0, lasts=3.0),
     Outage("scene", "kill", "scene_down"),
@@ -193,11 +191,8 @@ class World:
         """The process that is called so here."""
         if name == "server":
             return self.stack.server
-        if name == "keeper":
+        if name == "runner":
             return self.stack.process
-        if name == "second":
-            found = [one for one in self.stack.process.children() if one.name() == "mucat-second"]
-            return found[0]
         return psutil.Process(running_parts(self.folder.run)[name].pid)
 
     def is_replaced(self, name: str, pid: int) -> bool:

@@ -16,7 +16,7 @@ import pytest
 from server import VERSION
 from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
-from server.processes.keeper import keeper_of
+from server.processes.server_runner import runner_of
 from tests.server.waiting import alive
 
 pytestmark = pytest.mark.stack
@@ -120,7 +120,7 @@ def test_a_killed_server_leaves_the_runtime_to_the_next_one(settings: Settings, 
     assert not alive(runtime)
 
 
-def test_a_killed_keeper_leaves_the_server_until_the_next_start_takes_its_place(
+def test_what_a_killed_runner_has_left_running_is_adopted_by_the_next_start(
     settings: Settings, port: int
 ) -> None:
     with running(settings, port) as process:
@@ -131,13 +131,8 @@ def test_a_killed_keeper_leaves_the_server_until_the_next_start_takes_its_place(
         runtime = running_parts(settings.data.run)["runtime"].pid
         process.kill()
         process.wait()
-        wait_for_answer(port, None)
     with running(settings, port) as process:
-        end = time.monotonic() + 20
-        while keeper_of(settings.data) != process.pid:
-            assert time.monotonic() < end
-            time.sleep(0.02)
-        wait_for_answer(port, process)
+        assert runner_of(settings.data) == process.pid
         assert running_parts(settings.data.run)["runtime"].pid == runtime
     assert not alive(runtime)
 
@@ -238,7 +233,7 @@ def test_a_command_line_is_read_before_anything_slow_is_loaded() -> None:
 
 
 def test_what_the_server_loads_starts_no_thread() -> None:
-    """The keeper forks itself after it has loaded all that, which only a process without threads may."""
+    """The runner forks itself after it has loaded all that, which only a process without threads may."""
     program = "import os, server.app, server.http.serving; print(*os.listdir('/proc/self/task'), os.getpid())"
     assert len(set(printed(program).split())) == 1
 

@@ -1,4 +1,4 @@
-"""`python -m tests.server.processes.kept FOLDER`: a keeper of small servers.
+"""`python -m tests.server.processes.small_servers FOLDER` runs small servers, one after the other.
 
 Each server writes a line to FOLDER/servers: its process and how the one before ended; then it waits for its
 end, and writes "bye". Where FOLDER/broken is, it cannot start.
@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from server.platform.settings import DataFolder
-from server.processes.keeper import Keeper
+from server.processes.server_runner import ServerRunner
 
 
 def main() -> int:
@@ -28,7 +28,7 @@ def main() -> int:
         (folder / "bye").touch()
         return 0
 
-    return Keeper(serve, DataFolder(folder)).run()
+    return ServerRunner(serve, DataFolder(folder)).run()
 
 
 if __name__ == "__main__":
