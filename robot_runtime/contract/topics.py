@@ -87,18 +87,22 @@ ROW_BYTES = {topic.id: topic.row_bytes for topic in TOPICS if topic.kind is Kind
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A batch: `count` samples of one topic, numbered from `first` on; `data` is the block as it travels."""
+    """A batch: `count` samples of one topic, numbered from `first` on; `data` is the block as it travels.
+
+    `run` names the run of the process that sent it, "" if that is not known.
+    """
 
     topic: Topic
     count: int
     first: int
     data: bytes
+    run: str = ""
 
     @classmethod
-    def of(cls, topic: Topic, count: int, first: int, payload: bytes) -> Self:
+    def of(cls, topic: Topic, count: int, first: int, payload: bytes, run: str = "") -> Self:
         """The block around a payload."""
         header = HEADER.pack(topic.id, topic.kind, count, first % NUMBERS, len(payload))
-        return cls(topic, count, first, header + payload)
+        return cls(topic, count, first, header + payload, run)
 
     @property
     def payload(self) -> bytes:
@@ -149,8 +153,8 @@ def pack_documents(batch: Sequence[documents.Document]) -> bytes:
     ).encode()
 
 
-def read_blocks(data: bytes) -> list[Block]:
-    """The blocks that `data` is. Raises LayoutError where it is not blocks from end to end."""
+def read_blocks(data: bytes, run: str = "") -> list[Block]:
+    """The blocks that `data` is, sent by `run`. Raises LayoutError where it is not blocks from end to end."""
     blocks: list[Block] = []
     at = 0
     while at < len(data):
@@ -166,7 +170,7 @@ def read_blocks(data: bytes) -> list[Block]:
             raise LayoutError(f"a block of {topic.name} is cut off: {there} of {size} bytes")
         if count == 0 or (topic.kind is Kind.ROWS and size != count * ROW_BYTES[topic_id]):
             raise LayoutError(f"a block of {topic.name} holds {size} bytes, which are not {count} samples")
-        blocks.append(Block(topic, count, first, data[at:end]))
+        blocks.append(Block(topic, count, first, data[at:end], run))
         at = end
     return blocks
 

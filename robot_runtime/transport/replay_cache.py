@@ -39,7 +39,8 @@ class BacklogReply:
             (size,) = _SIZE.unpack_from(data)
             head = json.loads(data[_SIZE.size : _SIZE.size + size])
             numbers = {str(name): int(number) for name, number in head["next"].items() if name in BY_NAME}
-            return cls(str(head["run"]), numbers, read_blocks(data[_SIZE.size + size :]))
+            run = str(head["run"])
+            return cls(run, numbers, read_blocks(data[_SIZE.size + size :], run))
         except LayoutError:
             raise
         except (error, ValueError, LookupError, TypeError, AttributeError) as problem:

@@ -73,7 +73,8 @@ class Marker(SQLModel, table=True):
 class Chunk(SQLModel, table=True):
     """Samples of one topic with consecutive numbers from `first` on; how they lie in `data`, `encoding` says.
 
-    Times are of the first and the last sample (s, steady clock).
+    Times are of the first and the last sample (s, steady clock). `run` names the run of the process that sent
+    them; it is empty if that is not known, and for what the server itself sends.
     """
 
     __table_args__ = (
@@ -91,6 +92,7 @@ class Chunk(SQLModel, table=True):
     count: int
     encoding: str
     data: bytes
+    run: str = ""
 
 
 class Gap(SQLModel, table=True):

@@ -261,7 +261,7 @@ class Bridge:
             try:
                 if len(data) > BLOCK_BYTES_MAX:
                     raise LayoutError(f"{len(data)} bytes are too many")
-                blocks = read_blocks(data)
+                blocks = read_blocks(data, run)
             except LayoutError as problem:
                 self.damaged += 1
                 log.warning("a message of %s was thrown away: %s", name, problem)

@@ -48,10 +48,11 @@ class RecordingRefused(Exception):  # noqa: N818 - it says what happened
 
 
 @dataclass(slots=True)
-class _Run:
-    """Consecutive samples of one topic, as they arrived."""
+class _Span:
+    """Consecutive samples of one topic and of one run of its sender, as they arrived."""
 
     topic: Topic
+    run: str
     first: int
     count: int = 0
     payloads: list[bytes] = field(default_factory=list)
@@ -59,9 +60,9 @@ class _Run:
 
 @dataclass(slots=True)
 class _Batch:
-    """What is to be committed together: runs are encoded into chunks on the way."""
+    """What is to be committed together: spans are encoded into chunks on the way."""
 
-    runs: list[_Run] = field(default_factory=list)
+    spans: list[_Span] = field(default_factory=list)
     chunks: list[dict[str, Any]] = field(default_factory=list)
     gaps: dict[tuple[str, str], dict[str, Any]] = field(default_factory=dict)
 
@@ -80,7 +81,7 @@ class _Batch:
 
     def take(self, newer: "_Batch") -> None:
         """Take over what has been gathered since."""
-        self.runs += newer.runs
+        self.spans += newer.spans
         for gap in newer.gaps.values():
             self.note(gap["topic"], gap["kind"], gap["missed"], gap["time"])
 
@@ -222,18 +223,18 @@ class Recorder:
             self._standing = block
         if not self._accepts or topic not in RECORDED or (self._skip and self._is_stored(block)):
             return
-        run = self._runs.get(topic.id)
+        span = self._spans.get(topic.id)
         expected = self._expected.get(topic.id, block.first)
         if block.first != expected:
             ahead = (block.first - expected) % NUMBERS
             kind, missed = ("missed", ahead) if ahead < NUMBERS // 2 else ("restarted", 0)
             self._gathered.note(topic.name, kind, missed, self._clock.now())
-            run = None
-        if run is None:
-            run = self._runs[topic.id] = _Run(topic, block.first)
-            self._gathered.runs.append(run)
-        run.payloads.append(block.payload)
-        run.count += block.count
+            span = None
+        if span is None or span.run != block.run:
+            span = self._spans[topic.id] = _Span(topic, block.run, block.first)
+            self._gathered.spans.append(span)
+        span.payloads.append(block.payload)
+        span.count += block.count
         self._expected[topic.id] = block.following
 
     def _is_stored(self, block: Block) -> bool:
@@ -271,7 +272,7 @@ class Recorder:
                 await self._commit(final=False)
 
     def _reset(self) -> None:
-        self._runs: dict[int, _Run] = {}
+        self._spans: dict[int, _Span] = {}
         self._expected: dict[int, int] = {}
         self._skip: dict[int, int] = {}
         self._numbers: Counter[str] = Counter()
@@ -282,7 +283,7 @@ class Recorder:
         assert self.session is not None
         batch = self._waiting
         batch.take(self._gathered)
-        self._gathered, self._runs = _Batch(), {}
+        self._gathered, self._spans = _Batch(), {}
         now, session = self._clock.now(), self.session
         changes: dict[str, Any] = {"duration": now - self._started_steady}
         if final:
@@ -309,14 +310,14 @@ class Recorder:
         return self.session
 
     def _encode(self, session: int, batch: _Batch, now: float) -> None:
-        while batch.runs:
-            run = batch.runs.pop(0)
-            name = run.topic.name
+        while batch.spans:
+            span = batch.spans.pop(0)
+            name = span.topic.name
             try:
-                encoding, data, first_time, last_time = encode(run.topic, run.payloads, run.count)
+                encoding, data, first_time, last_time = encode(span.topic, span.payloads, span.count)
             except (ValueError, RecursionError, zlib.error) as problem:
                 log.warning("samples of %s cannot be recorded: %s", name, problem)
-                batch.note(name, "damaged", run.count, now)
+                batch.note(name, "damaged", span.count, now)
                 continue
             batch.chunks.append(
                 {
@@ -325,10 +326,11 @@ class Recorder:
                     "number": self._numbers[name],
                     "first_time": first_time,
                     "last_time": last_time,
-                    "first": run.first,
-                    "count": run.count,
+                    "first": span.first,
+                    "count": span.count,
                     "encoding": encoding,
                     "data": data,
+                    "run": span.run,
                 }
             )
             self._numbers[name] += 1
@@ -342,7 +344,7 @@ def _as_of(block: Block, now: float) -> Block:
         # A damaged one is noted as such when it is stored.
         return block
     payload = json.dumps([document], separators=(",", ":")).encode()
-    return Block.of(block.topic, 1, (block.following - 1) % NUMBERS, payload)
+    return Block.of(block.topic, 1, (block.following - 1) % NUMBERS, payload, block.run)
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:

@@ -1,9 +1,8 @@
-"""Whether a session that a killed server has left recording can go on, and from where."""
+"""A session that a killed server has left recording: if it can go on, and from where."""
 
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf
 
 from sqlmodel import col, func, select
 
@@ -17,16 +16,17 @@ from server.platform.store import Store
 _STATE = BY_NAME["state"]
 RESUMED_ORIGINS = ("operator", "arming", "scenario")
 """Not one in simulated time, which was computed by the server itself."""
-RESTATED = {"parameters"}
-"""A session begins with what is in force, as of then: not at the time at which it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
 class Last:
-    """Where a topic's samples end: the number that comes next, the last one's time, and the chunks so far."""
+    """Where a topic's samples end: the number that comes next, the last one's time and sender, and the chunks
+    so far.
+    """
 
     following: int
     time: float
+    run: str
     chunks: int
 
 
@@ -42,9 +42,9 @@ class Left:
 class Missing:
     """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
 
-    `same_run`: the sender is the one that was recorded, as a stored sample shows that it still has, or its
-    name where none is stored yet. `whole`: it has kept all that is missing. `sent`: how many samples of each
-    topic (by name) it has sent since what is stored; empty where it may be another one.
+    `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all that is
+    missing. `sent`: how many samples of each topic (by name) it has sent since what is stored; empty if it may
+    be another run.
     """
 
     first: Mapping[int, int]
@@ -71,7 +71,8 @@ def find_left(store: Store) -> Left | None:
         newest = select(func.max(Chunk.id)).where(Chunk.session_id == row.id).group_by(Chunk.topic)
         ends = database.exec(select(Chunk).where(col(Chunk.id).in_(newest)))
         last = {
-            end.topic: Last((end.first + end.count) % NUMBERS, end.last_time, end.number + 1) for end in ends
+            end.topic: Last((end.first + end.count) % NUMBERS, end.last_time, end.run, end.number + 1)
+            for end in ends
         }
         database.expunge(row)
     return Left(row, last)
@@ -84,7 +85,6 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> Mis
         blocks[block.topic.id].append(block)
     first: dict[int, int] = {}
     sent: dict[str, int] = {}
-    proofs: set[bool] = set()
     whole = True
     for topic in topics:
         following, there = kept.next.get(topic.name, 0), blocks[topic.id]
@@ -92,58 +92,26 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> Mis
         if last is None:
             first[topic.id] = _first_since(left.row.started_steady, there, following)
             continue
-        wanted, ahead = last.following, (following - last.following) % NUMBERS
-        proof = {False} if ahead >= NUMBERS // 2 else _prove(last, there, _restated(topic, left.row))
-        proofs |= proof
-        if proof == {False}:
-            # Stored of an earlier run; of this one, if it is this one, nothing yet.
-            wanted, ahead = 0, following
+        # Of this run nothing may be stored yet, although another one is.
+        wanted = last.following if last.run == kept.run else 0
+        ahead = (following - wanted) % NUMBERS
         first[topic.id] = wanted
         sent[topic.name] = ahead
         whole = whole and (ahead == 0 or _holds(there, wanted))
-    # One sample that both have is enough: runs follow each other. Where the last stored one is not kept any
-    # more, its name shows that it is the same.
-    known = True in proofs or (not proofs and _began(left, topics, kept))
-    same_run = True in proofs or _new(left, topics, kept)
-    return Missing(first, same_run, whole, sent if known else {})
+    stored = any(topic.name in left.last and left.last[topic.name].run == kept.run for topic in topics)
+    same_run = stored or _new(left, topics, kept)
+    return Missing(first, same_run, whole, sent if same_run else {})
 
 
 def _new(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> bool:
-    """Whether nothing of this sender is stored yet, and it is the one that the session began with.
+    """True if nothing of this sender is stored yet, and it is the one with which the session began.
 
-    That is known of the runtime, whose `state` is written down at the start; whichever simulator there is may
-    begin a session.
+    That is known of the runtime, whose `state` is stored at the start. A session takes any simulator.
     """
     if any(topic.name in left.last for topic in topics):
         return False
-    return _STATE not in topics or _began(left, topics, kept)
-
-
-def _began(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> bool:
-    """Whether this is the runtime whose `state` was written down when the session began."""
     state = json.loads(left.row.robot_state)
-    return _STATE in topics and isinstance(state, dict) and state.get("run") == kept.run
-
-
-def _restated(topic: Topic, row: SessionRow) -> float:
-    """Until when, s, what this topic told was stored as of a later time."""
-    return row.started_steady if topic.name in RESTATED else -inf
-
-
-def _prove(last: Last, blocks: Sequence[Block], restated: float) -> set[bool]:
-    """Whether the last stored sample is the one that was kept under its number.
-
-    Empty where none was, or it is no later than `restated`, so that its stored time says nothing.
-    """
-    number = (last.following - 1) % NUMBERS
-    for block in blocks:
-        if _holds([block], number):
-            try:
-                time = block.time_of(number)
-                return set() if time <= restated else {time == last.time}
-            except LayoutError:
-                return {False}
-    return set()
+    return _STATE not in topics or (isinstance(state, dict) and state.get("run") == kept.run)
 
 
 def _holds(blocks: Sequence[Block], number: int) -> bool:

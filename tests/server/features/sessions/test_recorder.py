@@ -122,7 +122,7 @@ def test_before_and_after_a_session_nothing_is_kept(deck: Deck) -> None:
         deck.recorder.add(depth_block(5, 5))
         await deck.recorder.stop(session)
         deck.recorder.add(depth_block(10, 5))
-        assert deck.recorder._gathered.runs == []
+        assert deck.recorder._gathered.spans == []
         second = await deck.start()
         await deck.recorder.stop(second)
         assert deck.numbers() == list(range(5, 10))
@@ -154,7 +154,7 @@ def test_holes_are_counted_and_chunks_stay_without_holes(
         recorder.add(depth_block(first % NUMBERS, count))
         expected += [number % NUMBERS for number in range(first, first + count)]
         first += count
-    runs = recorder._gathered.runs
+    runs = recorder._gathered.spans
     assert [(run.first + place) % NUMBERS for run in runs for place in range(run.count)] == expected
     gaps = {place: gap["missed"] for place, gap in recorder._gathered.gaps.items()}
     assert gaps == ({("depth", "missed"): missed} if missed else {})

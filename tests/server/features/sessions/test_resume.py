@@ -3,6 +3,7 @@
 import asyncio
 import json
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 
 import pytest
 from sqlalchemy import update
@@ -13,7 +14,7 @@ from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, row
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.resume import Missing, find_missing
-from server.platform.models import SessionRow
+from server.platform.models import Chunk, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.stream.bridge import SENT_BY
@@ -42,7 +43,12 @@ class Wreck:
     def __init__(self, store: Store, settings: Settings) -> None:
         self.before = Deck(store, settings)
         self.after = Deck(store, settings)
+<<<<<<< HEAD
         self.kept = {name: ReplayCache(f"{name} run", self.before.clock) for name in SENT_BY}
+=======
+        self.runs = {name: f"{name} run" for name in SENT_BY}
+        self.kept = {name: Cache(run, self.before.clock) for name, run in self.runs.items()}
+>>>>>>> 06b4612 (sessions: chunks store the run of their sender, which decides if a recording goes on)
         self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
         self.session = 0
 
@@ -53,10 +59,15 @@ class Wreck:
             self.following[name][block.topic.name] = block.following
             self.kept[name].keep(block.data, self.following[name])
             if heard:
-                self.before.recorder.add(block)
+                self.before.recorder.add(replace(block, run=self.runs[name]))
 
     def restart(self, name: str) -> None:
+<<<<<<< HEAD
         self.kept[name] = ReplayCache(f"another {name} run", self.before.clock)
+=======
+        self.runs[name] = f"another {name} run"
+        self.kept[name] = Cache(self.runs[name], self.before.clock)
+>>>>>>> 06b4612 (sessions: chunks store the run of their sender, which decides if a recording goes on)
         self.following[name] = dict.fromkeys(BY_NAME, 0)
 
     def answers(self) -> dict[str, BacklogReply]:
@@ -115,7 +126,7 @@ def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wrec
         session = wreck.after.recorder.session
         assert session is not None
         assert (session.id, session.samples, session.duration) == (wreck.session, 17, 3.0)
-        wreck.after.recorder.add(depth_block((first + 20) % NUMBERS, 5))
+        wreck.after.recorder.add(replace(depth_block((first + 20) % NUMBERS, 5), run=wreck.runs["runtime"]))
         wreck.after.clock.forward(2)
         done = await wreck.after.recorder.stop(wreck.session)
         assert (done.state, done.duration, done.samples) == ("complete", 5.0, 25 + 2 + 9)
@@ -263,17 +274,50 @@ def test_another_run_of_the_runtime_is_another_recording(wreck: Wreck) -> None:
     play(scenario)
 
 
+def test_another_run_that_has_sent_the_same_samples_is_another_recording(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        wreck.restart("runtime")
+        # The very numbers and times of what is stored: only the name of the run tells them apart.
+        wreck.send(depth_block(0, 5), depth_block(5, 5), depth_block(10, 5), heard=False)
+        missing = await wreck.resume()
+        assert not missing["runtime"].same_run
+        assert wreck.state == "interrupted"
+
+    play(scenario)
+
+
+def test_a_session_of_a_version_that_did_not_store_runs_ends(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        await wreck.start()
+        await wreck.before.store.write(lambda connection: connection.execute(update(Chunk).values(run="")))
+        assert not (await wreck.resume())["runtime"].same_run
+        assert wreck.state == "interrupted"
+        assert wreck.after.numbers() == list(range(10))
+
+    play(scenario)
+
+
+def test_a_new_run_whose_number_happens_to_follow_is_stored_apart(wreck: Wreck) -> None:
+    async def scenario() -> None:
+        wreck.session = await wreck.before.start("dive")
+        wreck.send(depth_block(0, 5))
+        wreck.restart("runtime")
+        wreck.send(depth_block(5, 5))
+        await wreck.before.recorder.flush()
+        assert [(chunk.first, chunk.count, chunk.run) for chunk in wreck.before.chunks()] == [
+            (0, 5, "runtime run"),
+            (5, 5, "another runtime run"),
+        ]
+
+    play(scenario)
+
+
 def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pytest.MonkeyPatch) -> None:
     async def scenario() -> None:
         await wreck.start()
         monkeypatch.setattr(cache_module, "BYTES_MAX", 10)
         wreck.send(depth_block(20, 5), heard=False)
-        left = await wreck.after.recorder.recover()
-        assert left is not None
-        state = {"run": wreck.answers()["runtime"].run}
-        await wreck.after.store.write(
-            lambda connection: connection.execute(update(SessionRow).values(robot_state=json.dumps(state)))
-        )
         assert not (await wreck.resume())["runtime"].whole
         assert wreck.state == "interrupted"
         missed = [("depth", "missed", 15), ("debug", "missed", 1), ("truth", "missed", 3)]
