@@ -42,9 +42,9 @@ class Left:
 class Missing:
     """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
 
-    `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all that is
-    missing. `sent`: how many samples of each topic (by name) it has sent since what is stored; empty if it may
-    be another run.
+    `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all that
+    is missing. `sent`: how many samples of each topic (by name) it has sent since what is stored; empty if it
+    may be another run.
     """
 
     first: Mapping[int, int]
