@@ -43,12 +43,8 @@ class Wreck:
     def __init__(self, store: Store, settings: Settings) -> None:
         self.before = Deck(store, settings)
         self.after = Deck(store, settings)
-<<<<<<< HEAD
-        self.kept = {name: ReplayCache(f"{name} run", self.before.clock) for name in SENT_BY}
-=======
         self.runs = {name: f"{name} run" for name in SENT_BY}
-        self.kept = {name: Cache(run, self.before.clock) for name, run in self.runs.items()}
->>>>>>> 06b4612 (sessions: chunks store the run of their sender, which decides if a recording goes on)
+        self.kept = {name: ReplayCache(run, self.before.clock) for name, run in self.runs.items()}
         self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
         self.session = 0
 
@@ -62,12 +58,8 @@ class Wreck:
                 self.before.recorder.add(replace(block, run=self.runs[name]))
 
     def restart(self, name: str) -> None:
-<<<<<<< HEAD
-        self.kept[name] = ReplayCache(f"another {name} run", self.before.clock)
-=======
         self.runs[name] = f"another {name} run"
-        self.kept[name] = Cache(self.runs[name], self.before.clock)
->>>>>>> 06b4612 (sessions: chunks store the run of their sender, which decides if a recording goes on)
+        self.kept[name] = ReplayCache(self.runs[name], self.before.clock)
         self.following[name] = dict.fromkeys(BY_NAME, 0)
 
     def answers(self) -> dict[str, BacklogReply]:
