@@ -1,0 +1,120 @@
+"""A data folder that version 0.1.0 has left: its database opens, and what it holds is read as it was then.
+
+`expected.json` is what 0.1.0 itself answered: SHA-256 of every exported CSV, timelines, figures and lines.
+"""
+
+import asyncio
+import csv
+import gzip
+import hashlib
+import io
+import json
+import zipfile
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robot_runtime.contract.topics import read_blocks
+from server.cli import main
+from server.platform.settings import Settings
+from tests.server.serving import serve
+
+FOLDER = Path(__file__).parents[1] / "data/0.1.0"
+EXPECTED: dict[str, Any] = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))
+SESSIONS = ("1", "2", "3")
+"""A live dive with a tuning run in it, a dive by hand, and the scenario of the thesis's Figure 14."""
+
+STRETCH = 10
+"""s that are replayed at a time."""
+
+
+@pytest.fixture
+def released(settings: Settings) -> Settings:
+    settings.data.database.write_bytes(gzip.decompress((FOLDER / "mucat.db.gz").read_bytes()))
+    return settings
+
+
+def read_csv(settings: Settings, session: str, folder: Path) -> dict[str, bytes]:
+    """The exported tables and pictures of a session, by file name."""
+    path = folder / f"{session}.zip"
+    where = ["--data", str(settings.data.path), "--config", str(settings.config)]
+    assert main(["export", session, "--format", "csv", "-o", str(path), *where]) == 0
+    with zipfile.ZipFile(path) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if name != "session.json"}
+
+
+def ask(settings: Settings, method: str, path: str, **options: Any) -> Any:
+    """The answer of a server that works on this folder."""
+
+    async def run() -> Any:
+        async with serve(settings) as served:
+            return (await served.api.request(method, path, **options)).raise_for_status().json()
+
+    return asyncio.run(run())
+
+
+@pytest.mark.parametrize("session", SESSIONS)
+def test_exported_tables_are_the_very_same(released: Settings, session: str, tmp_path: Path) -> None:
+    files = read_csv(released, session, tmp_path)
+    assert {name: hashlib.sha256(data).hexdigest() for name, data in files.items()} == EXPECTED["csv"][
+        session
+    ]
+
+
+def test_sessions_are_compared_with_the_same_figures(released: Settings) -> None:
+    wanted = {"sessions": [1, 3], "signals": ["depth.depth", "control.set_point"], "align": {"by": "armed"}}
+    answer = ask(released, "POST", "/compare", json={**wanted, "points": 200})
+    found = [
+        {name: one["value"] for name, one in session["figures"].items()} for session in answer["sessions"]
+    ]
+    assert found == [pytest.approx(one) for one in EXPECTED["figures"]]
+    assert [session["series"] for session in sessions] == EXPECTED["series"]
+
+
+@pytest.mark.parametrize("session", SESSIONS)
+def test_the_timeline_tells_the_same(released: Settings, session: str) -> None:
+    assert ask(released, "GET", f"/sessions/{session}/timeline") == EXPECTED["timeline"][session]
+
+
+@pytest.mark.parametrize("session", SESSIONS)
+def test_a_replay_carries_every_sample(released: Settings, session: str, tmp_path: Path) -> None:
+    recorded = {
+        name.removesuffix(".csv"): len(list(csv.reader(io.StringIO(data.decode())))) - 1
+        for name, data in read_csv(released, session, tmp_path).items()
+        if name.endswith(".csv")
+    }
+
+    async def play() -> tuple[Counter[str], set[str]]:
+        counts: Counter[str] = Counter()
+        left_out: set[str] = set()
+        async with serve(released) as served:
+            for start in range(-STRETCH, 120, STRETCH):
+                stretch = {"start": start, "end": start + STRETCH}
+                answer = await served.api.get(f"/sessions/{session}/blocks", params=stretch)
+                left_out.add(answer.raise_for_status().headers["Left-Out"])
+                for block in read_blocks(answer.content):
+                    counts[block.topic.name] += block.count
+        return counts, left_out
+
+    replayed, left_out = asyncio.run(play())
+    assert left_out == {"0"}
+    assert {name: replayed[name] for name in recorded} == recorded
+
+
+def test_what_else_was_stored_is_there(released: Settings) -> None:
+    async def run() -> list[Any]:
+        async with serve(released) as served:
+            paths = ("/comm-tests/runs", "/tuning/runs", "/profiles", "/parameters/changes")
+            return [(await served.api.get(path)).raise_for_status().json() for path in paths]
+
+    tests, tuning, profiles, changes = asyncio.run(run())
+    assert "A quick look: three bauds over the robot's own link" in [one["name"] for one in tests]
+    assert [one["name"] for one in tuning["runs"]] == ["PID, 0.4 m to 0.7 m"]
+    assert [(one["name"], one["values"]["control.set_point"]) for one in profiles] == [("calm water", 0.4)]
+    assert [one["values"] for one in changes] == [
+        [{"name": "vision.rate", "before": 4.0, "after": 5.0}],
+        [{"name": "control.set_point", "before": 0.5, "after": 0.4}],
+        [{"name": "depth.controller", "before": "bang_bang", "after": "pid"}],
+    ]
