@@ -66,10 +66,9 @@ def test_exported_tables_are_the_very_same(released: Settings, session: str, tmp
 def test_sessions_are_compared_with_the_same_figures(released: Settings) -> None:
     wanted = {"sessions": [1, 3], "signals": ["depth.depth", "control.set_point"], "align": {"by": "armed"}}
     answer = ask(released, "POST", "/compare", json={**wanted, "points": 200})
-    found = [
-        {name: one["value"] for name, one in session["figures"].items()} for session in answer["sessions"]
-    ]
-    assert found == [pytest.approx(one) for one in EXPECTED["figures"]]
+    sessions = answer["sessions"]
+    figures = [{name: one["value"] for name, one in session["figures"].items()} for session in sessions]
+    assert figures == [pytest.approx(one) for one in EXPECTED["figures"]]
     assert [session["series"] for session in sessions] == EXPECTED["series"]
 
 
