@@ -1,23 +1,16 @@
 """The server that works on a data folder, asked from a shell: nothing else may write its database."""
 
 import json
-import sqlite3
 import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, closing, contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any
 
-from migrations import HEAD
 from robot_runtime.durable_files import write_whole
 from server.platform.certificate import trust_only
-from server.platform.schema import prepare, read_revision
+from server.platform.folder_lock import claim
 from server.platform.settings import DataFolder, Settings, SetupError
-from server.platform.store import Reader
-
-Claim = Callable[[DataFolder], AbstractContextManager[None]]
-"""Holds a data folder alone while entered; raises SetupError where a server works on it."""
 
 ASK_SECONDS = 10.0
 
@@ -29,7 +22,7 @@ def announce(settings: Settings) -> None:
     write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))
 
 
-def server_runs(folder: DataFolder, claim: Claim) -> bool:
+def server_runs(folder: DataFolder) -> bool:
     """Whether a server works on this folder now."""
     if not folder.path.is_dir():
         return False
@@ -63,23 +56,6 @@ def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
     with file.open("rb") as body:
         headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
         return _send(folder, "POST", path, body, headers, seconds)
-
-
-@contextmanager
-def open_reader(folder: DataFolder, claim: Claim) -> Iterator[Reader]:
-    """The database, for reading alone: that may be done beside a running server.
-
-    Making or upgrading it may not, and claims the folder. Raises SetupError where that is not to be had.
-    """
-    try:
-        current = read_revision(folder.database) == HEAD
-    except sqlite3.DatabaseError:
-        current = False  # `prepare` says what is the matter
-    if not current:
-        with claim(folder):
-            prepare(folder)
-    with closing(Reader(folder.database)) as store:
-        yield store
 
 
 def _send(

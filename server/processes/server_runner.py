@@ -94,12 +94,6 @@ class ServerRunner:
             os._exit(status)
 
 
-def runner_of(folder: DataFolder) -> int | None:
-    """The process that runs the server of this folder; None if there is none."""
-    running = PidFile(folder.runner).read()
-    return None if running is None else running.pid
-
-
 def _wait(server: int) -> tuple[int, bool]:
     """The exit status of a server, negative for a signal, and true if it was asked to stop."""
     stopping = False

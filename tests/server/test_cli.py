@@ -9,14 +9,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import click
 import httpx
 import psutil
 import pytest
 
-from server import VERSION
+from server import VERSION, cli
+from server.platform.folder_lock import runner_of
 from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
-from server.processes.server_runner import runner_of
 from tests.server.waiting import alive
 
 pytestmark = pytest.mark.stack
@@ -223,13 +224,56 @@ def test_no_heavy_library_is_in_the_server_s_process() -> None:
     assert printed(program) == ""
 
 
-def test_a_command_line_is_read_before_anything_slow_is_loaded() -> None:
+@pytest.mark.parametrize(
+    ("line", "completed"),
+    [("--version", ""), ("--help", ""), ("sessions list --help", ""), ("", "mucat export 3 --format c")],
+)
+def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, completed: str) -> None:
     program = (
-        "import sys, server.cli\n"
-        "try: server.cli.main(['--version'])\n"
-        "except SystemExit: print(*sorted({'sqlalchemy', 'pydantic', 'fastapi'} & set(sys.modules)))"
+        "import atexit, sys, server.cli\n"
+        "slow = {'sqlalchemy', 'pydantic', 'fastapi', 'numpy', 'alembic'}\n"
+        "atexit.register(lambda: print('slow:', *sorted(slow & set(sys.modules))))\n"
+        f"sys.exit(server.cli.main({line.split()}))"
     )
-    assert printed(program) == f"mucat {VERSION}"
+    words = completed.split()
+    completion = {
+        "_MUCAT_COMPLETE": "bash_complete",
+        "COMP_WORDS": completed,
+        "COMP_CWORD": str(len(words) - 1),
+    }
+    output = printed(program, **(completion if completed else {}))
+    assert output.splitlines()[-1] == "slow:"
+    assert ("csv-grid" if completed else "mucat") in output
+
+
+def test_every_command_of_the_table_says_what_it_does() -> None:
+    context = click.Context(cli.mucat)
+    commands = {name: cli.mucat.get_command(context, name) for name in cli.COMMANDS}
+    assert {name: command and command.name for name, command in commands.items()} == {
+        name: name for name in cli.COMMANDS
+    }
+
+    def undescribed(command: click.Command, path: str) -> Iterator[str]:
+        if not command.help:
+            yield path
+        if isinstance(command, click.Group):
+            for name, one in command.commands.items():
+                yield from undescribed(one, f"{path} {name}")
+
+    assert [path for name, one in commands.items() if one for path in undescribed(one, name)] == []
+
+
+def test_wrong_usage_is_told_with_status_2(capsys: pytest.CaptureFixture[str]) -> None:
+    for line in ("fly", "export", "export x", "export 1 --format pdf", "record", "run --colour"):
+        assert cli.main(line.split()) == 2, line
+        told = capsys.readouterr()
+        assert (told.out, "Usage: mucat" in told.err) == ("", True)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_it_prints_the_completion_of_a_shell(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["completion", shell]) == 0
+    assert f"_MUCAT_COMPLETE={shell}_complete" in capsys.readouterr().out
 
 
 def test_what_the_server_loads_starts_no_thread() -> None:
@@ -238,8 +282,13 @@ def test_what_the_server_loads_starts_no_thread() -> None:
     assert len(set(printed(program).split())) == 1
 
 
-def printed(program: str) -> str:
+def printed(program: str, **environment: str) -> str:
     result = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+        [sys.executable, "-c", program],
+        cwd=ROOT,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return result.stdout.strip()

@@ -1,12 +1,14 @@
 """`mucat backup` and `mucat restore`: the database copied while a server records, and put back."""
 
-import argparse
 import os
 import sqlite3
 from contextlib import closing
 from pathlib import Path
 
+import click
+
 from robot_runtime.durable_files import sync, write_whole
+from server.platform.command_line import FILE, with_settings
 from server.platform.database_copies import (
     CHECKSUM,
     copy_database,
@@ -16,7 +18,7 @@ from server.platform.database_copies import (
     thin_out,
     write_checksum,
 )
-from server.platform.running_server import Claim
+from server.platform.folder_lock import claim
 from server.platform.schema import explain, read_revision, refuse_unknown
 from server.platform.settings import DataFolder, Settings, SetupError
 
@@ -26,17 +28,28 @@ NICENESS = 15
 """Control and recording go first."""
 
 
-def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Do what the command line says. Raises SetupError, with a line for a person."""
-    folder = settings.data
-    if options.command == "backup":
-        os.nice(NICENESS)
-        words = back_up(folder, options.file)
-    else:
-        with claim(folder):
-            words = restore(folder, options.file)
-    print(words)  # noqa: T201 - a command line speaks
-    return 0
+@click.command("backup")
+@click.argument("file", type=FILE, required=False)
+@with_settings
+def backup(settings: Settings, file: Path | None) -> None:
+    """Copy the database, also while a server records.
+
+    FILE is a new one in the folder `backups` of the data folder by default.
+    """
+    os.nice(NICENESS)
+    click.echo(back_up(settings.data, file))
+
+
+@click.command("restore")
+@click.argument("file", type=FILE)
+@with_settings
+def restore(settings: Settings, file: Path) -> None:
+    """Replace the database by a backup.
+
+    FILE was written by `mucat backup`.
+    """
+    with claim(settings.data):
+        click.echo(put_back(settings.data, file))
 
 
 def back_up(folder: DataFolder, file: Path | None) -> str:
@@ -57,7 +70,7 @@ def back_up(folder: DataFolder, file: Path | None) -> str:
     return f"{path}: {path.stat().st_size / 1e6:.1f} MB, {_count(path)}, SHA-256 {checksum}"
 
 
-def restore(folder: DataFolder, file: Path) -> str:
+def put_back(folder: DataFolder, file: Path) -> str:
     """Put a copy in the place of the database of a folder that is held; what was there is put aside.
 
     Raises SetupError; then nothing has changed.

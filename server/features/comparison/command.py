@@ -1,42 +1,72 @@
 """`mucat report`: a comparison as an HTML file, from a shell."""
 
-import argparse
+from pathlib import Path
 
-from server.features.comparison.alignment import Align
-from server.features.comparison.comparer import Comparer
-from server.features.comparison.report import write_report
-from server.features.comparison.schemas import DEFAULT_SIGNALS, SESSIONS_MAX, NoSessionError, WantedComparison
-from server.features.sessions.recording import RecordingError
-from server.platform.running_server import Claim, open_reader
+import click
+
+from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
-from server.platform.store import StoreError
 
 POINTS = 2000
 
 
-def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Write the report. Raises SetupError, with a line for a person, where it cannot be done."""
-    if len(options.sessions) > SESSIONS_MAX:
+@click.command(cls=RowCommand)
+@click.argument("sessions", type=int, nargs=-1, required=True, metavar="SESSION...")
+@click.option("-o", "--out", type=FILE, default="report.html", help="The file to write.")
+@click.option(
+    "--align",
+    type=click.Choice(["start", "armed", "set_point"]),
+    default="armed",
+    help="The moment of each session that is 0 s.",
+)
+@click.option("--step", type=int, default=1, help="Which step of the set point, for --align set_point.")
+@click.option("--marker", help="Align at the bookmark of this text instead.")
+@click.option(
+    "--signals",
+    multiple=True,
+    metavar="TOPIC.COLUMN...",
+    help="The signals to draw. Default: those of the thesis's figures.",
+)
+@with_settings
+def report(
+    settings: Settings,
+    sessions: tuple[int, ...],
+    out: Path,
+    align: str,
+    step: int,
+    marker: str | None,
+    signals: tuple[str, ...],
+) -> None:
+    """Compare sessions in an HTML file."""
+    from server.features.comparison.alignment import Align
+    from server.features.comparison.comparer import Comparer
+    from server.features.comparison.report import write_report
+    from server.features.comparison.schemas import (
+        DEFAULT_SIGNALS,
+        SESSIONS_MAX,
+        NoSessionError,
+        WantedComparison,
+    )
+    from server.features.sessions.recording import RecordingError
+    from server.platform.shell_store import open_reader
+
+    if len(sessions) > SESSIONS_MAX:
         raise SetupError(f"A report holds {SESSIONS_MAX} sessions at most.")
-    by = "marker" if options.marker else options.align
-    align = {"by": by, "number": options.step, "marker": options.marker}
+    moment = {"by": "marker" if marker else align, "number": step, "marker": marker or ""}
     try:
         wanted = WantedComparison(
-            sessions=options.sessions,
-            signals=list(options.signals or DEFAULT_SIGNALS),
-            align=Align.model_validate(align),
+            sessions=list(sessions),
+            signals=list(signals or DEFAULT_SIGNALS),
+            align=Align.model_validate(moment),
             points=POINTS,
         )
-        with open_reader(settings.data, claim) as store:
+        with open_reader(settings.data) as store:
             text = write_report(Comparer(store).compare(wanted))
-        options.out.write_text(text, encoding="utf-8")
+        out.write_text(text, encoding="utf-8")
     except ValueError as problem:
         raise SetupError(f"The report cannot be made: {problem}") from problem
     except (NoSessionError, RecordingError) as problem:
         raise SetupError(str(problem)) from problem
-    except StoreError as problem:
-        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
     except OSError as problem:
-        raise SetupError(f"{options.out} cannot be written: {problem.strerror}.") from problem
-    print(f"{options.out}")  # noqa: T201 - a command line speaks
-    return 0
+        raise SetupError(f"{out} cannot be written: {problem.strerror}.") from problem
+    click.echo(out)

@@ -1,105 +1,109 @@
 """`mucat export` and `mucat import`: sessions taken home and brought back from a shell."""
 
-import argparse
 import asyncio
 import sys
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+import click
 
-from robot_runtime.durable_files import PART
-from robot_runtime.errors import Refused
-from server.features.exports.archive_reader import ArchiveRefused
-from server.features.exports.description import file_name
-from server.features.exports.files import FileFailed, put_in_place, write_part
-from server.features.exports.formats import check
-from server.features.exports.imports import Imports
-from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRefused, Source
-from server.features.sessions.recording import RecordingError
-from server.features.sessions.session import find_row
-from server.platform.models import SessionRow
-from server.platform.running_server import Claim, open_reader, send_file, server_runs
-from server.platform.schema import prepare
+from server.platform.command_line import FILE, RowCommand, with_settings
+from server.platform.folder_lock import claim
+from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
-from server.platform.store import Store, StoreError
 
+FORMATS = ("csv", "csv-grid", "jsonl", "parquet", "mcap", "archive", "report")
 IMPORT_SECONDS = 3600.0
 
 
-def export_session(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Write a file, also beside a running server. Raises SetupError where it cannot be."""
+@click.command("export", cls=RowCommand)
+@click.argument("session", type=int)
+@click.option("--format", type=click.Choice(FORMATS), default="csv")
+@click.option("--topics", multiple=True, metavar="TOPIC...", help="Default: all.")
+@click.option("--columns", multiple=True, metavar="TOPIC.COLUMN...", help="For csv-grid. Default: all.")
+@click.option("--start", type=float, metavar="S", help="Begin so many seconds after the session's start.")
+@click.option("--end", type=float, metavar="S", help="End so many seconds after the session's start.")
+@click.option("--period", type=float, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
+@click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
+@with_settings
+def export_session(settings: Settings, session: int, output: Path | None, **options: Any) -> None:
+    """Write a session as a file, also beside a running server."""
+    from pydantic import ValidationError
+
+    from robot_runtime.durable_files import PART
+    from server.features.exports.description import file_name
+    from server.features.exports.files import FileFailed, put_in_place, write_part
+    from server.features.exports.formats import check
+    from server.features.exports.schemas import Wanted
+    from server.features.exports.selection import ExportRefused, Source
+    from server.features.sessions.recording import RecordingError
+    from server.features.sessions.session import find_row
+    from server.platform.shell_store import open_reader
+
     try:
-        wanted = Wanted(
-            format=options.format,
-            topics=options.topics,
-            columns=options.columns,
-            start=options.start,
-            end=options.end,
-            **({} if options.period is None else {"period": options.period}),
+        wanted = Wanted.model_validate(
+            {name: value for name, value in options.items() if value not in (None, ())}
         )
         kind = check(wanted)
-        with open_reader(settings.data, claim) as store:
-            row = find_row(store, options.session)
+        with open_reader(settings.data) as store:
+            row = find_row(store, session)
             if row is None:
-                raise SetupError(f"There is no session {options.session} in {settings.data.path}.")
+                raise SetupError(f"There is no session {session} in {settings.data.path}.")
             source = Source(store, row, wanted, _Progress().tell)
-            path = options.output or Path(file_name(source, kind.ending))
+            path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
-            written = write_part(part, lambda output: kind.write(store, source, output))
+            written = write_part(part, lambda file: kind.write(store, source, file))
             put_in_place(part, path)
     except ValidationError as problem:
         raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
     except (ExportRefused, FileFailed, RecordingError) as problem:
         raise SetupError(str(problem)) from problem
-    except StoreError as problem:
-        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
-    _say(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
-    return 0
+    click.echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
 
-def import_session(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Bring an archive in: through the server that runs, or without one by itself. Raises SetupError."""
-    if not options.file.is_file():
-        raise SetupError(f"There is no file {options.file}.")
-    if server_runs(settings.data, claim):
-        session = send_file(settings.data, "/imports", options.file, IMPORT_SECONDS)
+@click.command("import")
+@click.argument("file", type=FILE)
+@with_settings
+def import_session(settings: Settings, file: Path) -> None:
+    """Import a session from an archive.
+
+    FILE was written by `mucat export --format archive`.
+    """
+    if not file.is_file():
+        raise SetupError(f"There is no file {file}.")
+    if server_runs(settings.data):
+        session = send_file(settings.data, "/imports", file, IMPORT_SECONDS)
         number, name = session["id"], session["name"]
     else:
         with claim(settings.data):
-            number, name = _take(options.file, settings.data)
-    _say(f"session {number}: {name}")
-    return 0
+            number, name = _take(file, settings.data)
+    click.echo(f"session {number}: {name}")
 
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
-    prepare(folder)
+    from robot_runtime.errors import Refused
+    from server.features.exports.archive_reader import ArchiveRefused
+    from server.features.exports.files import FileFailed
+    from server.features.exports.imports import Imports
+    from server.features.sessions.session import find_row
+    from server.platform.shell_store import open_writer
+
+    async def take(imports: Imports) -> int:
+        await imports.recover()
+        return await imports.take(file)
+
     try:
-        with closing(Store(folder.database)) as store:
-            number = asyncio.run(_import(store, folder, file))
+        with open_writer(folder) as store:
+            number = asyncio.run(take(Imports(folder, store)))
             row = find_row(store, number)
-            assert isinstance(row, SessionRow)
+            assert row is not None
             return number, row.name
     except (ArchiveRefused, Refused, FileFailed) as problem:
         raise SetupError(str(problem)) from problem
-    except StoreError as problem:
-        raise SetupError(f"The database {folder.database} fails: {problem}") from problem
-
-
-async def _import(store: Store, folder: DataFolder, file: Path) -> int:
-    imports = Imports(folder, store)
-    await imports.recover()
-    return await imports.take(file)
 
 
 def _words(error: Any) -> str:
     return f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}"
-
-
-def _say(words: str) -> None:
-    print(words)  # noqa: T201 - a command line speaks
 
 
 class _Progress:

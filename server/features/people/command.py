@@ -1,51 +1,83 @@
 """`mucat pair` and `mucat access`: who may come in, from the shell of the robot's own computer.
 
-The server that runs is asked, which knows this shell by the token in its data folder.
+The running server does the work. It knows this shell by the token in its data folder.
 """
 
-import argparse
 import sys
 from datetime import datetime
 from typing import Any
 
-from server.features.people.welcome import invitation, shows_pictures
+import click
+
+from server.platform.command_line import with_settings
 from server.platform.running_server import ask
 from server.platform.settings import DataFolder, Settings
 
-
-def perform(options: argparse.Namespace, settings: Settings) -> int:
-    """Do what the command line says. Raises SetupError, with a line for a person, where it cannot be done."""
-    lines = _pair(options, settings.data) if options.command == "pair" else _act(options, settings.data)
-    print(*lines, sep="\n")  # noqa: T201 - a command line speaks
-    return 0
+ROLE = click.Choice(["viewer", "operator"])
 
 
-def _pair(options: argparse.Namespace, folder: DataFolder) -> list[str]:
-    role = options.role or ("viewer" if _has_operator(folder) else "operator")
-    made = ask(folder, "POST", "/access/codes", {"role": role})
+@click.command()
+@click.option("--role", type=ROLE, help="Default: viewer, or operator while there is none.")
+@with_settings
+def pair(settings: Settings, role: str | None) -> None:
+    """Print a link that signs one browser in."""
+    from server.features.people.welcome import invitation, shows_pictures
+
+    role = role or ("viewer" if _has_operator(settings.data) else "operator")
+    made = ask(settings.data, "POST", "/access/codes", {"role": role})
     lines = invitation(made["link"], picture=shows_pictures(sys.stdout))
-    return [*lines, f"It makes the browser {'an operator' if role == 'operator' else 'a viewer'}."]
+    click.echo("\n".join([*lines, f"It makes the browser {_named(role)}."]))
 
 
-def _act(options: argparse.Namespace, folder: DataFolder) -> list[str]:
-    match options.action:
-        case "list":
-            return _tabulate(ask(folder, "GET", "/access/devices"))
-        case "token":
-            said = {"name": options.name, "role": options.role}
-            made = ask(folder, "POST", "/access/tokens", said)
-            device = made["device"]
-            print(  # noqa: T201 - apart from what another program may read
-                f"“{device['name']}” is device {device['id']}. The token is not shown again:", file=sys.stderr
-            )
-            return [made["token"]]
-        case "revoke":
-            ask(folder, "DELETE", f"/access/devices/{options.device}")
-            return [f"Device {options.device} may not come in any longer."]
-        case _:
-            role = "operator" if options.action == "promote" else "viewer"
-            device = ask(folder, "PATCH", f"/access/devices/{options.device}", {"role": role})
-            return [f"“{device['name']}” is {'an operator' if role == 'operator' else 'a viewer'} now."]
+@click.group()
+def access() -> None:
+    """Show and change who may come in, and in which role."""
+
+
+@access.command("list")
+@with_settings
+def list_devices(settings: Settings) -> None:
+    """List the browsers and programs that may come in."""
+    devices = ask(settings.data, "GET", "/access/devices")
+    click.echo(_tabulate(devices) or "Nobody is paired yet: `mucat pair` prints a link for a browser.")
+
+
+@access.command()
+@click.argument("device", type=int)
+@with_settings
+def promote(settings: Settings, device: int) -> None:
+    """Make a device an operator."""
+    _give_role(settings.data, device, "operator")
+
+
+@access.command()
+@click.argument("device", type=int)
+@with_settings
+def demote(settings: Settings, device: int) -> None:
+    """Make a device a viewer."""
+    _give_role(settings.data, device, "viewer")
+
+
+@access.command()
+@click.argument("device", type=int)
+@with_settings
+def revoke(settings: Settings, device: int) -> None:
+    """Sign a device out, from this moment on."""
+    ask(settings.data, "DELETE", f"/access/devices/{device}")
+    click.echo(f"Device {device} may not come in any longer.")
+
+
+@access.command()
+@click.argument("name")
+@click.option("--role", type=ROLE, default="viewer")
+@with_settings
+def token(settings: Settings, name: str, role: str) -> None:
+    """Let a program in under this name, and print its token."""
+    made = ask(settings.data, "POST", "/access/tokens", {"name": name, "role": role})
+    device = made["device"]
+    # Apart from the token, which another program may read.
+    click.echo(f"“{device['name']}” is device {device['id']}. The token is not shown again:", err=True)
+    click.echo(made["token"])
 
 
 def _has_operator(folder: DataFolder) -> bool:
@@ -53,11 +85,18 @@ def _has_operator(folder: DataFolder) -> bool:
     return any((one["kind"], one["role"]) == ("browser", "operator") for one in devices)
 
 
-def _tabulate(devices: list[dict[str, Any]]) -> list[str]:
-    if not devices:
-        return ["Nobody is paired yet: `mucat pair` prints a link for a browser."]
-    return [
+def _give_role(folder: DataFolder, number: int, role: str) -> None:
+    device = ask(folder, "PATCH", f"/access/devices/{number}", {"role": role})
+    click.echo(f"“{device['name']}” is {_named(role)} now.")
+
+
+def _named(role: str) -> str:
+    return "an operator" if role == "operator" else "a viewer"
+
+
+def _tabulate(devices: list[dict[str, Any]]) -> str:
+    return "\n".join(
         f"{one['id']:5}  {one['role']:8}  {one['kind']:7}  "
         f"last seen {datetime.fromtimestamp(one['seen']):%Y-%m-%d %H:%M}  {one['name']}"
         for one in devices
-    ]
+    )

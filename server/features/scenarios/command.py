@@ -1,66 +1,76 @@
-"""`mucat scenario`: list, check and run scenarios from a shell.
+"""`mucat scenario`: list, check and run scenarios from a shell."""
 
-In simulated time a scenario is run here, where no server works on the data folder; else by that server, as
-are those that run live.
-"""
-
-import argparse
-import asyncio
-import math
-import signal
-import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager, ExitStack, closing
 from pathlib import Path
-from time import sleep
+from typing import TYPE_CHECKING, Literal
 
-from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import Refused
-from robot_runtime.experiments.scenario.document import Scenario, ScenarioError, read_scenario
-from server.features.lease.command import in_control
-from server.features.scenarios.library import list_scenarios
-from server.features.scenarios.runs import Runs
-from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState, summarize
-from server.features.scenarios.simulated_run import Simulated
-from server.platform.notices import Notices
-from server.platform.running_server import Claim, ask
-from server.platform.schema import prepare
-from server.platform.settings import DataFolder, Settings, SetupError
-from server.platform.store import Store, StoreError
+import click
 
-LOOK_SECONDS = 0.25
+from server.platform.command_line import with_settings
+from server.platform.settings import Settings, SetupError
+
+if TYPE_CHECKING:
+    from robot_runtime.experiments.scenario.document import Scenario
+
+SCENARIO = click.argument("file", metavar="SCENARIO")
 
 
-def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Do what the command line says. Exit status: 1 where a run did not come to its end.
+@click.group()
+def scenario() -> None:
+    """Run experiments that are written down.
 
-    Raises SetupError, with a line for a person, where it cannot be done.
+    A SCENARIO is a TOML file, or the name of one in the list.
     """
-    if options.action == "list":
-        for one in list_scenarios(settings.data.scenarios):
-            _say(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
-        return 0
-    text, scenario = _read(options.file, settings.data.scenarios)
-    if options.action == "check":
-        _say(_describe(scenario))
-        return 0
-    wanted = ScenarioStart(text=text, place=options.place, board=options.board)
-    with ExitStack() as claimed:
-        if options.place == "simulated" and _enter(claimed, claim(settings.data)):
-            return _conclude(_run_here(wanted, settings))
-    return _conclude(_run_there(wanted, settings.data))
 
 
-def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
-    """Whether the data folder could be had; where not, a server works on it, or will say what is wrong."""
-    try:
-        claimed.enter_context(claim)
-    except SetupError:
-        return False
-    return True
+@scenario.command("list")
+@with_settings
+def list_all(settings: Settings) -> None:
+    """List the scenarios."""
+    from server.features.scenarios.library import list_scenarios
+
+    for one in list_scenarios(settings.data.scenarios):
+        click.echo(f"{one.name:<24} {one.title}{'' if one.shipped else ' (your own)'}")
 
 
-def _read(file: str, own: Path) -> tuple[str, Scenario]:
+@scenario.command()
+@SCENARIO
+@with_settings
+def check(settings: Settings, file: str) -> None:
+    """Show what a scenario does, or what is wrong with it."""
+    _, scenario = _read(file, settings.data.scenarios)
+    click.echo(_describe(scenario))
+
+
+@scenario.command()
+@SCENARIO
+@click.option(
+    "--place",
+    type=click.Choice(["simulated", "live"]),
+    default="simulated",
+    help="In simulated time, or in real time on the robot of the running server.",
+)
+@click.option(
+    "--board",
+    type=click.Choice(["host", "emulated"]),
+    default="host",
+    help="In simulated time: the firmware built for this computer, or on the emulated board.",
+)
+@with_settings
+def run(
+    settings: Settings, file: str, place: Literal["simulated", "live"], board: Literal["host", "emulated"]
+) -> int:
+    """Run a scenario, and record it as a session."""
+    from server.features.scenarios.schemas import ScenarioStart
+    from server.features.scenarios.shell_run import run_scenario
+
+    text, _ = _read(file, settings.data.scenarios)
+    return run_scenario(ScenarioStart(text=text, place=place, board=board), settings)
+
+
+def _read(file: str, own: Path) -> "tuple[str, Scenario]":
+    from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+    from server.features.scenarios.library import list_scenarios
+
     there = {one.name: one.text for one in list_scenarios(own)}
     try:
         text = there[file] if file in there else Path(file).read_text(encoding="utf-8")
@@ -72,95 +82,9 @@ def _read(file: str, own: Path) -> tuple[str, Scenario]:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
 
 
-def _describe(scenario: Scenario) -> str:
+def _describe(scenario: "Scenario") -> str:
+    from server.features.scenarios.schemas import summarize
+
     summary = summarize(scenario)
     events = [f"{event.at:8.1f} s  {event.words}" for event in summary.events]
     return "\n".join([f"{summary.title}: {summary.duration:g} s, seed {summary.seed}", *events])
-
-
-def _run_here(wanted: ScenarioStart, settings: Settings) -> EndedRun:
-    prepare(settings.data)
-    try:
-        with closing(Store(settings.data.database)) as store:
-            return asyncio.run(_simulate(wanted, settings, store))
-    except StoreError as problem:
-        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
-
-
-async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
-    told = _Progress()
-    simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
-    runs = Runs(simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message)))
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
-    try:
-        runs.start(wanted.text, wanted.place, wanted.board)
-    except Refused as problem:
-        raise SetupError(str(problem)) from problem
-    await runs.wait()
-    last = runs.state().last
-    assert last is not None
-    return last
-
-
-def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
-    """Ask the server that runs; Ctrl-C cancels the run there."""
-    if wanted.place == "simulated":
-        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
-        return _follow(number, folder, lambda: None)
-    with in_control(folder, _say) as seat:
-        number = seat.ask("POST", "/scenarios/runs", wanted.model_dump())["run"]
-        return _follow(number, folder, seat.renew)
-
-
-def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
-    told = _Progress()
-    try:
-        while True:
-            keep()
-            state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
-            told.tell(state)
-            if state.last is not None and state.last.run >= number:
-                return state.last
-            sleep(LOOK_SECONDS)
-    except KeyboardInterrupt:
-        ask(folder, "POST", "/scenarios/cancel")
-        raise SetupError("The run was cancelled; what was recorded is kept.") from None
-
-
-def _conclude(last: EndedRun) -> int:
-    words = f"{last.title}: {last.state}. {last.problem}".strip()
-    _say(words if last.session is None else f"{words} Session {last.session}.")
-    return 0 if last.state == "complete" else 1
-
-
-class _Progress:
-    """Writes each event as the run reaches it."""
-
-    def __init__(self) -> None:
-        self._run: int | None = None
-        self._events: list[ScenarioEvent] = []
-        self._told = 0
-
-    def tell(self, state: ScenarioState) -> None:
-        """What is new in it."""
-        active, last = state.active, state.last
-        if last is not None and last.run == self._run and last.state == "complete":
-            # A fast run may be over before its last events were told.
-            self._tell_until(math.inf)
-        if active is None or active.phase not in ("running", "ending"):
-            return
-        if active.run != self._run:
-            self._run, self._events, self._told = active.run, active.events, 0
-            _say(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
-        self._tell_until(active.elapsed)
-
-    def _tell_until(self, time: float) -> None:
-        past = [event for event in self._events if event.at <= time]
-        for event in past[self._told :]:
-            _say(f"{event.at:8.1f} s  {event.words}")
-        self._told = max(self._told, len(past))
-
-
-def _say(words: str) -> None:
-    print(words, file=sys.stdout, flush=True)  # noqa: T201 - a command line speaks

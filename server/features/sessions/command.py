@@ -1,113 +1,196 @@
-"""`mucat sessions` and `mucat record`: what people do with sessions, from a shell.
+"""`mucat sessions` and `mucat record`: sessions from a shell.
 
-What changes something is asked of the server that runs on the data folder, since nothing else may write its
-database; where none runs, it is done here.
+Changes go through the server that runs on the data folder, since nothing else may write its database; where
+none runs, they are made here.
 """
 
-import argparse
 import asyncio
-from contextlib import closing
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import ValidationError
+import click
 
-from server.features.sessions.catalogue import Catalogue, Listing
-from server.features.sessions.presence import NotNow, UnknownSession
-from server.features.sessions.session import Session, SessionChanges, SessionDetail
-from server.platform.running_server import Claim, ask, open_reader, server_runs
-from server.platform.schema import prepare
+from server.platform.command_line import with_settings
+from server.platform.folder_lock import claim
+from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
-from server.platform.store import Store, StoreError
+
+if TYPE_CHECKING:
+    from server.features.sessions.session import Session, SessionDetail
+
+SESSION = click.argument("session", type=int)
+REQUESTS = {
+    "change": ("PATCH", "/sessions/{}"),
+    "delete": ("DELETE", "/sessions/{}"),
+    "restore": ("POST", "/sessions/{}/restore"),
+}
 
 
-def perform(options: argparse.Namespace, settings: Settings, claim: Claim) -> int:
-    """Do what the command line says. Raises SetupError, with a line for a person, where it cannot be done."""
+@click.group()
+def sessions() -> None:
+    """Find sessions, annotate them, delete them."""
+
+
+@sessions.command("list")
+@click.argument("words", nargs=-1)
+@click.option("--tag", multiple=True, help="Only sessions with this tag; can be repeated.")
+@click.option("--deleted", is_flag=True, help="Show the sessions in the bin instead.")
+@with_settings
+def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
+    """List sessions, newest first.
+
+    With WORDS, only those that have each of them in name, note, tags or scenario.
+    """
+    from server.features.sessions.catalogue import Listing
+    from server.platform.shell_store import open_reader
+
+    with open_reader(settings.data) as store:
+        click.echo(_tabulate(Listing(store).list(" ".join(words), tag, deleted=deleted)))
+
+
+@sessions.command()
+@SESSION
+@with_settings
+def show(settings: Settings, session: int) -> None:
+    """Show a session: contents, bookmarks, gaps."""
+    from server.features.sessions.catalogue import Listing
+    from server.features.sessions.presence import UnknownSession
+    from server.platform.shell_store import open_reader
+
     try:
-        print(_act(options, settings, claim))  # noqa: T201 - a command line speaks
-    except (UnknownSession, NotNow) as problem:
+        with open_reader(settings.data) as store:
+            click.echo(_describe(Listing(store).detail(session)))
+    except UnknownSession as problem:
         raise SetupError(str(problem)) from problem
-    except StoreError as problem:
-        raise SetupError(f"The database {settings.data.database} fails: {problem}") from problem
-    return 0
 
 
-def _act(options: argparse.Namespace, settings: Settings, claim: Claim) -> str:
-    folder, action = settings.data, options.action
-    if options.command == "record":
-        return _start(options, folder) if action == "start" else _stop(folder, claim)
-    if action in ("list", "show"):
-        with open_reader(folder, claim) as store:
-            if action == "show":
-                return _describe(Listing(store).detail(options.session))
-            found = Listing(store).list(" ".join(options.words), options.tag, deleted=options.deleted)
-            return _tabulate(found)
-    if action == "tag":
-        with open_reader(folder, claim) as store:
-            tags = [*Listing(store).find(options.session).tags, *options.tags]
-        said = _check(tags=[tag for tag in dict.fromkeys(tags) if tag not in options.remove])
-    elif action == "note":
-        said = _check(note=options.text)
-    else:
-        said = {}
-    session = _change(folder, claim, options.session, action, said)
-    words = {"delete": "is in the bin", "restore": "is back"}.get(action, "is changed")
-    return f"“{session['name']}” {words}."
+@sessions.command()
+@SESSION
+@click.argument("tags", nargs=-1)
+@click.option("--remove", multiple=True, metavar="TAG", help="Remove this tag; can be repeated.")
+@with_settings
+def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
+    """Add tags to a session, or remove some."""
+    from server.features.sessions.catalogue import Listing
+    from server.features.sessions.presence import UnknownSession
+    from server.platform.shell_store import open_reader
 
-
-def _change(
-    folder: DataFolder, claim: Claim, session: int, action: str, said: dict[str, Any]
-) -> dict[str, Any]:
-    if server_runs(folder, claim):
-        path = f"/sessions/{session}"
-        method, path = {
-            "delete": ("DELETE", path),
-            "restore": ("POST", f"{path}/restore"),
-        }.get(action, ("PATCH", path))
-        changed: dict[str, Any] = ask(folder, method, path, said or None)
-        return changed
-    with claim(folder):
-        prepare(folder)
-        with closing(Store(folder.database)) as store:
-            catalogue = Catalogue(store)
-            if said:
-                change = catalogue.change(session, **said)
-            else:
-                change = catalogue.delete(session) if action == "delete" else catalogue.restore(session)
-            return asyncio.run(change).model_dump()
-
-
-def _check(**said: Any) -> dict[str, Any]:
     try:
-        return SessionChanges(**said).model_dump(exclude_unset=True)
-    except ValidationError as problem:
-        raise SetupError("; ".join(error["msg"] for error in problem.errors())) from problem
+        with open_reader(settings.data) as store:
+            present = Listing(store).find(session).tags
+    except UnknownSession as problem:
+        raise SetupError(str(problem)) from problem
+    _change(
+        settings.data, session, tags=[one for one in dict.fromkeys([*present, *tags]) if one not in remove]
+    )
 
 
-def _start(options: argparse.Namespace, folder: DataFolder) -> str:
-    session = ask(folder, "POST", "/sessions", {"name": options.name, "note": options.note})
-    return f"Recording of “{session['name']}” has begun; it is session {session['id']}."
+@sessions.command()
+@SESSION
+@click.argument("text")
+@with_settings
+def note(settings: Settings, session: int, text: str) -> None:
+    """Replace the note of a session."""
+    _change(settings.data, session, note=text)
 
 
-def _stop(folder: DataFolder, claim: Claim) -> str:
-    with open_reader(folder, claim) as store:
+@sessions.command()
+@SESSION
+@with_settings
+def delete(settings: Settings, session: int) -> None:
+    """Move a session to the bin."""
+    _perform(settings.data, "delete", session, "is in the bin")
+
+
+@sessions.command()
+@SESSION
+@with_settings
+def restore(settings: Settings, session: int) -> None:
+    """Take a session out of the bin."""
+    _perform(settings.data, "restore", session, "is back")
+
+
+@click.group()
+def record() -> None:
+    """Record with the running server."""
+
+
+@record.command()
+@click.argument("name", default="")
+@click.option("--note", default="", show_default=False, help="The purpose of this dive, its settings.")
+@with_settings
+def start(settings: Settings, name: str, note: str) -> None:
+    """Start a recording. NAME is the date and time by default."""
+    session = ask(settings.data, "POST", "/sessions", {"name": name, "note": note})
+    click.echo(f"Recording of “{session['name']}” has begun; it is session {session['id']}.")
+
+
+@record.command()
+@with_settings
+def stop(settings: Settings) -> None:
+    """End the present recording."""
+    from server.features.sessions.catalogue import Listing
+    from server.platform.shell_store import open_reader
+
+    with open_reader(settings.data) as store:
         recording = [one.id for one in Listing(store).list() if one.state == "recording"]
     if not recording:
         raise SetupError("Nothing is being recorded.")
-    session = ask(folder, "POST", f"/sessions/{recording[0]}/stop")
-    return f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s."
+    session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
+    click.echo(f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s.")
 
 
-def _tabulate(sessions: list[Session]) -> str:
-    if not sessions:
+def _change(folder: DataFolder, session: int, **values: Any) -> None:
+    from pydantic import ValidationError
+
+    from server.features.sessions.session import SessionChanges
+
+    try:
+        changes = SessionChanges(**values).model_dump(exclude_unset=True)
+    except ValidationError as problem:
+        raise SetupError("; ".join(error["msg"] for error in problem.errors())) from problem
+    _perform(folder, "change", session, "is changed", changes)
+
+
+def _perform(
+    folder: DataFolder,
+    action: Literal["change", "delete", "restore"],
+    session: int,
+    outcome: str,
+    changes: dict[str, Any] | None = None,
+) -> None:
+    if server_runs(folder):
+        method, path = REQUESTS[action]
+        name = ask(folder, method, path.format(session), changes)["name"]
+    else:
+        with claim(folder):
+            name = _perform_here(folder, action, session, changes or {})
+    click.echo(f"“{name}” {outcome}.")
+
+
+def _perform_here(folder: DataFolder, action: str, session: int, changes: dict[str, Any]) -> str:
+    from server.features.sessions.catalogue import Catalogue
+    from server.features.sessions.presence import NotNow, UnknownSession
+    from server.platform.shell_store import open_writer
+
+    try:
+        with open_writer(folder) as store:
+            changed = asyncio.run(getattr(Catalogue(store), action)(session, **changes))
+            return str(changed.name)
+    except (UnknownSession, NotNow) as problem:
+        raise SetupError(str(problem)) from problem
+
+
+def _tabulate(found: "list[Session]") -> str:
+    if not found:
         return "No session is like that."
     return "\n".join(
         f"{one.id:5}  {one.started:%Y-%m-%d %H:%M}  {one.duration:8.1f} s  {one.state:11}  {one.name}"
         + (f"  [{', '.join(one.tags)}]" if one.tags else "")
-        for one in sessions
+        for one in found
     )
 
 
-def _describe(session: SessionDetail) -> str:
+def _describe(session: "SessionDetail") -> str:
     lines = [
         f"{session.id}  {session.name}",
         *([session.note] if session.note else []),

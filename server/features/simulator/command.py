@@ -3,33 +3,27 @@
 For a robot with its hardware in the loop.
 """
 
-import argparse
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    Actions = argparse._SubParsersAction[argparse.ArgumentParser]
+import click
 
 
-def add_arguments(commands: "Actions") -> None:
-    """Add the command to those of `mucat`."""
-    parser = commands.add_parser("simulator", help="simulate the water for a robot on another computer")
-    parser.add_argument(
-        "--connect",
-        required=True,
-        metavar="ENDPOINT",
-        help="where that robot listens, as zenoh.listen in its robot.toml has it: tcp/192.168.0.7:7447",
-    )
-    parser.add_argument("--robot", default="turtle", help="its name; default turtle")
-    parser.add_argument("--seed", type=int, default=1, help="of the sensors' noise; default 1")
-
-
-def perform(options: argparse.Namespace) -> None:
-    """Become the simulator's process; the scene's ends with it."""
-    there = ["--connect", options.connect, "--robot", options.robot]
+@click.command()
+@click.option(
+    "--connect",
+    required=True,
+    metavar="ENDPOINT",
+    help="Where that robot listens: zenoh.listen in its robot.toml, such as tcp/192.168.0.7:7447.",
+)
+@click.option("--robot", default="turtle", help="The robot's name.")
+@click.option("--seed", type=int, default=1, help="Seed of the sensors' noise.")
+def simulator(connect: str, robot: str, seed: int) -> None:
+    """Simulate the water for a robot on another computer."""
+    there = ["--connect", connect, "--robot", robot]
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene", "--client", "--with-parent", *there]
     subprocess.Popen(scene)
-    simulator = [sys.executable, "-m", "robot_runtime.simulation", "--in-the-loop", *there]
-    os.execv(sys.executable, [*simulator, "--seed", str(options.seed)])
+    # This process becomes the simulator; the scene ends with it.
+    water = [sys.executable, "-m", "robot_runtime.simulation", "--in-the-loop", *there]
+    os.execv(sys.executable, [*water, "--seed", str(seed)])

@@ -11,8 +11,8 @@ from pathlib import Path
 import psutil
 import pytest
 
+from server.platform.folder_lock import runner_of
 from server.platform.settings import DataFolder
-from server.processes.server_runner import runner_of
 from tests.server.waiting import SECONDS, alive
 
 pytestmark = pytest.mark.stack

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from server.cli import main
-from server.features.exports.options import FORMATS
+from server.features.exports.command import FORMATS
 from server.features.exports.schemas import Format
 from server.platform.running_server import announce
 from server.platform.schema import prepare
@@ -76,6 +76,8 @@ def test_beside_a_running_server_the_server_imports(
     [
         (["export", "9"], "There is no session 9"),
         (["export", "1", "--topics", "x"], "no topic x"),
+        (["export", "1", "--topics", "depth", "x"], "no topic x"),
+        (["export", "1", "--topics", "depth", "--topics", "x"], "no topic x"),
         (["export", "1", "--format", "csv-grid", "--period", "0"], "period: "),
         (["export", "1", "-o", "/nowhere/x"], "/nowhere cannot be written"),
         (["import", "/nowhere"], "There is no file /nowhere"),

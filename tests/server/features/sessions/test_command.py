@@ -5,14 +5,14 @@ import asyncio
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from server import cli
 from server.cli import main
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
+from server.platform.folder_lock import claim
 from server.platform.notices import Notices
 from server.platform.running_server import announce
 from server.platform.schema import prepare
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.serving import serve
 
@@ -62,14 +62,7 @@ def test_in_a_folder_that_no_server_has_used_yet(
     assert "No session" in capsys.readouterr().out
 
 
-def test_what_a_running_server_is_asked(
-    settings: Settings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def claimed(_: object) -> object:
-        raise SetupError("Another server works on it.")
-
-    monkeypatch.setattr(cli, "_claim", claimed)
-
+def test_what_a_running_server_is_asked(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
     async def scenario() -> None:
         async with serve(settings) as served:
             announce(served.settings)
@@ -84,7 +77,8 @@ def test_what_a_running_server_is_asked(
             (session,) = (await served.api.get("/sessions", params={"deleted": True})).json()
             assert (session["name"], session["tags"]) == ("from the shell", ["pool"])
 
-    asyncio.run(scenario())
+    with claim(settings.data):
+        asyncio.run(scenario())
     spoken = capsys.readouterr()
     assert "it is session 1" in spoken.out
     assert "Stop it first" in spoken.err

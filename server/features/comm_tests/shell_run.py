@@ -1,0 +1,83 @@
+"""A communication test run by a shell, where no server works on the data folder."""
+
+import asyncio
+import signal
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.errors import Refused
+from robot_runtime.experiments.comm_test.document import CommTest
+from server.features.comm_tests import tables
+from server.features.comm_tests.board_reservation import Board
+from server.features.comm_tests.lab import Lab
+from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.schemas import Place
+from server.platform.models import CommTestRun
+from server.platform.settings import Settings, SetupError
+from server.platform.shell_store import open_writer
+
+
+def run_tests(text: str, tests: list[CommTest], place: Place, settings: Settings) -> int:
+    """Run the tests of a document in a claimed folder, and print the rates.
+
+    Exit status: 1 where a run did not come to its end. Raises SetupError where it cannot be begun.
+    """
+    with open_writer(settings.data) as store:
+        return asyncio.run(_perform(text, tests, place, settings, Runs(store)))
+
+
+async def _perform(text: str, tests: list[CommTest], place: Place, settings: Settings, runs: Runs) -> int:
+    await runs.mark_interrupted()
+    progress = _Progress(tests)
+    board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
+    lab = Lab(settings, runs, SteadyClock(), progress.tell, board.lend)
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, lab.cancel)
+    try:
+        first = await lab.start(text, place)
+    except Refused as problem:
+        raise SetupError(str(problem)) from problem
+    await lab.wait()
+    return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
+
+
+def _conclude(done: Sequence[CommTestRun], wanted: int, runs: Runs) -> int:
+    for run in done:
+        print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
+        if run.state == "cancelled":
+            words = f"run {run.id} was cancelled; what it has measured is kept"
+            print(f"mucat: {words}", file=sys.stderr)  # noqa: T201
+        elif run.state != "complete":
+            print(f"mucat: run {run.id} failed: {run.problem}", file=sys.stderr)  # noqa: T201
+    return 0 if len(done) == wanted and all(run.state == "complete" for run in done) else 1
+
+
+class _Progress:
+    """Writes what the lab tells."""
+
+    def __init__(self, tests: list[CommTest]) -> None:
+        self._tests = tests
+        self._run: int | None = None
+
+    def tell(self, message: dict[str, Any]) -> None:
+        active, cell = message["active"], message["cell"]
+        if active and active["run"] != self._run:
+            self._run = active["run"]
+            test = self._tests[active["test"]]
+            words = f"run {self._run}: {test.name}, framing {test.framing}, {test.direction}"
+            print(f"{words}, {active['cells']} cells", flush=True)  # noqa: T201
+        if active and cell:
+            where = f"{cell['baud']:>6} baud, Arduino {cell['arduino_delay']:g} s, Pi {cell['pi_delay']:g} s"
+            times = f"{_clock(active['elapsed'])} elapsed, {_clock(active['remaining'] or 0)} remaining"
+            causes = ", ".join(cell["causes"])
+            line = (
+                f"[{active['done']:>3}/{active['cells']}] {where:<42} {cell['rate']:.2f}  {times}  {causes}"
+            )
+            print(line.rstrip(), flush=True)  # noqa: T201
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02}"

@@ -1,0 +1,125 @@
+"""A scenario run by a shell: in simulated time here, where no server works on the data folder; else by it."""
+
+import asyncio
+import math
+import signal
+from collections.abc import Callable
+from contextlib import AbstractContextManager, ExitStack
+from time import sleep
+
+import click
+
+from robot_runtime.clock import SteadyClock
+from robot_runtime.errors import Refused
+from server.features.lease.command import in_control
+from server.features.scenarios.runs import Runs
+from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
+from server.features.scenarios.simulated_run import Simulated
+from server.platform.folder_lock import claim
+from server.platform.notices import Notices
+from server.platform.running_server import ask
+from server.platform.settings import DataFolder, Settings, SetupError
+from server.platform.shell_store import open_writer
+from server.platform.store import Store
+
+LOOK_SECONDS = 0.25
+
+
+def run_scenario(wanted: ScenarioStart, settings: Settings) -> int:
+    """Run a scenario and print its events as they come. Exit status: 1 where it did not come to its end.
+
+    Raises SetupError where it cannot be begun.
+    """
+    with ExitStack() as claimed:
+        if wanted.place == "simulated" and _enter(claimed, claim(settings.data)):
+            return _conclude(_run_here(wanted, settings))
+    return _conclude(_run_there(wanted, settings.data))
+
+
+def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
+    """Whether the data folder could be had; where not, a server works on it, or will say what is wrong."""
+    try:
+        claimed.enter_context(claim)
+    except SetupError:
+        return False
+    return True
+
+
+def _run_here(wanted: ScenarioStart, settings: Settings) -> EndedRun:
+    with open_writer(settings.data) as store:
+        return asyncio.run(_simulate(wanted, settings, store))
+
+
+async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
+    told = _Progress()
+    simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
+    runs = Runs(simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message)))
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
+    try:
+        runs.start(wanted.text, wanted.place, wanted.board)
+    except Refused as problem:
+        raise SetupError(str(problem)) from problem
+    await runs.wait()
+    last = runs.state().last
+    assert last is not None
+    return last
+
+
+def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
+    """Ask the server that runs; Ctrl-C cancels the run there."""
+    if wanted.place == "simulated":
+        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
+        return _follow(number, folder, lambda: None)
+    with in_control(folder, click.echo) as seat:
+        number = seat.ask("POST", "/scenarios/runs", wanted.model_dump())["run"]
+        return _follow(number, folder, seat.renew)
+
+
+def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
+    told = _Progress()
+    try:
+        while True:
+            keep()
+            state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
+            told.tell(state)
+            if state.last is not None and state.last.run >= number:
+                return state.last
+            sleep(LOOK_SECONDS)
+    except KeyboardInterrupt:
+        ask(folder, "POST", "/scenarios/cancel")
+        raise SetupError("The run was cancelled; what was recorded is kept.") from None
+
+
+def _conclude(last: EndedRun) -> int:
+    words = f"{last.title}: {last.state}. {last.problem}".strip()
+    click.echo(words if last.session is None else f"{words} Session {last.session}.")
+    return 0 if last.state == "complete" else 1
+
+
+class _Progress:
+    """Writes each event as the run reaches it."""
+
+    def __init__(self) -> None:
+        self._run: int | None = None
+        self._events: list[ScenarioEvent] = []
+        self._told = 0
+
+    def tell(self, state: ScenarioState) -> None:
+        """What is new in it."""
+        active, last = state.active, state.last
+        if last is not None and last.run == self._run and last.state == "complete":
+            # A fast run may be over before its last events were told.
+            self._tell_until(math.inf)
+        if active is None or active.phase not in ("running", "ending"):
+            return
+        if active.run != self._run:
+            self._run, self._events, self._told = active.run, active.events, 0
+            click.echo(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
+        self._tell_until(active.elapsed)
+
+    def _tell_until(self, time: float) -> None:
+        past = [event for event in self._events if event.at <= time]
+        for event in past[self._told :]:
+            click.echo(f"{event.at:8.1f} s  {event.words}")
+        self._told = max(self._told, len(past))

@@ -1,0 +1,58 @@
+"""The parts that the commands of `mucat` share."""
+
+import os
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import IO, Any
+
+import click
+
+from server.platform.settings import SetupError, read_settings
+
+FILE = click.Path(path_type=Path)
+
+
+class CommandFailed(click.ClickException):
+    """The command cannot be carried out; the text says why and what to do."""
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        """Print the text to the standard error."""
+        click.echo(f"mucat: {self.message}", file=file, err=True)
+
+
+class RowCommand(click.Command):
+    """A command whose repeatable options take several values in a row: `--topics depth imu`."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Repeat the option before each value after the first, as click expects it."""
+        repeatable = {name for one in self.params if getattr(one, "multiple", False) for name in one.opts}
+        spread: list[str] = []
+        option, values = "", 0
+        for word in args:
+            if word.startswith("-"):
+                option, values = word, 0
+            elif option in repeatable:
+                values += 1
+                spread += [option] if values > 1 else []
+            spread.append(word)
+        return super().parse_args(ctx, spread)
+
+
+def with_settings(command: Callable[..., int | None]) -> Callable[..., int | None]:
+    """Add --data and --config to a command, and call it with the settings that follow from them.
+
+    The function returns the exit status, or None for 0. A SetupError from it ends the command with status 1.
+    """
+
+    @click.option("--data", type=FILE, help="The data folder.  [default: $MUCAT_DATA, or data]")
+    @click.option("--config", type=FILE, default="robot.toml", help="The robot's configuration.")
+    @wraps(command)
+    def run(*, data: Path | None, config: Path, **options: Any) -> int | None:
+        host, port = options.pop("host", None), options.pop("port", None)
+        try:
+            return command(read_settings(config, data, host, port, os.environ), **options)
+        except SetupError as problem:
+            raise CommandFailed(str(problem)) from problem
+
+    return run

@@ -1,0 +1,54 @@
+"""The lock of a data folder: one process at a time writes in it."""
+
+import fcntl
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO
+
+from robot_runtime.durable_files import make_folder
+from server.platform.pidfile import PidFile
+from server.platform.settings import DataFolder, SetupError, make_folders
+
+LOCK_TRIES = 20
+LOCK_SECONDS = 0.02
+
+
+@contextmanager
+def claim(folder: DataFolder) -> Iterator[None]:
+    """Hold the data folder alone. Raises SetupError where another server has it.
+
+    The other processes of a killed server test the lock now and then, and so hold it for a moment.
+    """
+    try:
+        make_folder(folder.path)
+        handle = folder.lock.open("w")
+    except OSError as problem:
+        raise SetupError(f"The data folder {folder.path} cannot be used: {problem.strerror}.") from problem
+    with handle:
+        if not _lock(handle):
+            runner = runner_of(folder)
+            process = f" (process {runner})" if runner is not None else ""
+            raise SetupError(
+                f"Another server works on {folder.path}{process}. End it, or choose another folder with "
+                "--data."
+            )
+        make_folders(folder)
+        yield
+
+
+def runner_of(folder: DataFolder) -> int | None:
+    """Return the process ID of the runner of this folder; None where none runs."""
+    running = PidFile(folder.runner).read()
+    return None if running is None else running.pid
+
+
+def _lock(handle: IO[str]) -> bool:
+    for _ in range(LOCK_TRIES):
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(LOCK_SECONDS)
+        else:
+            return True
+    return False

@@ -1,0 +1,45 @@
+"""The database, opened by a command in a shell rather than by the server."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+
+from migrations import HEAD
+from server.platform.folder_lock import claim
+from server.platform.schema import prepare, read_revision
+from server.platform.settings import DataFolder, SetupError
+from server.platform.store import Reader, Store, StoreError
+
+
+@contextmanager
+def open_reader(folder: DataFolder) -> Iterator[Reader]:
+    """Open the database for reading alone, which may be done beside a running server.
+
+    Creating or upgrading it may not, and claims the folder. Raises SetupError where the folder is in use or
+    the database fails.
+    """
+    try:
+        current = read_revision(folder.database) == HEAD
+    except sqlite3.DatabaseError:
+        current = False  # `prepare` says what is the matter
+    if not current:
+        with claim(folder):
+            prepare(folder)
+    with _explained(folder), closing(Reader(folder.database)) as store:
+        yield store
+
+
+@contextmanager
+def open_writer(folder: DataFolder) -> Iterator[Store]:
+    """Create or upgrade the database of a claimed folder, and open it. Raises SetupError where it fails."""
+    prepare(folder)
+    with _explained(folder), closing(Store(folder.database)) as store:
+        yield store
+
+
+@contextmanager
+def _explained(folder: DataFolder) -> Iterator[None]:
+    try:
+        yield
+    except StoreError as problem:
+        raise SetupError(f"The database {folder.database} fails: {problem}") from problem

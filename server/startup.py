@@ -1,0 +1,77 @@
+"""`mucat run`: starts everything and serves the page."""
+
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from server.platform.command_line import CommandFailed, with_settings
+from server.platform.folder_lock import claim
+from server.platform.settings import Settings, SetupError
+from server.processes.server_runner import ServerRunner
+
+if TYPE_CHECKING:
+    from server.http.sign_in.access import Access
+    from server.platform.certificate import Certificate
+
+
+@click.command()
+@click.option("--port", type=int, help="Default: server.port in robot.toml, or 8000.")
+@click.option("--host", help="Address to listen on. Default: server.host in robot.toml, or 127.0.0.1.")
+@with_settings
+def run(settings: Settings) -> int:
+    """Start everything and serve the page."""
+    with claim(settings.data):
+        return _serve(settings)
+
+
+def _serve(settings: Settings) -> int:
+    # Loaded only now: an error in robot.toml is reported at once, also on a slow computer.
+    from robot_runtime.simulation.boards.firmware import BuildError, build_firmware
+    from server.app import create_app
+    from server.http.serving import make_server, open_socket
+    from server.platform.certificate import prepare_certificate
+    from server.platform.running_server import announce
+    from server.platform.schema import prepare
+    from server.processes.supervisor import plan
+
+    if settings.emulated_board:
+        try:
+            build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)
+        except BuildError as problem:
+            raise SetupError(str(problem)) from problem
+    with open_socket(settings.host, settings.port) as listener:
+        certificate = prepare_certificate(settings) if settings.tls else None
+
+        def greet(access: "Access") -> None:
+            if not app.state.ended:
+                _greet(settings, access, certificate)
+
+        app = create_app(settings, plan(settings), greet)
+        server = make_server(app, certificate)
+        server.config.load()
+
+        def serve(ended: str) -> int:
+            """In a process of its own; `ended` says how the server before it did, if there was one."""
+            try:
+                prepare(settings.data)
+            except SetupError as problem:
+                CommandFailed(str(problem)).show()
+                return 1
+            announce(settings)
+            # The server ends in order at these, and then sends them to itself once more; once is enough.
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, lambda *_: None)
+            app.state.ended = ended
+            server.run(sockets=[listener])
+            return 0
+
+        return ServerRunner(serve, settings.data).run()
+
+
+def _greet(settings: Settings, access: "Access", certificate: "Certificate | None") -> None:
+    from server.features.people.welcome import shows_pictures, welcome
+
+    lines = welcome(settings, access, certificate, picture=shows_pictures(sys.stdout))
+    click.echo("\n".join(lines))
