@@ -224,7 +224,7 @@ Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
 class Alarm:
     """Something that is wrong, or was and has not been acknowledged yet."""
 
-    fault: str = field(metadata={"meaning": "one word for programs, as in docs/reference/safety.md"})
+    fault: str = field(metadata={"meaning": "one word for programs, as in docs/reference/faults.md"})
     severity: Severity
     since: float = field(metadata={"meaning": "s, steady clock"})
     active: bool = field(metadata={"meaning": "whether it is wrong still"})

@@ -1,4 +1,4 @@
-"""The supervisor's states and transitions; docs/reference/safety.md shows this table."""
+"""The supervisor's states and transitions; docs/reference/faults.md shows this table."""
 
 from typing import Literal, NamedTuple
 

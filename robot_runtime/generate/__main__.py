@@ -4,9 +4,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, parameters, safety, typescript
+from robot_runtime.generate import cpp, json_schema, typescript
+from robot_runtime.generate.configuration import configuration_page
+from robot_runtime.generate.faults import faults_page
+from robot_runtime.generate.packets import packets_page
+from robot_runtime.generate.parameters import parameters_page
 
-ROOT = Path(__file__).resolve().parents[2]
+SOURCES = Path(__file__).resolve().parents[2]
+ROOT = SOURCES
+"""Where the generated files go."""
 
 
 def main() -> int:
@@ -21,12 +27,12 @@ def main() -> int:
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
-        "docs/reference/parameters.md": parameters.weave(
-            (ROOT / "docs/reference/parameters.md").read_text(encoding="utf-8")
+        "docs/reference/configuration.md": configuration_page(
+            (SOURCES / "robot.toml").read_text(encoding="utf-8")
         ),
-        "docs/reference/safety.md": safety.weave(
-            (ROOT / "docs/reference/safety.md").read_text(encoding="utf-8")
-        ),
+        "docs/reference/faults.md": faults_page(),
+        "docs/reference/packets.md": packets_page(),
+        "docs/reference/parameters.md": parameters_page(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

@@ -1,27 +1,31 @@
-"""The part of docs/reference/parameters.md that says what may be tuned."""
+"""docs/reference/parameters.md: every parameter that may change while the robot runs."""
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
 from robot_runtime.contract.documents import Parameter
 from robot_runtime.core import Core
+from robot_runtime.generate.markdown import page, table
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
 
-_BEGIN, _END = "<!-- parameters: from the code -->\n", "<!-- parameters: end -->\n"
+SOURCE = "the parameter registry (robot_runtime/parameters)"
+INTRODUCTION = """\
+These values may change while the robot runs: on the page under Tune, or with `PATCH /api/parameters`.
+[Tune](../use/tune.md#change-parameters) says how, and how to undo a change. A gain's name is
+`LOOP.CONTROLLER.GAIN`.
+
+The default is that of a `robot.toml` that does not name the value. In the running robot a parameter's default
+is its value at the start of the runtime.
+"""
 
 
-def weave(text: str) -> str:
-    """The document with the parameters between its marks. Raises ValueError where one is missing."""
-    before, _, rest = text.partition(_BEGIN)
-    _, found, after = rest.partition(_END)
-    if not found:
-        raise ValueError("docs/reference/parameters.md lacks its marks")
-    rows = "".join(_row(one) for one in _listed())
-    head = "| parameter | range | default | meaning |\n|---|---|---|---|\n"
-    return before + _BEGIN + head + rows + _END + after
+def parameters_page() -> str:
+    """The whole text of parameters.md."""
+    rows = map(_row, _registered())
+    return page("Parameters", SOURCE, INTRODUCTION, table(("parameter", "range", "default", "meaning"), rows))
 
 
-def _listed() -> list[Parameter]:
+def _registered() -> list[Parameter]:
     clock, config = SimulatedClock(), Config()
     line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
@@ -29,7 +33,7 @@ def _listed() -> list[Parameter]:
     return robot.parameters.listed()
 
 
-def _row(one: Parameter) -> str:
+def _row(one: Parameter) -> tuple[str, ...]:
     if one.type == "choice":
         span = ", ".join(one.choices)
     elif one.type == "switch":
@@ -38,4 +42,4 @@ def _row(one: Parameter) -> str:
         span = f"{one.minimum:g} to {one.maximum:g} {one.unit}".strip()
     default = f"{one.default:g}" if isinstance(one.default, float) else str(one.default)
     only = "" if one.while_armed else "; only while disarmed"
-    return f"| `{one.name}` | {span} | {default} | {one.meaning}{only} |\n"
+    return f"`{one.name}`", span, default, f"{one.meaning}{only}"

@@ -1,6 +1,7 @@
 """Generated files: another definition gives another text, and the compiler agrees with the layout."""
 
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -10,7 +11,11 @@ from robot_runtime.contract.packets import DEFINITIONS_HASH, PACKETS, definition
 from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.control.faults import FAULTS
 from robot_runtime.control.transitions import TRANSITIONS
-from robot_runtime.generate import cpp, json_schema, safety, typescript
+from robot_runtime.generate import __main__ as generate
+from robot_runtime.generate import cpp, json_schema, typescript
+from robot_runtime.generate.configuration import configuration_page, read_comments
+from robot_runtime.generate.faults import faults_page
+from robot_runtime.generate.packets import packets_page
 
 
 def test_a_changed_field_changes_the_hash() -> None:
@@ -60,16 +65,43 @@ def test_the_page_knows_every_topic() -> None:
             assert f"rowBytes: {topic.row_bytes}," in text
 
 
-def test_the_document_shows_the_states_and_the_faults_as_they_are_in_the_code() -> None:
-    text = (Path(__file__).resolve().parents[2] / "docs/reference/safety.md").read_text()
-    assert safety.weave(text) == text
+def test_the_reference_shows_the_states_and_the_faults_as_they_are_in_the_code() -> None:
+    text = faults_page()
     for one in TRANSITIONS:
-        assert f"    {one.before} --> {one.after}: {one.trigger}\n" in text
-        assert f"| {one.before} | {one.trigger} | {one.after} | {one.why} |\n" in text
+        assert f"| `{one.before}` | {one.trigger} | `{one.after}` | {one.why} |\n" in text
     for fault in FAULTS:
         assert f"| `{fault.name}` | {fault.limit:g} s |" in text
 
 
-def test_a_document_without_its_marks_is_refused() -> None:
-    with pytest.raises(ValueError, match="lacks its marks of states"):
-        safety.weave("# Safety\n")
+def test_the_reference_has_a_chapter_for_every_packet_with_all_its_fields() -> None:
+    chapters = dict(re.findall(r"^## (\w+)\n(.*?)(?=^## |\Z)", packets_page(), re.MULTILINE | re.DOTALL))
+    for packet in PACKETS.values():
+        for name in packet.wires:
+            assert f"| `{name}` |" in chapters[packet.__name__]
+
+
+def test_the_check_names_a_reference_page_that_is_not_current(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(generate, "ROOT", tmp_path)
+    monkeypatch.setattr("sys.argv", ["generate"])
+    assert generate.main() == 0
+    monkeypatch.setattr("sys.argv", ["generate", "--check"])
+    assert generate.main() == 0
+    page = tmp_path / "docs/reference/packets.md"
+    page.write_text(page.read_text().replace("## Navigation\n", ""))
+    assert generate.main() == 1
+    assert capsys.readouterr().out.startswith("docs/reference/packets.md is not current")
+
+
+def test_the_reference_has_every_entry_of_the_configuration_with_the_comment_beside_it() -> None:
+    text = (generate.SOURCES / "robot.toml").read_text()
+    page = configuration_page(text)
+    assert "| `undo_days` | 0 to 3650 | `7.0` | days in the bin before" in page
+    with pytest.raises(ValueError, match=r"no comment beside sessions\.undo_days"):
+        configuration_page(re.sub(r"(undo_days = 7\.0).*", r"\1", text))
+
+
+def test_a_comment_of_several_lines_is_read_whole() -> None:
+    text = "[a]\nx = 1  # one,\n        # two\n\n# of its own\ny = 2\n"
+    assert read_comments(text) == {"a.x": "one, two", "a.y": ""}

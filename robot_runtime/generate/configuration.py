@@ -1,0 +1,88 @@
+"""docs/reference/configuration.md: every entry of robot.toml.
+
+Names, values and defaults are those of the configuration's dataclasses. The meaning of an entry is the
+comment beside it in robot.toml, so that file and page say the same.
+"""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import MISSING, fields
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+from robot_runtime.config import Config
+from robot_runtime.generate.markdown import page, table
+
+SOURCE = "robot_runtime/config.py and the comments of robot.toml"
+INTRODUCTION = """\
+`robot.toml` holds everything about one robot that is not code. An entry that is left out has its default.
+An entry that is not known here is refused with its name. [Configure](../run/configure.md) says how to
+change it.
+"""
+TABLES = {
+    "gains": "gains of each controller; [Parameters](parameters.md) lists them",
+    "actions": "set point (m) while a colour or marker is seen",
+    "colours": "hue, saturation and value of each colour; [Vision](../use/vision.md#colours) explains them",
+}
+"""The meaning of entries that are tables of their own."""
+_HEADER = re.compile(r"\[(.+?)\]")
+_ENTRY = re.compile(r"(\w+) = [^#]*(?:# (.*))?")
+_CONTINUED = re.compile(r"\s+# (.*)")
+
+
+def configuration_page(robot_toml: str) -> str:
+    """The whole text of configuration.md. Raises ValueError where an entry has no comment in `robot_toml`."""
+    meanings = read_comments(robot_toml)
+    parts = [INTRODUCTION]
+    for section in fields(Config):
+        cls = type(section.default)
+        parts += [f"## `[{section.name}]`\n", " ".join((cls.__doc__ or "").split()) + "\n"]
+        parts.append(
+            table(
+                ("entry", "value", "default", "meaning"), _rows(cls, section.name, section.default, meanings)
+            )
+        )
+    return page("Configuration", SOURCE, *parts)
+
+
+def read_comments(text: str) -> dict[str, str]:
+    """The comment of each entry of a TOML file, by `section.entry`; lines that continue it are joined."""
+    section, entry = "", ""
+    comments: dict[str, str] = {}
+    for line in text.splitlines():
+        if header := _HEADER.match(line):
+            section, entry = header[1], ""
+        elif found := _ENTRY.match(line):
+            entry = f"{section}.{found[1]}"
+            comments[entry] = found[2] or ""
+        elif (more := _CONTINUED.match(line)) and entry:
+            comments[entry] += f" {more[1]}"
+    return comments
+
+
+def _rows(cls: type, section: str, defaults: object, meanings: Mapping[str, str]) -> list[tuple[str, ...]]:
+    hints = get_type_hints(cls, include_extras=True)
+    rows = []
+    for one in fields(cls):
+        meaning = TABLES.get(one.name) or meanings.get(f"{section}.{one.name}")
+        if not meaning:
+            raise ValueError(f"robot.toml has no comment beside {section}.{one.name}; add one")
+        default = getattr(defaults, one.name)
+        shown = "" if one.name in TABLES or one.default is MISSING is one.default_factory else _toml(default)
+        rows.append((f"`{one.name}`", _values(hints[one.name]), shown, meaning))
+    return rows
+
+
+def _values(hint: Any) -> str:
+    """The values that a type hint admits, in words."""
+    if get_origin(hint) is Annotated:
+        limits = get_args(hint)[1]
+        return f"{limits.minimum:g} to {limits.maximum:g}"
+    if get_origin(hint) is Literal:
+        return ", ".join(f"`{value}`" for value in get_args(hint))
+    names = {bool: "true or false", str: "text", int: "whole number", float: "number", dict: "table"}
+    return names.get(get_origin(hint) or hint, "list")
+
+
+def _toml(value: object) -> str:
+    return f"`{json.dumps(value, ensure_ascii=False)}`"

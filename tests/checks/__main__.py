@@ -1,0 +1,22 @@
+"""`python -m tests.checks`: every check of the repository; exit status 1 with a line for each problem."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.checks.links import find_dead_links
+
+ROOT = Path(__file__).parents[2]
+CHECKS: tuple[Callable[[Path], list[str]], ...] = (find_dead_links,)
+
+
+def main() -> int:
+    """Run all checks."""
+    problems = [problem for check in CHECKS for problem in check(ROOT)]
+    for problem in problems:
+        print(problem)  # noqa: T201 - it is run from a shell
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
