@@ -13,6 +13,7 @@ PYTHON := .venv/bin/python
 INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-bytecode
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
+HELP_SOURCES := $(shell find docs -type f)
 
 .DEFAULT_GOAL := help
 .PHONY: help run test long check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
@@ -41,6 +42,7 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 	.venv/bin/mypy
 	.venv/bin/lint-imports
 	$(PYTHON) -m robot_runtime.generate --check
+	$(PYTHON) -m tests.checks
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
 	cd frontend && npm run --silent check
 	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
@@ -104,7 +106,7 @@ firmware: ## compile the firmware for the baud of robot.toml, the boot loader an
 host-firmware:
 	@$(MAKE) --silent -C firmware host hang
 
-setup: build/.packages-run .venv/.ready server/page/index.html
+setup: build/.packages-run .venv/.ready server/page/index.html server/help/index.html
 	@$(MAKE) --no-print-directory firmware
 
 setup-test: build/.packages-test setup
@@ -120,7 +122,7 @@ build/.packages-%: setup.sh
 	@echo "Python packages ..."
 	@python3 -m venv .venv
 	@$(PYTHON) -m pip install --quiet --disable-pip-version-check "$$(grep ^uv== constraints.txt)"
-	@.venv/bin/uv pip install $(INSTALL) --editable . --group dev
+	@.venv/bin/uv pip install $(INSTALL) --editable . --group dev --group help
 	@.venv/bin/uv pip install $(INSTALL) --no-build mujoco || \
 		echo "MuJoCo could not be installed; instead of rendered water the camera shows a drawn card."
 	@$(PYTHON) -m compileall -q robot_runtime server migrations
@@ -140,5 +142,12 @@ server/page/index.html: frontend/node_modules/.ready $(PAGE_SOURCES)
 	@cd frontend && npm run --silent build
 	@touch $@
 
+# Source maps and languages of the search that nobody asks for would be most of the site.
+server/help/index.html: .venv/.ready mkdocs.yml $(HELP_SOURCES)
+	@echo "The help ..."
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --quiet --strict
+	@rm -r server/help/assets/javascripts/lunr && find server/help -name '*.map' -delete
+	@touch $@
+
 clean: ## remove everything that was built
-	rm -rf build .venv frontend/node_modules server/page
+	rm -rf build .venv frontend/node_modules server/page server/help

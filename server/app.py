@@ -45,6 +45,7 @@ from server.features.tuning import routes as tuning
 from server.features.tuning.runs import UnknownRun
 from server.features.vision import routes as vision
 from server.health import routes as health
+from server.http.help_pages import HelpPages, make_help_router
 from server.http.page import Page, make_router
 from server.http.problems import EVERYWHERE
 from server.http.security import Guard
@@ -115,6 +116,7 @@ def create_app(
     kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
+    app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))
     return app
 

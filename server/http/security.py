@@ -15,6 +15,8 @@ from server.http.refusal import SAFE_METHODS, refuse
 BODY_BYTES_MAX = 65_536
 FRAMED = "/api/panels/frame"
 """What the page shows in a frame; it brings a stricter policy of its own (panels/frame.py)."""
+HELP = "/help/"
+"""The help pages, whose policies name their scripts (http/help_pages.py)."""
 OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
 STREAMED = frozenset({"/api/imports"})
 """Paths that take bodies of any size, piece by piece, and see to their limits themselves."""
@@ -90,13 +92,17 @@ def _with_headers(send: Send, scope: Scope) -> Send:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in HEADERS.items():
-                if scope["path"] != FRAMED or name not in OWN_POLICY or name not in headers:
+                if not _has_own_policy(scope["path"]) or name not in OWN_POLICY or name not in headers:
                     headers[name] = value
             if scope["path"].startswith("/api"):
                 headers.setdefault("cache-control", "no-store")
         await send(message)
 
     return send_with_headers
+
+
+def _has_own_policy(path: str) -> bool:
+    return path == FRAMED or path.startswith(HELP)
 
 
 def _has_large_body(scope: Scope) -> bool:

@@ -158,6 +158,7 @@ class Settings:
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "[::1]")
     build: Path = Path(__file__).parents[2] / "build"
     page: Path = Path(__file__).parents[1] / "page"
+    help_pages: Path = Path(__file__).parents[1] / "help"
 
     @property
     def scheme(self) -> str:

@@ -1,4 +1,4 @@
-"""Links of README, CONTRIBUTING, CHANGELOG and docs/: each leads to a file of the repository, and its anchor exists."""
+"""Dead links in README, CONTRIBUTING, CHANGELOG and docs/: targets and anchors that do not exist."""
 
 import re
 from collections.abc import Iterator

@@ -1,0 +1,89 @@
+"""The help pages under /help, which `make setup` builds from docs/. They hold no secrets and need no sign-in.
+
+The site generator writes scripts into its pages. Each page's policy names the hashes of its own scripts, so
+that no other inline script runs; the app's policy stays without any.
+"""
+
+import re
+from base64 import b64encode
+from hashlib import sha256
+from pathlib import Path
+
+from fastapi import APIRouter, Response
+from starlette.responses import FileResponse, HTMLResponse, RedirectResponse
+
+from server.http.page import ASK_AGAIN, FOR_EVER
+
+PREFIX = "/help"
+NOT_BUILT = "<!doctype html><title>Help</title><p>The help is not built: run “make setup”, then reload.</p>"
+_INLINE_SCRIPT = re.compile(
+    r"<script(?![^>]*\bsrc=)(?![^>]*\bapplication/json\b)[^>]*>(.*?)</script>", re.DOTALL
+)
+_HASHED_NAME = re.compile(r"\.[0-9a-f]{8}\.")
+
+
+class HelpPages:
+    """The built site in `folder`; it may be built anew while the server runs."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder.resolve()
+
+    def respond(self, path: str) -> Response:
+        """The answer to a request for `path` below /help/."""
+        found = self._find(path)
+        if found is None:
+            missing = self._folder / "404.html"
+            if not missing.is_file():
+                return HTMLResponse(NOT_BUILT, status_code=503)
+            return _html(missing, status_code=404)
+        if found.is_dir():
+            return RedirectResponse(f"{PREFIX}/{path}/")
+        if found.suffix == ".html":
+            return _html(found)
+        cached = FOR_EVER if _HASHED_NAME.search(found.name) else ASK_AGAIN
+        return FileResponse(found, headers={"cache-control": cached})
+
+    def _find(self, path: str) -> Path | None:
+        """The file that `path` names, or a folder whose slash is missing; None where there is neither."""
+        try:
+            wanted = (self._folder / path).resolve()
+            if not wanted.is_relative_to(self._folder):
+                return None
+            index = wanted / "index.html"
+            if index.is_file():
+                return index if path.endswith("/") or not path else wanted
+            return wanted if wanted.is_file() else None
+        except (OSError, ValueError):
+            # No file can have such a name.
+            return None
+
+
+def _html(file: Path, status_code: int = 200) -> HTMLResponse:
+    text = file.read_text(encoding="utf-8")
+    headers = {"cache-control": ASK_AGAIN, "content-security-policy": content_policy(text)}
+    return HTMLResponse(text, status_code, headers)
+
+
+def content_policy(html: str) -> str:
+    """The Content-Security-Policy of a help page: this server alone, and the scripts written in this page."""
+    hashes = {sha256(script.encode()).digest() for script in _INLINE_SCRIPT.findall(html)}
+    scripts = " ".join(["'self'", *sorted(f"'sha256-{b64encode(one).decode()}'" for one in hashes)])
+    return (
+        f"default-src 'self'; script-src {scripts}; img-src 'self' data:; object-src 'none'; "
+        "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+    )
+
+
+def make_help_router(pages: HelpPages) -> APIRouter:
+    """Everything under /help."""
+    router = APIRouter(include_in_schema=False)
+
+    @router.api_route(PREFIX, methods=["GET", "HEAD"])
+    def open_help() -> Response:
+        return RedirectResponse(PREFIX + "/")
+
+    @router.api_route(PREFIX + "/{path:path}", methods=["GET", "HEAD"])
+    def get_help(path: str) -> Response:
+        return pages.respond(path)
+
+    return router

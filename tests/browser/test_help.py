@@ -1,0 +1,36 @@
+"""The help pages in a browser: they render, their search finds, and nothing leaves the robot."""
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.browser.conftest import DESKTOP, PHONE
+from tests.stack import Stack
+
+
+@pytest.mark.parametrize("window", [DESKTOP, PHONE], ids=["desktop", "phone"])
+@pytest.mark.parametrize("colours", ["light", "dark"])
+def test_the_help_renders_and_searches_without_a_foreign_request(
+    browser: Browser, stack: Stack, window: object, colours: str
+) -> None:
+    # Nobody is signed in: who reaches the server may read.
+    context = browser.new_context(viewport=window, color_scheme=colours)  # type: ignore[arg-type]
+    page = context.new_page()
+    requests: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: requests.append(request.url))
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(f"{stack.url}/help/")
+    expect(page.get_by_role("heading", level=1, name="µ-CAT")).to_be_visible()
+    scheme = {"light": "default", "dark": "slate"}[colours]
+    expect(page.locator("body")).to_have_attribute("data-md-color-scheme", scheme)
+    if window == PHONE:
+        page.locator("label[for=__search]").first.click()
+    page.get_by_role("textbox", name="Search").fill("overshoot")
+    found = page.locator(".md-search-result__link").first
+    expect(found).to_be_visible()
+    found.click()
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+    context.close()
+    assert [url for url in requests if not url.startswith(f"{stack.url}/help/")] == []
+    assert complaints == []
