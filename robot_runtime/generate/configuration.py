@@ -62,7 +62,7 @@ def read_comments(text: str) -> dict[str, str]:
 
 def _rows(cls: type, section: str, defaults: object, meanings: Mapping[str, str]) -> list[tuple[str, ...]]:
     hints = get_type_hints(cls, include_extras=True)
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for one in fields(cls):
         meaning = TABLES.get(one.name) or meanings.get(f"{section}.{one.name}")
         if not meaning:
