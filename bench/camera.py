@@ -7,7 +7,7 @@ from statistics import median
 from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import Basin
 
 _SIZE = (640, 480)
@@ -29,11 +29,11 @@ def measure() -> dict[str, float]:
 
 def _measure(contents: Contents) -> dict[str, float]:
     # Here, since this loads MuJoCo, which need not be there.
-    from robot_runtime.simulation.scene.scene import Scene
+    from robot_runtime.simulation.scene.scene import SceneRenderer
 
     rendering: list[float] = []
     looking: list[float] = []
-    with Scene(contents, Parameters()) as scene:
+    with SceneRenderer(contents, SimulationParameters()) as scene:
         for number in range(_WARM + _PICTURES):
             now = 0.05 * number
             began = time.perf_counter()

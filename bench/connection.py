@@ -8,7 +8,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Heartbeat, Navigation
 from robot_runtime.link.serial_link import SerialLink
 from robot_runtime.link.session import BoardMessage
-from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from tests.board.host import BAUD, FIRMWARE
 from tests.board.rig import PROGRAM
 
@@ -32,7 +32,7 @@ def measure() -> dict[str, float]:
     heard: list[BoardMessage] = []
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
-        with BoardProcess(PROGRAM, FIRMWARE / "robot.elf", place / "tty", place / "socket"):
+        with EmulatorProcess(PROGRAM, FIRMWARE / "robot.elf", place / "tty", place / "socket"):
             connection = SerialLink(str(place / "tty"), BAUD, SteadyClock(), 1, heard.extend, lambda: None)
             connection.start()
             try:

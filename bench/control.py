@@ -21,9 +21,9 @@ from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
-from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.simulation.water.geometry import rotation, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Six
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six
 
 BEST, THESIS = "predictive", "bang_bang"
 SEEDS = (3, 4, 5)
@@ -45,11 +45,11 @@ _STROKE = 0.1
 _BEGIN, _END = "<!-- made by `make control` -->", "<!-- end -->"
 
 
-def variants() -> dict[str, Parameters]:
+def variants() -> dict[str, SimulationParameters]:
     """The simulated robots. Buoyancy is that which is left over the weight, 0.3 % of it: 30 % of the whole
     would fling any craft out of the water. Mass is that of the hull, trimmed anew; drag is the hull's, linear
     and quadratic; thrust is that of the fins."""
-    plain = Parameters()
+    plain = SimulationParameters()
     made = {"nominal": plain}
     for sign, factor in (("-", 0.7), ("+", 1.3)):
         x, y, z = plain.inertia
@@ -115,7 +115,9 @@ class _Taken:
         """Nothing is made of it."""
 
 
-def experiment(controller: str, robot: Parameters, *, sine: bool = True, seed: int = SEEDS[0]) -> Scenario:
+def experiment(
+    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+) -> Scenario:
     """Three steps, and a sine."""
     steps_end = ARMED + STEP * len(SET_POINTS)
     duration = steps_end + (SINE_PERIOD if sine else 0.0)
@@ -132,10 +134,14 @@ def experiment(controller: str, robot: Parameters, *, sine: bool = True, seed: i
     return replace(read_scenario(text), robot=robot)
 
 
-def perform(controller: str, robot: Parameters, *, sine: bool = True, seed: int = SEEDS[0]) -> Figures:
+def perform(
+    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+) -> Figures:
     """Let it swim, and judge it."""
     taken = _Taken(robot.pressure_position)
-    Run(experiment(controller, robot, sine=sine, seed=seed), boards()["host"], taken).perform(lambda _: {})
+    ScenarioRun(experiment(controller, robot, sine=sine, seed=seed), boards()["host"], taken).perform(
+        lambda _: {}
+    )
     return judge(taken.samples)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from playwright.sync_api import Page, expect, sync_playwright
 
 from robot_runtime.contract.topics import BY_NAME
-from robot_runtime.simulation.boards.emulator_process import Board
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -77,7 +77,7 @@ def measure() -> dict[str, float]:
         page.add_init_script(f"({_WATCH})({topic!r})")
         page.goto(stack.url)
         page.wait_for_function("() => globalThis.seen.length > 100")
-        with Board(Path(folder) / "run/board.sock") as board:
+        with EmulatorClient(Path(folder) / "run/board.sock") as board:
             page.evaluate("() => { globalThis.seen.length = 0; }")
             before = _started(board)
             wanted = _ROWS_PER_SECOND * _SECONDS
@@ -98,7 +98,7 @@ def measure() -> dict[str, float]:
     }
 
 
-def _press_keys(page: Page, board: Board) -> list[float]:
+def _press_keys(page: Page, board: EmulatorClient) -> list[float]:
     """ms from each press, at a random moment of the control loop's and the chip's ticks, to a fin's drive."""
     chance = random.Random(1)
     page.get_by_role("button", name="Manual", exact=True).click()
@@ -120,7 +120,7 @@ def _press_keys(page: Page, board: Board) -> list[float]:
     return found
 
 
-def _wait_for_rest(board: Board) -> None:
+def _wait_for_rest(board: EmulatorClient) -> None:
     rested = time.monotonic()
     while time.monotonic() < rested + _REST:
         if any(board.fins().drives):
@@ -128,7 +128,7 @@ def _wait_for_rest(board: Board) -> None:
         time.sleep(0.002)
 
 
-def _wait_for_drive(board: Board) -> float:
+def _wait_for_drive(board: EmulatorClient) -> float:
     """When it was, s since 1970."""
     end = time.monotonic() + _LATE
     while not any(board.fins().drives):
@@ -138,6 +138,6 @@ def _wait_for_drive(board: Board) -> float:
     return time.time()
 
 
-def _started(board: Board) -> float:
+def _started(board: EmulatorClient) -> float:
     """When, in s since 1970, the board's clock stood at zero; it is at most a millisecond behind."""
     return min(time.time() - board.stats()["time"] for _ in range(50))

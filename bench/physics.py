@@ -3,7 +3,7 @@
 import time
 from math import cos, pi, sin
 
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 
 _PERIOD = 0.005
@@ -13,7 +13,7 @@ _FLAP = 2 * pi * 1.3
 
 def measure() -> dict[str, float]:
     """Four flapping fins, sensors read every 5 ms, as the emulated board asks for it."""
-    simulator = Simulator(Parameters(), seed=1)
+    simulator = Simulator(SimulationParameters(), seed=1)
     began = time.monotonic()
     for step in range(_STEPS):
         phase = _FLAP * step * _PERIOD

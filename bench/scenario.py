@@ -12,7 +12,7 @@ from typing import Any
 import robot_runtime.experiments.scenario
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, Run
+from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, ScenarioRun
 
 _SCENARIO = Path(robot_runtime.experiments.scenario.__file__).parent / "shipped/hover_in_a_current.toml"
 
@@ -36,7 +36,7 @@ def measure() -> dict[str, float]:
 def _speed(board: str, duration: float) -> float:
     whole = read_scenario(_SCENARIO.read_text())
     events = tuple(event for event in whole.events if event.at <= duration)
-    run = Run(replace(whole, duration=duration, events=events), boards()[board], _Deaf())
+    run = ScenarioRun(replace(whole, duration=duration, events=events), boards()[board], _Deaf())
     began = _processor_time()
     run.perform(lambda _: {})
     return (PRELUDE + duration + AFTERWARDS) / (_processor_time() - began)

@@ -50,8 +50,8 @@ from robot_runtime.control.pilot import PILOT_LOOK
 from robot_runtime.control.supervisor import Supervisor
 from robot_runtime.link.dissection import dissect
 from robot_runtime.link.link_driver import LinkDriver
-from robot_runtime.link.pace import periods
 from robot_runtime.link.session import BoardMessage
+from robot_runtime.link.timing import periods
 from robot_runtime.parameters.board import BoardParameters
 from robot_runtime.parameters.providers import runtime_entries
 from robot_runtime.parameters.registry import Registry

@@ -6,7 +6,7 @@
 // where it does not.
 //
 // Where that would be more than four, there are three slots instead: Depth, which is steered by, in all of
-// them, and beside it Imu, then Motor, then Beacon and Status. robot_runtime/link/pace.py knows of both.
+// them, and beside it Imu, then Motor, then Beacon and Status. robot_runtime/link/timing.py knows of both.
 #pragma once
 #include <stdint.h>
 

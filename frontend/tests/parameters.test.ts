@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest';
-import type { Parameter } from '../src/generated/topics';
+import type { TunableParameter } from '../src/generated/topics';
 import { differences, find, group, words, wrong } from '../src/pages/tune/parameters/list';
 
-function parameter(name: string, changes: Partial<Parameter> = {}): Parameter {
+function parameter(name: string, changes: Partial<TunableParameter> = {}): TunableParameter {
   return {
     name,
     type: 'number',
@@ -49,7 +49,7 @@ test.each([
   [{ type: 'choice', choices: ['a'] }, 'b', 'No such choice'],
   [{ type: 'switch' }, true, null],
 ] as const)('%o as %s: %s', (changes, value, problem) => {
-  expect(wrong(parameter('x', changes as Partial<Parameter>), value)).toBe(problem);
+  expect(wrong(parameter('x', changes as Partial<TunableParameter>), value)).toBe(problem);
 });
 
 test('what differs is told of both sides, also where one lacks it', () => {

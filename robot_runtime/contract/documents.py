@@ -104,7 +104,7 @@ class Candidate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Marker:
+class ArucoMarker:
     """An ArUco marker in the picture."""
 
     number: int
@@ -123,7 +123,7 @@ class Detection(Document):
     area: float
     processing: float
     candidates: list[Candidate] = field(default_factory=list)
-    markers: list[Marker] = field(default_factory=list)
+    markers: list[ArucoMarker] = field(default_factory=list)
     target: str | None = field(
         default=None, metadata={"meaning": "what is acted on: the wanted colour, or what an action names"}
     )
@@ -192,7 +192,7 @@ Where = Literal["runtime", "firmware"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parameter:
+class TunableParameter:
     """Something that may be tuned while the robot runs, and its value."""
 
     name: str
@@ -213,7 +213,7 @@ class Parameter:
 class Parameters(Document):
     """Every parameter; sent at each change and every ten seconds."""
 
-    parameters: list[Parameter]
+    parameters: list[TunableParameter]
 
 
 Steering = Literal["none", "beacons"]

@@ -14,7 +14,7 @@ from robot_runtime.contract.packets import Depth, Hello, Imu, Packet, SensorFaul
 from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
-from robot_runtime.link.pace import frames_airtime, stale_after
+from robot_runtime.link.timing import frames_airtime, stale_after
 
 ARRIVAL = 0.05
 """s for which what the board said may lie on its way here."""

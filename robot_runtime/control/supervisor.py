@@ -15,7 +15,7 @@ from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.control.transitions import ARMED, Trigger, follow
 from robot_runtime.errors import Refused
-from robot_runtime.link.pace import airtime
+from robot_runtime.link.timing import airtime
 
 _ARM_TRIES = 10
 ARM_WAIT = 0.1

@@ -118,7 +118,13 @@ def _documents() -> list[type]:
         documents.Pace,
         documents.Alarm,
     ]
-    shared += [documents.Candidate, documents.Marker, documents.Parameter, ColourRange, VisionSettings]
+    shared += [
+        documents.Candidate,
+        documents.ArucoMarker,
+        documents.TunableParameter,
+        ColourRange,
+        VisionSettings,
+    ]
     return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
 
 

@@ -27,7 +27,7 @@ class LineError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class LinkFault:
+class LinkFailure:
     """What went wrong at `time` (s), in words, and the last frames each way until then."""
 
     time: float
@@ -55,7 +55,7 @@ class LinkDriver:
         self.path = path
         self.baud = baud
         self.text = "not opened yet"
-        self.fault: LinkFault | None = None
+        self.fault: LinkFailure | None = None
         self._clock = clock
         self._epoch = epoch
         self._on_messages = on_messages
@@ -175,7 +175,7 @@ class LinkDriver:
     def _dump(self, why: str) -> None:
         with self._writing:
             ring = self._session.ring
-            self.fault = LinkFault(self._clock.now(), why, ring.frames())
+            self.fault = LinkFailure(self._clock.now(), why, ring.frames())
             dump = ring.dump()
         log.info("link: %s; the last frames, bytes as on the line:\n%s", why, dump)
 

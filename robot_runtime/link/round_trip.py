@@ -8,7 +8,7 @@ after it that acknowledges ours. And the time that the bytes in flight need on t
 Karn's rule only frames are measured of which one copy alone can have arrived.
 """
 
-from robot_runtime.link.pace import frames_airtime
+from robot_runtime.link.timing import frames_airtime
 
 _CAP = 0.1
 _MEAN_GAIN = 1 / 8

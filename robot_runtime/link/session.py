@@ -39,7 +39,7 @@ from robot_runtime.link.board_time import BoardTime
 from robot_runtime.link.channel import Channel, Counters
 from robot_runtime.link.frame_ring import FrameRing
 from robot_runtime.link.framing import OPEN, Decoder, Frame, build
-from robot_runtime.link.pace import frames_airtime
+from robot_runtime.link.timing import frames_airtime
 
 SILENCE = 1.0
 """s without a valid frame after which the board counts as lost; on a slow line, three frames' airtime."""

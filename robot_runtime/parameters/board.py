@@ -11,7 +11,7 @@ from typing import Protocol
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import CHIP_PARAMETERS, Packet, Parameter
-from robot_runtime.link.pace import airtime
+from robot_runtime.link.timing import airtime
 from robot_runtime.parameters.entry import Entry
 
 _ANSWER_SECONDS = 1.0

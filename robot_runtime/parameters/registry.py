@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
-from robot_runtime.contract.documents import Parameter, ParameterValue
+from robot_runtime.contract.documents import ParameterValue, TunableParameter
 from robot_runtime.errors import Refused
 from robot_runtime.parameters.entry import Entry
 
@@ -34,10 +34,10 @@ class Registry:
         """What is in force, by name."""
         return {name: entry.get() for name, entry in self._entries.items()}
 
-    def listed(self) -> list[Parameter]:
+    def listed(self) -> list[TunableParameter]:
         """Every parameter with its description and its value."""
         return [
-            Parameter(
+            TunableParameter(
                 name=entry.name,
                 type=entry.type,
                 value=entry.get(),

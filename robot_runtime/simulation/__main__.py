@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.simulation.water.hil import Loop
-from robot_runtime.simulation.water.parameters import Parameters
-from robot_runtime.simulation.water.process import Process
+from robot_runtime.simulation.water.hil import HilSimulator
+from robot_runtime.simulation.water.parameters import SimulationParameters
+from robot_runtime.simulation.water.process import WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
@@ -35,12 +35,12 @@ def main() -> None:
         else ZenohTransport(arguments.robot, connect=arguments.connect)
     )
     with joined as messages:
-        simulator = Simulator(Parameters(), arguments.seed)
-        process: Process | Loop
+        simulator = Simulator(SimulationParameters(), arguments.seed)
+        process: WaterProcess | HilSimulator
         if arguments.in_the_loop:
-            process = Loop(simulator, messages)
+            process = HilSimulator(simulator, messages)
         else:
-            process = Process(simulator, arguments.board, messages, SteadyClock())
+            process = WaterProcess(simulator, arguments.board, messages, SteadyClock())
         if arguments.server_lock is not None:
             watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):

@@ -18,7 +18,7 @@ class CameraError(Exception):
         self.patience = patience
 
 
-class Frame(NamedTuple):
+class CameraFrame(NamedTuple):
     """One picture, uint8 of shape (height, width, 3) in the order blue, green, red."""
 
     picture: "Picture"
@@ -30,7 +30,7 @@ class Camera(ABC):
     """A source of pictures, open from its making until `close`. Making one may raise CameraError."""
 
     @abstractmethod
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """The newest picture. Raises CameraError where there is none."""
 
     @abstractmethod

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.card_colours import Paint
-from robot_runtime.vision.camera import Camera, Frame
-from robot_runtime.vision.cards import MARKER_CELLS, MARKER_SIDE, Card, marker_pattern
+from robot_runtime.vision.camera import Camera, CameraFrame
+from robot_runtime.vision.cards import MARKER_CELLS, MARKER_SIDE, CameraCard, marker_pattern
 from robot_runtime.vision.picture import Picture
 
 Floats = NDArray[np.float32]
@@ -48,7 +48,7 @@ class CardCamera(Camera):
         width: int,
         height: int,
         clock: Clock,
-        card: Callable[[], Card | None],
+        card: Callable[[], CameraCard | None],
     ) -> None:
         self._size = (width, height)
         self._clock = clock
@@ -62,10 +62,10 @@ class CardCamera(Camera):
         sheet = (height + NOISE_SHIFT, width + NOISE_SHIFT, 3)
         self._noise = np.random.default_rng(1).standard_normal(sheet, np.float32) * np.float32(NOISE)
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """The picture of this moment."""
         now = self._clock.now()
-        return Frame(self.draw(now, self._card()), now)
+        return CameraFrame(self.draw(now, self._card()), now)
 
     def close(self) -> None:
         """Nothing is held open."""
@@ -74,7 +74,7 @@ class CardCamera(Camera):
         card = self._card()
         return f"drawn water with a {card.name} card" if card else "drawn water without a card"
 
-    def draw(self, time: float, card: Card | None) -> Picture:
+    def draw(self, time: float, card: CameraCard | None) -> Picture:
         """The picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
         canvas = self._canvas
         np.copyto(canvas, self._water)
@@ -85,7 +85,7 @@ class CardCamera(Camera):
         np.clip(canvas, 0, 255, out=canvas)
         return canvas.astype(np.uint8)
 
-    def _draw_card(self, time: float, card: Card) -> None:
+    def _draw_card(self, time: float, card: CameraCard) -> None:
         half_x, half_y = (side * self._size[1] / 2 for side in CARD_SIZE)
         sheet = self._quad(time, -half_x, -half_y, half_x, half_y)
         cv2.fillConvexPoly(self._canvas, sheet, _through_water(card.paint), cv2.LINE_AA, shift=4)

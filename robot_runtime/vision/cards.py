@@ -19,7 +19,7 @@ MARKER_SIDE = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Card:
+class CameraCard:
     """A card: its blue, green and red in daylight, and whether the marker is printed on it."""
 
     name: str
@@ -27,15 +27,15 @@ class Card:
     marked: bool = False
 
 
-def make_card(name: str, colours: Mapping[str, ColourRange]) -> Card:
+def make_card(name: str, colours: Mapping[str, ColourRange]) -> CameraCard:
     """The card of this name; of the range's middle where the colour has no paint. Raises KeyError."""
     if name == marker_name(MARKER_CARD):
-        return Card(name, WHITE, marked=True)
+        return CameraCard(name, WHITE, marked=True)
     if name in PAINTS:
-        return Card(name, PAINTS[name])
+        return CameraCard(name, PAINTS[name])
     middle = np.array([[colours[name].middle]], np.uint8)
     blue, green, red = cv2.cvtColor(middle, cv2.COLOR_HSV2BGR)[0, 0].tolist()
-    return Card(name, (blue, green, red))
+    return CameraCard(name, (blue, green, red))
 
 
 @cache

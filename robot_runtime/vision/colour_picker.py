@@ -33,7 +33,7 @@ A share, not a difference, since light multiplies what it falls on. Chosen.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class PickPoint:
     """Where somebody points: shares of width and height, and a radius as a share of the width."""
 
     x: Annotated[float, Range(0, 1)]
@@ -42,21 +42,21 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Proposal:
+class ColourProposal:
     """A range, and the share of the whole picture that it holds."""
 
     colour: ColourRange
     share: float
 
 
-def propose(picture: Picture, place: Place) -> Proposal:
+def propose(picture: Picture, place: PickPoint) -> ColourProposal:
     """The range of what is around a place of a BGR picture (height, width, 3).
 
     Raises Refused where there is no colour, or more than one.
     """
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
     colour = range_of(_around(hsv, place))
-    return Proposal(colour=colour, share=cv2.countNonZero(find_colour(hsv, colour)) / hsv[..., 0].size)
+    return ColourProposal(colour=colour, share=cv2.countNonZero(find_colour(hsv, colour)) / hsv[..., 0].size)
 
 
 def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
@@ -95,7 +95,7 @@ def _hues(hues: NDArray[np.uint8]) -> tuple[int, int]:
     )
 
 
-def _around(hsv: Picture, place: Place) -> NDArray[np.uint8]:
+def _around(hsv: Picture, place: PickPoint) -> NDArray[np.uint8]:
     height, width = hsv.shape[:2]
     x, y = min(int(place.x * width), width - 1), min(int(place.y * height), height - 1)
     disc = np.zeros((height, width), np.uint8)

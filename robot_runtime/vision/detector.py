@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from robot_runtime.contract.documents import Candidate, Marker
+from robot_runtime.contract.documents import ArucoMarker, Candidate
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.vision.balance import BALANCES
 from robot_runtime.vision.markers import MarkerFinder
@@ -25,7 +25,7 @@ class Sight:
     wanted: Patches
     colour: str | None
     patch: Candidate | None
-    markers: list[Marker]
+    markers: list[ArucoMarker]
     target: str | None
     set_point: float | None
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from robot_runtime.clock import Clock
-from robot_runtime.vision.camera import Camera, CameraError, Frame
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.picture import Picture
 
 HINT = "name a video or a picture in robot.toml: [vision] file"
@@ -26,12 +26,12 @@ class FileCamera(Camera):
         if self._still is None:
             self._open_video()
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """The picture that is due now. Raises CameraError where the video cannot be decoded."""
         now = self._clock.now()
         picture = self._still if self._still is not None else self._picture_due(now)
         scaled = cv2.resize(picture, self._size, interpolation=cv2.INTER_AREA)
-        return Frame(scaled.astype(np.uint8, copy=False), now)
+        return CameraFrame(scaled.astype(np.uint8, copy=False), now)
 
     def close(self) -> None:
         """Close the file."""

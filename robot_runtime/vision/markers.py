@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import cv2
 import numpy as np
 
-from robot_runtime.contract.documents import Marker
+from robot_runtime.contract.documents import ArucoMarker
 from robot_runtime.contract.vision_settings import MarkerDictionary, VisionSettings
 from robot_runtime.vision.picture import Picture
 
@@ -30,14 +30,14 @@ class MarkerFinder:
             dictionary = cv2.aruco.getPredefinedDictionary(DICTIONARIES[settings.markers])
             self._detector = cv2.aruco.ArucoDetector(dictionary)
 
-    def find(self, picture: Picture) -> list[Marker]:
+    def find(self, picture: Picture) -> list[ArucoMarker]:
         """Those in a BGR picture (height, width, 3), in order of their numbers."""
         if self._detector is None:
             return []
         height, width = picture.shape[:2]
         corners, numbers, _ = self._detector.detectMarkers(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY))
         found = [
-            Marker(number=int(number), corners=(four.reshape(4, 2) / (width, height)).ravel().tolist())
+            ArucoMarker(number=int(number), corners=(four.reshape(4, 2) / (width, height)).ravel().tolist())
             # OpenCV gives None in place of no numbers.
             for number, four in zip(np.ravel(numbers) if corners else (), corners, strict=True)
             if not self._numbers or int(number) in self._numbers

@@ -15,12 +15,12 @@ from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
 from robot_runtime.errors import Refused
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.pace import Pace
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
+from robot_runtime.vision.rate_timer import RateTimer
 
 if TYPE_CHECKING:
-    from robot_runtime.vision.cards import Card
-    from robot_runtime.vision.colour_picker import Proposal
+    from robot_runtime.vision.cards import CameraCard
+    from robot_runtime.vision.colour_picker import ColourProposal
     from robot_runtime.vision.detector import Detector, Sight
     from robot_runtime.vision.picture import Picture
 
@@ -54,7 +54,7 @@ class VisionNode:
         messages: ZenohTransport | None = None,
         on_thumbnail: Callable[[float, bytes], None] | None = None,
     ) -> None:
-        self.held: Card | None = None
+        self.held: CameraCard | None = None
         """The card before the camera."""
         self._config = config
         self._settings = config.settings
@@ -64,11 +64,11 @@ class VisionNode:
         self._on_thumbnail = on_thumbnail
         self._thumbnail_due = -inf
         self._watched = watched
-        self._frame: Frame | None = None
+        self._frame: CameraFrame | None = None
         self._tell = tell
         self._messages = messages
         self._open_camera = open_camera or self._configured_camera
-        self._pace = Pace(clock, config.rate)
+        self._pace = RateTimer(clock, config.rate)
         self._detector: Detector | None = None
         self._camera: Camera | None = None
         self._failure: str | None = None
@@ -124,14 +124,14 @@ class VisionNode:
 
             self.held = make_card(colour, self._settings.colours)
 
-    def pick(self, question: dict[str, Any]) -> "Proposal":
+    def pick(self, question: dict[str, Any]) -> "ColourProposal":
         """The range of the colour at a place of the newest picture, after the white balance.
 
-        `question` is a `Place` as a table. Changes nothing. Raises Refused, ConfigError.
+        `question` is a `PickPoint` as a table. Changes nothing. Raises Refused, ConfigError.
         """
-        from robot_runtime.vision.pipeline import Detector, Place, propose
+        from robot_runtime.vision.pipeline import Detector, PickPoint, propose
 
-        place = parse(Place, question)
+        place = parse(PickPoint, question)
         frame = self._frame
         if frame is None:
             raise Refused(f"There is no picture to pick a colour in. Camera: {self.text}.")
@@ -183,7 +183,7 @@ class VisionNode:
                 self._wake.clear()
         self._drop_camera()
 
-    def _take(self) -> Frame | None:
+    def _take(self) -> CameraFrame | None:
         """The newest picture; None while a camera that failed is left alone."""
         if self._camera is None:
             if self._clock.now() < self._retry_at:
@@ -196,7 +196,7 @@ class VisionNode:
             self._report("info", f"Camera: {self.text}.")
         return frame
 
-    def _examine(self, frame: Frame) -> None:
+    def _examine(self, frame: CameraFrame) -> None:
         # Loads NumPy and OpenCV, which takes longest of all at a start; the robot is in hand before that.
         from robot_runtime.vision import pipeline
 
@@ -227,7 +227,7 @@ class VisionNode:
             self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
             self._on_thumbnail(frame.taken, pipeline.as_thumbnail(frame.picture))
 
-    def _hand_on(self, frame: Frame, sight: "Sight") -> None:
+    def _hand_on(self, frame: CameraFrame, sight: "Sight") -> None:
         from robot_runtime.vision import pipeline
 
         made: dict[str, Callable[[], Picture]] = {

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robot_runtime.clock import Clock
-from robot_runtime.vision.camera import Camera, CameraError, Frame
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 
 
 class PiCamera(Camera):
@@ -16,13 +16,13 @@ class PiCamera(Camera):
         self._clock = clock
         self._device = _open_device(width, height)
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """The newest picture. Raises CameraError where the camera gives none."""
         try:
             picture = self._device.capture_array("main")
         except Exception as problem:
             raise CameraError(f"the Pi camera gives no picture ({problem}); check its cable") from problem
-        return Frame(np.ascontiguousarray(picture[:, :, :3], dtype=np.uint8), self._clock.now())
+        return CameraFrame(np.ascontiguousarray(picture[:, :, :3], dtype=np.uint8), self._clock.now())
 
     def close(self) -> None:
         """Give the camera back."""

@@ -14,9 +14,9 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.cards import Card
+from robot_runtime.vision.cards import CameraCard
 from robot_runtime.vision.cards import make_card as make_card
-from robot_runtime.vision.colour_picker import Place as Place
+from robot_runtime.vision.colour_picker import PickPoint as PickPoint
 from robot_runtime.vision.colour_picker import propose as propose
 from robot_runtime.vision.detector import Detector as Detector
 from robot_runtime.vision.file_camera import FileCamera
@@ -37,7 +37,7 @@ def open_camera(
     config: VisionConfig,
     clock: Clock,
     messages: ZenohTransport | None,
-    card: Callable[[], Card | None],
+    card: Callable[[], CameraCard | None],
     on_missing: Callable[[str], None],
 ) -> Camera:
     """The configured camera; a drawn card, after `on_missing` was told why, where no scene can be rendered.

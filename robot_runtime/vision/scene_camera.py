@@ -5,8 +5,8 @@ from collections.abc import Callable
 from robot_runtime.contract.scene_picture import read_picture, write_request
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from robot_runtime.vision.camera import Camera, CameraError, Frame
-from robot_runtime.vision.cards import Card
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
+from robot_runtime.vision.cards import CameraCard
 
 READY_TIMEOUT = 1.0
 PICTURE_TIMEOUT = 16.0
@@ -30,7 +30,7 @@ class SceneCamera(Camera):
         width: int,
         height: int,
         messages: ZenohTransport,
-        card: Callable[[], Card | None],
+        card: Callable[[], CameraCard | None],
     ) -> None:
         self._size = (width, height)
         self._messages = messages
@@ -46,7 +46,7 @@ class SceneCamera(Camera):
         if missing is not None:
             raise SceneMissing(str(missing))
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """What the camera sees where the robot was when the simulator last told. Raises CameraError."""
         card = self._card()
         request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
@@ -58,7 +58,7 @@ class SceneCamera(Camera):
             ) from problem
         except (Refused, ValueError) as problem:
             raise CameraError(f"the scene gives none: {problem}", PATIENCE) from problem
-        return Frame(picture.pixels, picture.time)
+        return CameraFrame(picture.pixels, picture.time)
 
     def close(self) -> None:
         """Nothing is held open."""

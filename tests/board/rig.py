@@ -11,7 +11,7 @@ from typing import Self
 
 import serial
 
-from robot_runtime.simulation.boards.emulator_process import Board, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/board"
@@ -50,7 +50,7 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
 class Port:
     """The host's end of the serial line. No emulated time passes while it writes or reads."""
 
-    def __init__(self, tty: Path, board: Board, baud: float) -> None:
+    def __init__(self, tty: Path, board: EmulatorClient, baud: float) -> None:
         self._board = board
         self._taken = board.stats()["bytes_from_host"]
         self._given = board.stats()["bytes_to_host"]
@@ -89,7 +89,7 @@ class Rig:
     """A paused board with this program on it, a connection to its socket, and its serial port."""
 
     def __init__(self, elf: Path | None, folder: Path, *options: str, baud: int = 115200) -> None:
-        self.process = BoardProcess(PROGRAM, elf, folder / "tty", folder / "board", "--paused", *options)
+        self.process = EmulatorProcess(PROGRAM, elf, folder / "tty", folder / "board", "--paused", *options)
         self.board = self.process.connect()
         self.port = Port(self.process.tty, self.board, baud)
 

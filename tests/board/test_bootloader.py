@@ -12,7 +12,12 @@ import serial
 
 from robot_runtime.contract.packets import Hello
 from robot_runtime.link.framing import Decoder
-from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import (
+    STILL_WATER,
+    BoardError,
+    EmulatorClient,
+    EmulatorProcess,
+)
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.host import BAUD
@@ -54,17 +59,17 @@ def insist_on_upload(tty: Path, program: Path) -> None:
 
 
 @contextmanager
-def empty_board(folder: Path) -> Iterator[tuple[BoardProcess, Board]]:
+def empty_board(folder: Path) -> Iterator[tuple[EmulatorProcess, EmulatorClient]]:
     """In real time, for avrdude waits by its own clock."""
     options = ("--bootloader", str(OPTIBOOT), "--reset-on-open")
     with (
-        BoardProcess(PROGRAM, None, folder / "tty", folder / "board", *options) as process,
+        EmulatorProcess(PROGRAM, None, folder / "tty", folder / "board", *options) as process,
         process.connect() as board,
     ):
         yield process, board
 
 
-def echoes(process: BoardProcess, board: Board) -> bool:
+def echoes(process: EmulatorProcess, board: EmulatorClient) -> bool:
     """Whether the sketch `echo` runs once the boot loader has waited in vain."""
     with serial.Serial(str(process.tty), BOOT_BAUD, timeout=5) as port:
         opened = board.stats()["time"]
@@ -198,7 +203,7 @@ def test_a_file_that_is_no_boot_loader_is_refused(tmp_path: Path, text: str, mes
     file = tmp_path / "boot.hex"
     file.write_text(text)
     with pytest.raises(BoardError, match=message) as refusal:
-        BoardProcess(PROGRAM, None, tmp_path / "tty", tmp_path / "board", "--bootloader", str(file))
+        EmulatorProcess(PROGRAM, None, tmp_path / "tty", tmp_path / "board", "--bootloader", str(file))
     assert "\n" not in str(refusal.value)
 
 

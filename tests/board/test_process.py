@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.boards.emulator_process import BoardError, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorProcess
 from tests.board.rig import PROGRAM, ROOT, SKETCHES, wait_for
 
 pytestmark = pytest.mark.usefixtures("built")
 ECHO = SKETCHES / "echo.elf"
 
 
-def start(folder: Path, *options: str, elf: Path = ECHO) -> BoardProcess:
-    return BoardProcess(PROGRAM, elf, folder / "tty", folder / "board", *options)
+def start(folder: Path, *options: str, elf: Path = ECHO) -> EmulatorProcess:
+    return EmulatorProcess(PROGRAM, elf, folder / "tty", folder / "board", *options)
 
 
 def test_it_keeps_real_time(tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ def test_without_the_server_s_folder_it_ends_at_once(tmp_path: Path) -> None:
 def test_two_boards_cannot_share_a_socket(tmp_path: Path) -> None:
     with start(tmp_path) as process:
         with pytest.raises(BoardError, match=r"another board answers at .*choose another --socket"):
-            BoardProcess(PROGRAM, ECHO, tmp_path / "other", process.socket)
+            EmulatorProcess(PROGRAM, ECHO, tmp_path / "other", process.socket)
         assert process.socket.is_socket()
         assert not (tmp_path / "other").exists()
 
@@ -180,7 +180,7 @@ def test_bad_paths_are_refused_in_one_line(
 ) -> None:
     (tmp_path / "file").write_text("kept")
     with pytest.raises(BoardError, match=message) as refusal:
-        BoardProcess(PROGRAM, Path(elf), tmp_path / tty, tmp_path / socket_name)
+        EmulatorProcess(PROGRAM, Path(elf), tmp_path / tty, tmp_path / socket_name)
     assert "\n" not in str(refusal.value)
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
     assert (tmp_path / "file").read_text() == "kept"

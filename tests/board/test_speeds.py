@@ -19,8 +19,8 @@ from robot_runtime.contract.packets import (
     StatusFlag,
     Stop,
 )
-from robot_runtime.link.pace import airtime, periods
 from robot_runtime.link.session import SessionStage
+from robot_runtime.link.timing import airtime, periods
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from tests.board.host import TICK, Host
 from tests.board.rig import ROOT, Rig

@@ -11,10 +11,10 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.packets import Beacon, Depth, Imu, Motor, Navigation, SensorFault
-from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError
-from robot_runtime.simulation.water.faults import Fault
-from robot_runtime.simulation.water.parameters import Parameters
-from robot_runtime.simulation.water.process import Process
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, BoardError, EmulatorClient
+from robot_runtime.simulation.water.faults import SimulatedFault
+from robot_runtime.simulation.water.parameters import SimulationParameters
+from robot_runtime.simulation.water.process import WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.board.host import TICK, Robot, all_of, last, start
@@ -39,7 +39,7 @@ def messages() -> Iterator[ZenohTransport]:
 
 @pytest.fixture
 def water() -> Simulator:
-    return Simulator(Parameters(), seed=5)
+    return Simulator(SimulationParameters(), seed=5)
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_it_dives_and_knows_how_deep(robot: Robot, water: Simulator) -> None:
 def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(robot: Robot, water: Simulator) -> None:
     robot.arm()
     robot.converse(1.0, DOWN)
-    water.set_fault("pressure", Fault(kind="stuck"))
+    water.set_fault("pressure", SimulatedFault(kind="stuck"))
     robot.converse(0.2, DOWN)
     depths = [packet.depth for packet in all_of(robot.converse(2.0, DOWN), Depth)]
     assert max(depths) - min(depths) <= 0.001
@@ -76,7 +76,7 @@ def test_a_stuck_pressure_sensor_shows_the_same_depth_while_it_dives(robot: Robo
 def test_an_encoder_that_drifts_turns_its_fin_away(robot: Robot, water: Simulator) -> None:
     robot.arm()
     robot.converse(2.0, DOWN)
-    water.set_fault("encoder1", Fault(kind="drift", speed=0.2))
+    water.set_fault("encoder1", SimulatedFault(kind="drift", speed=0.2))
     robot.converse(2.0, DOWN)
     packets, angles = [], []
     for _ in range(FLAPS_TICKS):
@@ -94,7 +94,7 @@ def test_a_gyroscope_that_jumps_and_a_beacon_that_goes(robot: Robot, water: Simu
     quiet = all_of(robot.listen(1.0), Imu)
     assert max(abs(part) for packet in quiet for part in packet.rate) < 0.05
     assert last(robot.listen(0.3), Beacon).right
-    water.set_fault("gyroscope", Fault(kind="spike", share=0.3, size=1.0))
+    water.set_fault("gyroscope", SimulatedFault(kind="spike", share=0.3, size=1.0))
     water.set_beacons(())
     loud = all_of(robot.listen(1.0), Imu)
     assert 0.9 < max(abs(part) for packet in loud for part in packet.rate) < 1.1
@@ -107,7 +107,7 @@ def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
 ) -> None:
     build(ROOT / "firmware", "robot")
     with start("robot", tmp_path) as rig:
-        process = Process(water, rig.process.socket, messages, SimulatedClock())
+        process = WaterProcess(water, rig.process.socket, messages, SimulatedClock())
         thread = threading.Thread(target=process.run)
         thread.start()
         try:
@@ -129,7 +129,7 @@ def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
             thread.join()
 
 
-def is_wet(board: Board) -> bool:
+def is_wet(board: EmulatorClient) -> bool:
     """Whether another connection is the water by now."""
     try:
         board.sense(STILL_WATER)

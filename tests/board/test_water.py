@@ -8,7 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Board, BoardError, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import (
+    STILL_WATER,
+    BoardError,
+    EmulatorClient,
+    EmulatorProcess,
+)
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from tests.board.conftest import Make
@@ -60,7 +65,7 @@ def test_a_paused_board_waits_as_long_as_the_water_thinks(make_rig: Make) -> Non
         water.connect(str(path))
         water.sendall(b"attach 0.01\n")
         wait_for(lambda: refused(rig.board), "the water to be attached")
-        with Board(path) as runner, socket.socket(socket.AF_UNIX) as line:
+        with EmulatorClient(path) as runner, socket.socket(socket.AF_UNIX) as line:
             line.connect(str(path))
             line.sendall(b"run 0.03\n")
             fins = water.recv(4096)
@@ -88,7 +93,7 @@ def test_there_is_one_water(make_rig: Make) -> None:
     assert rig.board.run(0.01) == pytest.approx(0.01, abs=1e-6)
 
 
-def refused(board: Board) -> bool:
+def refused(board: EmulatorClient) -> bool:
     try:
         board.sense(STILL_WATER)
     except BoardError as error:
@@ -111,7 +116,7 @@ def test_a_board_whose_water_goes_runs_on_with_the_last_values(make_rig: Make) -
 @pytest.mark.usefixtures("built")
 def test_a_living_board_waits_50_ms_and_then_goes_on(tmp_path: Path) -> None:
     with (
-        BoardProcess(PROGRAM, SKETCHES / "echo.elf", tmp_path / "tty", tmp_path / "board") as process,
+        EmulatorProcess(PROGRAM, SKETCHES / "echo.elf", tmp_path / "tty", tmp_path / "board") as process,
         socket.socket(socket.AF_UNIX) as water,
         process.connect() as board,
     ):

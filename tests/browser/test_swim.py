@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from robot_runtime.simulation.boards.emulator_process import Board
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 from tests.stack import Stack
 
 DIVE_MS = 30_000
@@ -200,7 +200,7 @@ def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack)
     wait_for_state(stack, lambda state: state["refusals"] == [])
     stack.api.post("/robot/arm").raise_for_status()
     epoch = stack.api.get("/robot").json()["epoch"]
-    with Board(stack.data / "run/board.sock") as board:
+    with EmulatorClient(stack.data / "run/board.sock") as board:
         board.reset()
     wait_for_state(stack, lambda state: state["mode"] == "failsafe" and state["epoch"] == epoch + 1)
     stack.api.post("/robot/acknowledge").raise_for_status()

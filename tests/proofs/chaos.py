@@ -30,7 +30,7 @@ from tempfile import TemporaryDirectory
 import httpx
 import psutil
 
-from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from server.features.sessions.chunks import decode_documents
 from tests.proofs.counting import count
 from tests.proofs.kills import row_times
@@ -177,7 +177,7 @@ class Storm:
         return f"cut {way}"
 
     def _line(self, wrong: str, seconds: float, right: str) -> None:
-        with suppress(BoardError), Board(self._world.folder.board_socket) as board:
+        with suppress(BoardError), EmulatorClient(self._world.folder.board_socket) as board:
             board.order(wrong)
             time.sleep(seconds)
             board.order(right)

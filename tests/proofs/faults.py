@@ -24,7 +24,7 @@ from robot_runtime.simulation.boards.firmware import firmware_path
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
-from robot_runtime.vision.camera import CameraError, Frame
+from robot_runtime.vision.camera import CameraError, CameraFrame
 from tests.proofs.watching import Motion
 from tests.runtime.control.flight import Flight
 
@@ -166,7 +166,7 @@ def _no_picture(swim: Swim) -> Wrong:
     assert camera is not None
     assert taken is not None
 
-    def fail() -> Frame:
+    def fail() -> CameraFrame:
         raise CameraError("it was taken away")
 
     camera.read = fail  # type: ignore[method-assign]

@@ -15,7 +15,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from robot_runtime.contract.topics import Kind, read_blocks
-from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.simulator import FinMotion
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
@@ -104,7 +104,7 @@ class Fins:
 
     def _look(self) -> None:
         while not self._ending.is_set():
-            with suppress(BoardError), Board(self._socket) as board:
+            with suppress(BoardError), EmulatorClient(self._socket) as board:
                 motion = Motion()
                 while not self._ending.wait(_LOOK):
                     now, before, fins, stats = time.monotonic(), board.stats(), board.fins(), board.stats()

@@ -3170,48 +3170,12 @@ export interface components {
             name: string;
         };
         /**
-         * Parameter
-         * @description Something that may be tuned while the robot runs, and its value.
-         */
-        Parameter: {
-            /** Choices */
-            choices: string[];
-            /** Default */
-            default: number | string | boolean;
-            /** Maximum */
-            maximum: number | null;
-            /** Meaning */
-            meaning: string;
-            /** Minimum */
-            minimum: number | null;
-            /** Name */
-            name: string;
-            /** Pending */
-            pending: boolean;
-            /**
-             * Type
-             * @enum {string}
-             */
-            type: "number" | "whole" | "choice" | "switch";
-            /** Unit */
-            unit: string;
-            /** Value */
-            value: number | string | boolean;
-            /**
-             * Where
-             * @enum {string}
-             */
-            where: "runtime" | "firmware";
-            /** While Armed */
-            while_armed: boolean;
-        };
-        /**
          * Parameters
          * @description Every parameter; sent at each change and every ten seconds.
          */
         Parameters: {
             /** Parameters */
-            parameters: components["schemas"]["Parameter"][];
+            parameters: components["schemas"]["TunableParameter"][];
             /** Time */
             time: number;
         };
@@ -4385,6 +4349,42 @@ export interface components {
             text: string;
             /** Time */
             time: number;
+        };
+        /**
+         * TunableParameter
+         * @description Something that may be tuned while the robot runs, and its value.
+         */
+        TunableParameter: {
+            /** Choices */
+            choices: string[];
+            /** Default */
+            default: number | string | boolean;
+            /** Maximum */
+            maximum: number | null;
+            /** Meaning */
+            meaning: string;
+            /** Minimum */
+            minimum: number | null;
+            /** Name */
+            name: string;
+            /** Pending */
+            pending: boolean;
+            /**
+             * Type
+             * @enum {string}
+             */
+            type: "number" | "whole" | "choice" | "switch";
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number | string | boolean;
+            /**
+             * Where
+             * @enum {string}
+             */
+            where: "runtime" | "firmware";
+            /** While Armed */
+            while_armed: boolean;
         };
         /**
          * TuningCurve

@@ -472,13 +472,13 @@ export interface Candidate {
 }
 
 /** An ArUco marker in the picture. */
-export interface Marker {
+export interface ArucoMarker {
   number: number;
   corners: number[];
 }
 
 /** Something that may be tuned while the robot runs, and its value. */
-export interface Parameter {
+export interface TunableParameter {
   name: string;
   type: 'number' | 'whole' | 'choice' | 'switch';
   value: number | string | boolean;
@@ -569,7 +569,7 @@ export interface Detection {
   area: number;
   processing: number;
   candidates: Candidate[];
-  markers: Marker[];
+  markers: ArucoMarker[];
   target: string | null;
   set_point: number | null;
   latency: number | null;
@@ -593,7 +593,7 @@ export interface RobotEvent {
 /** Every parameter; sent at each change and every ten seconds. */
 export interface Parameters {
   time: number;
-  parameters: Parameter[];
+  parameters: TunableParameter[];
 }
 
 /** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */

@@ -5,7 +5,7 @@ import {
   type Alarm,
   type DebugLine,
   type Detection,
-  type Parameter,
+  type TunableParameter,
   type Parameters,
   type RobotEvent,
   type Rows,
@@ -55,7 +55,7 @@ export class Live {
   recording = $state.raw<Session | null>(null);
   state = $state.raw<State | null>(null);
   /** everything that may be tuned; null until the runtime has told of it */
-  parameters = $state.raw<readonly Parameter[] | null>(null);
+  parameters = $state.raw<readonly TunableParameter[] | null>(null);
   detection = $state.raw<Detection | null>(null);
   /** Hz, as detections really come; null while there are fewer than two */
   detectionRate = $state<number | null>(null);

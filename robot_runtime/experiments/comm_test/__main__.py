@@ -14,14 +14,14 @@ from pathlib import Path
 from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
 from robot_runtime.experiments.comm_test.lab import (
     TROUBLE,
+    CommTestLab,
     EmulatedLab,
-    Lab,
+    EventWriter,
     RobotLab,
-    Teller,
     run_tests,
     upload_to,
 )
-from robot_runtime.experiments.comm_test.line import Stop
+from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.transport.lifetime import end_with_parent
 
@@ -42,16 +42,16 @@ def main() -> int:
         end_with_parent()
     if arguments.restore:
         return _restore(arguments)
-    stop = Stop()
+    stop = Cancellation()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
-    teller = Teller(sys.stdout)
+    teller = EventWriter(sys.stdout)
     try:
         tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
     except DocumentError as problem:
         teller.tell("refused", problems=problem.problems)
         return REFUSED
-    lab: Lab = EmulatedLab(arguments.build, stop)
+    lab: CommTestLab = EmulatedLab(arguments.build, stop)
     if arguments.where == "emulated":
         os.nice(NICENESS)
     else:
@@ -65,7 +65,7 @@ def main() -> int:
 
 def _restore(arguments: argparse.Namespace) -> int:
     try:
-        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Stop())
+        upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Cancellation())
     except TROUBLE as problem:
         sys.exit(f"comm_test: {problem}")
     return 0

@@ -43,7 +43,7 @@ LINK = (*MCU, "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections")
 DIRECTIONS = {"to_board": "COMM_TEST_TO_BOARD", "to_host": "COMM_TEST_TO_HOST", "both": "COMM_TEST_BOTH"}
 
 
-class BuildError(Exception):
+class SketchBuildError(Exception):
     """The sketch could not be compiled; the text says why, with the compiler's own words."""
 
 
@@ -71,7 +71,9 @@ class Builder:
             path for path in (ARDUINO / "cores/arduino").glob("*") if path.suffix in (".c", ".cpp", ".S")
         )
         if not self._core_sources:
-            raise BuildError(f"the Arduino core is not in {ARDUINO}; install the package arduino-core-avr")
+            raise SketchBuildError(
+                f"the Arduino core is not in {ARDUINO}; install the package arduino-core-avr"
+            )
         self._sketch = SKETCHES / SKETCH
         self._core_hash = self._hash(self._core_files(), [*COMMON, *CXX])
         library_files = [*_library_sources(), *sorted(LIBRARY.rglob("*.h"))]
@@ -132,7 +134,7 @@ class Builder:
             unfinished.replace(place)
         except OSError as problem:
             if not place.exists():
-                raise BuildError(f"{place} cannot be written: {problem.strerror}") from problem
+                raise SketchBuildError(f"{place} cannot be written: {problem.strerror}") from problem
         finally:
             shutil.rmtree(unfinished, ignore_errors=True)
 
@@ -184,9 +186,9 @@ def _run(command: list[str]) -> str:
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=COMPILE_TIMEOUT, check=False)
     except FileNotFoundError as problem:
-        raise BuildError(f"there is no {command[0]}; install the package gcc-avr") from problem
+        raise SketchBuildError(f"there is no {command[0]}; install the package gcc-avr") from problem
     except subprocess.TimeoutExpired as problem:
-        raise BuildError(f"{command[0]} did not end within {COMPILE_TIMEOUT:g} s") from problem
+        raise SketchBuildError(f"{command[0]} did not end within {COMPILE_TIMEOUT:g} s") from problem
     if done.returncode:
-        raise BuildError(f"{command[0]} refused the sketch:\n{done.stderr.strip()}")
+        raise SketchBuildError(f"{command[0]} refused the sketch:\n{done.stderr.strip()}")
     return done.stdout

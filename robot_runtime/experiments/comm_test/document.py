@@ -13,7 +13,7 @@ from typing import Any, get_args
 from robot_runtime.config import BAUD_ERROR_MAX, CHIP_CLOCK
 from robot_runtime.experiments.comm_test.faults import RATE_KINDS, Faults
 from robot_runtime.experiments.comm_test.framings import FRAMINGS
-from robot_runtime.experiments.comm_test.results import Cell, Direction
+from robot_runtime.experiments.comm_test.results import Direction, GridCell
 
 DOCUMENT_BYTES_MAX = 1_000_000
 CELLS_MAX = 500
@@ -62,10 +62,10 @@ class CommTest:
     faults: Faults = NO_FAULTS
 
     @property
-    def cells(self) -> list[Cell]:
+    def cells(self) -> list[GridCell]:
         """The grid in the order in which it is run: baud, Arduino delay, Pi delay."""
         return [
-            Cell(baud, arduino_delay, pi_delay)
+            GridCell(baud, arduino_delay, pi_delay)
             for baud in self.baud_rate
             for arduino_delay in self.arduinodelay
             for pi_delay in self.delay

@@ -4,16 +4,22 @@ from pathlib import Path
 from typing import get_args
 
 from robot_runtime.experiments.comm_test.faults import RateKind
-from robot_runtime.experiments.comm_test.line import TIME_MIN, WRITE_BUFFER_BYTES, Line, Stop, check
+from robot_runtime.experiments.comm_test.line import (
+    TIME_MIN,
+    WRITE_BUFFER_BYTES,
+    Cancellation,
+    CommTestLine,
+    check,
+)
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
-from robot_runtime.simulation.boards.emulator_process import Board, LineDirection
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient, LineDirection
 from robot_runtime.simulation.boards.paused_port import PausedPort
 
 READ_STEP_BYTES = 1024
 DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)
 
 
-class EmulatedLine(Line):
+class EmulatedLine(CommTestLine):
     """The port at `tty` of a paused board, whose power is switched off and on once the port is open.
 
     So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
@@ -21,10 +27,10 @@ class EmulatedLine(Line):
 
     start_time = 0.02
 
-    def __init__(self, board: Board, tty: Path, baud: int, stop: Stop | None = None) -> None:
+    def __init__(self, board: EmulatorClient, tty: Path, baud: int, stop: Cancellation | None = None) -> None:
         super().__init__(baud)
         self._board = board
-        self._stop = stop or Stop()
+        self._stop = stop or Cancellation()
         self._port = PausedPort(board, tty, baud)
 
     def close(self) -> None:
@@ -61,7 +67,7 @@ class EmulatedLine(Line):
 
 
 class _EmulatedWire:
-    def __init__(self, board: Board) -> None:
+    def __init__(self, board: EmulatorClient) -> None:
         self._board = board
 
     def seed(self, seed: int) -> None:

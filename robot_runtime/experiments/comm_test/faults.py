@@ -13,7 +13,7 @@ Moment = tuple[float, Literal["stall", "cut", "mend"], float]
 """When (s of the test), what, and for how long (s)."""
 
 
-class Wire(Protocol):
+class LineFaultInjector(Protocol):
     """A line that can be harmed, both directions at once."""
 
     def seed(self, seed: int) -> None:
@@ -50,7 +50,7 @@ class Faults:
     stall: tuple[float, float] | None = None
     cut: tuple[float, float] | None = None
 
-    def begin(self, wire: Wire) -> None:
+    def begin(self, wire: LineFaultInjector) -> None:
         """Let them begin, but for those that `moments` tells of."""
         wire.seed(self.seed)
         for kind in RATE_KINDS:

@@ -10,10 +10,10 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Protocol, TextIO
 
-from robot_runtime.experiments.comm_test.builder import Builder, BuildError, hash_file
+from robot_runtime.experiments.comm_test.builder import Builder, SketchBuildError, hash_file
 from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.faults import Faults
-from robot_runtime.experiments.comm_test.line import Stop, StoppedError, check
+from robot_runtime.experiments.comm_test.line import Cancellation, StoppedError, check
 from robot_runtime.experiments.comm_test.port_line import PortLine
 from robot_runtime.experiments.comm_test.reset_pin import Pull, ResetError
 from robot_runtime.experiments.comm_test.results import CellResult
@@ -22,7 +22,7 @@ from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, a
 from robot_runtime.link.port import PortError
 from robot_runtime.simulation.boards.emulator_process import BoardError
 
-TROUBLE = (BuildError, UploadError, ResetError, BoardError, PortError)
+TROUBLE = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
 """What may end a test before it is complete; the texts say why."""
 
 SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
@@ -30,7 +30,7 @@ SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
 ATTEMPTS = 3
 
 
-class Teller:
+class EventWriter:
     """Writes events, one JSON object to a line, at once. May be used by several threads."""
 
     def __init__(self, output: TextIO) -> None:
@@ -45,7 +45,7 @@ class Teller:
             self._output.flush()
 
 
-class Lab(Protocol):
+class CommTestLab(Protocol):
     """A place for tests. All methods raise the errors in TROUBLE."""
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
@@ -58,7 +58,7 @@ class Lab(Protocol):
 class EmulatedLab:
     """Boards of the lab's own, in emulated time, as many at once as there are cores."""
 
-    def __init__(self, build: Path, stop: Stop) -> None:
+    def __init__(self, build: Path, stop: Cancellation) -> None:
         self._build = build
         self._stop = stop
         self._runner: Runner | None = None
@@ -93,7 +93,7 @@ class RobotLab:
     In the end the board holds the last sketch; `upload_to` brings the robot's firmware back.
     """
 
-    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Stop) -> None:
+    def __init__(self, build: Path, port: str, pull: Pull, opening_resets: bool, stop: Cancellation) -> None:
         self._build = build
         self._port = port
         self._pull = pull
@@ -124,7 +124,7 @@ class RobotLab:
             yield result
 
 
-def upload_to(port: str, pull: Pull, program: Path, stop: Stop) -> None:
+def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation) -> None:
     """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TROUBLE."""
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
     for left in reversed(range(ATTEMPTS)):
@@ -138,12 +138,12 @@ def upload_to(port: str, pull: Pull, program: Path, stop: Stop) -> None:
             print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
 
 
-def run_tests(tests: Sequence[CommTest], lab: Lab, teller: Teller, stop: Stop) -> bool:
+def run_tests(tests: Sequence[CommTest], lab: CommTestLab, teller: EventWriter, stop: Cancellation) -> bool:
     """Run tests one after the other up to the first that does not come to its end; whether all did."""
     return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
 
 
-def _run_test(number: int, test: CommTest, lab: Lab, teller: Teller, stop: Stop) -> bool:
+def _run_test(number: int, test: CommTest, lab: CommTestLab, teller: EventWriter, stop: Cancellation) -> bool:
     state, problem = "complete", ""
     try:
         firmware, tools, host = lab.prepare()

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import Self
 
-from robot_runtime.experiments.comm_test.faults import Faults, Moment, Wire
+from robot_runtime.experiments.comm_test.faults import Faults, LineFaultInjector, Moment
 from robot_runtime.experiments.comm_test.results import LineErrors
 
 BITS_PER_BYTE = 10
@@ -18,7 +18,7 @@ class StoppedError(Exception):
     """Somebody has asked that the test end before it is complete."""
 
 
-class Stop:
+class Cancellation:
     """Whether somebody has asked for the end. Signal handlers may set it.
 
     An Event would not do: a second signal may interrupt the handler of the first while that has its lock.
@@ -36,13 +36,13 @@ class Stop:
         return self._set
 
 
-def check(stop: Stop) -> None:
+def check(stop: Cancellation) -> None:
     """Raises StoppedError once `stop` is set."""
     if stop.is_set():
         raise StoppedError("it was cancelled")
 
 
-class Line(ABC):
+class CommTestLine(ABC):
     """A board with a sketch on it that has just been started, and its port open at `baud` (bit/s).
 
     `now` is the test's time in s, `written` and `heard` are what went over the port, `byte_time` is what a
@@ -72,7 +72,7 @@ class Line(ABC):
         """Let go of port and board."""
 
     @abstractmethod
-    def _wire(self) -> Wire:
+    def _wire(self) -> LineFaultInjector:
         """What can be harmed."""
 
     @abstractmethod

@@ -9,8 +9,8 @@ the board sends numbers too, once all of those are there.
 from robot_runtime.contract.packets import Packet, RequestResult, TestMsg, TestResult
 from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.framings import Sequence
-from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, Line
-from robot_runtime.experiments.comm_test.results import Cell, CellResult, Counts, Finding, LinkCellResult
+from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, CommTestLine
+from robot_runtime.experiments.comm_test.results import CellResult, Counts, Finding, GridCell, LinkCellResult
 from robot_runtime.link.session import LinkSession, SessionStage
 
 HOST_EPOCH = 1
@@ -29,12 +29,12 @@ PATIENCE_FACTOR = 5
 """A cell is given up after so many times what it should take, and PATIENCE s."""
 
 
-def run_link_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
+def run_link_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
     """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
     return _LinkCell(test, cell, line).run()
 
 
-def estimate_link_seconds(test: CommTest, cell: Cell) -> float:
+def estimate_link_seconds(test: CommTest, cell: GridCell) -> float:
     """About how long a cell takes over the robot's own link, s of test time."""
     alone = cell.arduino_delay > 0 or cell.pi_delay > 0
     airtime = test.expected * (NUMBER_BYTES_ALONE if alone else NUMBER_BYTES) * BITS_PER_BYTE / cell.baud
@@ -44,7 +44,7 @@ def estimate_link_seconds(test: CommTest, cell: Cell) -> float:
 
 
 class _LinkCell:
-    def __init__(self, test: CommTest, cell: Cell, line: Line) -> None:
+    def __init__(self, test: CommTest, cell: GridCell, line: CommTestLine) -> None:
         self._test, self._cell, self._line = test, cell, line
         self._patience = PATIENCE_FACTOR * estimate_link_seconds(test, cell) + PATIENCE
         self._session = LinkSession(HOST_EPOCH, cell.baud)

@@ -5,16 +5,16 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from robot_runtime.experiments.comm_test.faults import RateKind
-from robot_runtime.experiments.comm_test.line import Line, Stop, check
+from robot_runtime.experiments.comm_test.line import Cancellation, CommTestLine, check
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
-from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, FaultLine
+from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, PtyProxy
 from robot_runtime.link.port import Port
 
 LOOK = 0.1
 """s between two looks whether somebody wants it to stop."""
 
 
-class PortLine(Line):
+class PortLine(CommTestLine):
     """The port at `path`, opened `boot_time` s before the test's time begins; what came before is forgotten.
 
     With `folder`, a place for its link, a line with faults is put before the port. Raises PortError and
@@ -23,14 +23,16 @@ class PortLine(Line):
 
     start_time = 0.0
 
-    def __init__(self, path: str, baud: int, boot_time: float, stop: Stop, folder: Path | None) -> None:
+    def __init__(
+        self, path: str, baud: int, boot_time: float, stop: Cancellation, folder: Path | None
+    ) -> None:
         super().__init__(baud)
         self._stop = stop
-        self._faulty: FaultLine | None = None
+        self._faulty: PtyProxy | None = None
         self._began = time.monotonic()
         with ExitStack() as stack:
             if folder:
-                self._faulty = stack.enter_context(FaultLine(path, baud, folder / "faulty"))
+                self._faulty = stack.enter_context(PtyProxy(path, baud, folder / "faulty"))
                 path = str(folder / "faulty")
             self._port = stack.enter_context(Port(path, baud))
             self._pass(boot_time)
@@ -76,7 +78,7 @@ class PortLine(Line):
 
 
 class _FaultyWire:
-    def __init__(self, line: FaultLine) -> None:
+    def __init__(self, line: PtyProxy) -> None:
         self._line = line
 
     def seed(self, seed: int) -> None:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from robot_runtime.simulation.boards.emulator_process import Board
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 
 PULSE = 0.01
 """s; the chip needs 2.5 µs, a capacitor on the board more."""
@@ -34,7 +34,7 @@ def find_reset(spec: str) -> Pull:
 
 
 def _pull_board(socket: Path) -> None:
-    with Board(socket) as board:
+    with EmulatorClient(socket) as board:
         board.reset()
 
 

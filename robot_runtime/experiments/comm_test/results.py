@@ -82,7 +82,7 @@ class LineErrors:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class GridCell:
     """One place of the grid: baud in bit/s, delays in s."""
 
     baud: int
@@ -97,7 +97,7 @@ class CellResult:
     are frames that either end sent again.
     """
 
-    cell: Cell
+    cell: GridCell
     direction: Direction
     expected: int
     board: Counts | None

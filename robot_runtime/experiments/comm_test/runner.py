@@ -18,11 +18,11 @@ from robot_runtime.experiments.comm_test.builder import Builder
 from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.emulated_line import EmulatedLine
 from robot_runtime.experiments.comm_test.framings import ANSWER_BYTES, STREAM_FRAMINGS, find_answer
-from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, Line, Stop, check
+from robot_runtime.experiments.comm_test.line import BITS_PER_BYTE, Cancellation, CommTestLine, check
 from robot_runtime.experiments.comm_test.link_end import estimate_link_seconds, run_link_cell
-from robot_runtime.experiments.comm_test.results import RING_BYTES, Cell, CellResult, Counts
+from robot_runtime.experiments.comm_test.results import RING_BYTES, CellResult, Counts, GridCell
 from robot_runtime.experiments.comm_test.upload import upload_paused
-from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 
 Phase = Literal["compile", "upload", "run"]
 Tell = Callable[[int, Phase], None]
@@ -45,12 +45,14 @@ class Runner:
     which is mostly waiting.
     """
 
-    def __init__(self, builder: Builder, program: Path, computing: int, stop: Stop | None = None) -> None:
+    def __init__(
+        self, builder: Builder, program: Path, computing: int, stop: Cancellation | None = None
+    ) -> None:
         self._builder = builder
         self._program = program
         self._options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused", "--with-parent")
         self._at_once = computing + UPLOADS_AT_ONCE * computing
-        self._stop = stop or Stop()
+        self._stop = stop or Cancellation()
         self._building = Lock()
         self._computing = Semaphore(computing)
 
@@ -61,7 +63,7 @@ class Runner:
         StoppedError.
         """
 
-        def run_one(number: int, cell: Cell) -> CellResult:
+        def run_one(number: int, cell: GridCell) -> CellResult:
             return self._run_cell(test, cell, lambda phase: tell(number, phase))
 
         pool = ThreadPoolExecutor(self._at_once, "cell")
@@ -72,14 +74,14 @@ class Runner:
         finally:
             pool.shutdown(cancel_futures=True)
 
-    def _run_cell(self, test: CommTest, cell: Cell, tell: Callable[[Phase], None]) -> CellResult:
+    def _run_cell(self, test: CommTest, cell: GridCell, tell: Callable[[Phase], None]) -> CellResult:
         with self._building:
             check(self._stop)
             tell("compile")
             product = self._builder.build(test, cell.baud, cell.arduino_delay)
         with (
             tempfile.TemporaryDirectory(prefix="mucat-") as folder,
-            BoardProcess(
+            EmulatorProcess(
                 self._program, None, Path(folder) / "tty", Path(folder) / "socket", *self._options
             ) as process,
             process.connect() as board,
@@ -91,7 +93,7 @@ class Runner:
                 return run_cell(test, cell, line)
 
 
-def run_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
+def run_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
     """One cell on a board that has just been started with its sketch. Raises BoardError and PortError."""
     if test.framing not in STREAM_FRAMINGS:
         return run_link_cell(test, cell, line)
@@ -121,7 +123,7 @@ def run_cell(test: CommTest, cell: Cell, line: Line) -> CellResult:
     )
 
 
-def estimate_seconds(test: CommTest, cell: Cell) -> float:
+def estimate_seconds(test: CommTest, cell: GridCell) -> float:
     """About how long a cell takes in emulated time, s."""
     if test.framing not in STREAM_FRAMINGS:
         return estimate_link_seconds(test, cell)
@@ -133,7 +135,7 @@ def estimate_seconds(test: CommTest, cell: Cell) -> float:
     return max(airtime, sending, answering) + emptying
 
 
-def _let_the_board_finish(test: CommTest, cell: Cell, line: Line, message_bytes: int) -> None:
+def _let_the_board_finish(test: CommTest, cell: GridCell, line: CommTestLine, message_bytes: int) -> None:
     line.drain()
     each = cell.arduino_delay + LOOP_TIME
     to_read = ceil(RING_BYTES / message_bytes)
@@ -144,7 +146,7 @@ def _let_the_board_finish(test: CommTest, cell: Cell, line: Line, message_bytes:
     line.wait((max(to_read, to_send) + 1) * each)
 
 
-def _ask(request: bytes, cell: Cell, line: Line) -> tuple[Counts | None, int]:
+def _ask(request: bytes, cell: GridCell, line: CommTestLine) -> tuple[Counts | None, int]:
     # On a line that is left alone, and whatever harmed bytes have made the chip answer before: so the answer
     # tells of the numbers.
     line.calm()

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from robot_runtime.experiments.comm_test.line import Stop, check
-from robot_runtime.simulation.boards.emulator_process import Board
+from robot_runtime.experiments.comm_test.line import Cancellation, check
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 
 BOOT_BAUD = 115200
 """bit/s; optiboot's."""
@@ -35,7 +35,7 @@ def avrdude_version() -> str:
 
 
 def upload(
-    program: Path, port: str, baud: int, stop: Stop, attend: Callable[[], None] = lambda: None
+    program: Path, port: str, baud: int, stop: Cancellation, attend: Callable[[], None] = lambda: None
 ) -> None:
     """Write an Intel HEX file into the flash memory of a chip whose boot loader listens, and verify it.
 
@@ -67,7 +67,7 @@ def upload(
         raise UploadError(f"avrdude could not upload {program.name} through {port}: {words}")
 
 
-def upload_paused(program: Path, tty: Path, board: Board, stop: Stop) -> None:
+def upload_paused(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
     """The same for a paused board with a boot loader, whose time passes only while there is something to do.
 
     avrdude waits by its own clock, for about a second in all; here the boot loader's patience, 1 s, does not
@@ -86,12 +86,12 @@ def upload_paused(program: Path, tty: Path, board: Board, stop: Stop) -> None:
     upload(program, str(tty), BOOT_BAUD, stop, attend)
 
 
-def _traffic(board: Board) -> tuple[float, ...]:
+def _traffic(board: EmulatorClient) -> tuple[float, ...]:
     stats = board.stats()
     return tuple(stats[name] for name in ("bytes_from_host", "bytes_to_board", "bytes_to_host"))
 
 
-def _wait(avrdude: subprocess.Popen[bytes], stop: Stop, attend: Callable[[], None]) -> int | None:
+def _wait(avrdude: subprocess.Popen[bytes], stop: Cancellation, attend: Callable[[], None]) -> int | None:
     """Its exit status; None where it takes too long."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:

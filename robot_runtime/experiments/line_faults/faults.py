@@ -47,7 +47,7 @@ class Recurrence:
         return math.floor(min(math.log(1 - self._random.random()) / math.log1p(-self._rate), _GAP_MAX))
 
 
-class Channel:
+class FaultyChannel:
     """One direction: bytes in, harmed bytes out. May be used by several threads."""
 
     def __init__(self, name: str, seed: int) -> None:

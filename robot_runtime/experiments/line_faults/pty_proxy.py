@@ -23,7 +23,7 @@ from typing import Literal, Self, get_args
 
 import serial
 
-from robot_runtime.experiments.line_faults.faults import COUNTS, KINDS, Channel
+from robot_runtime.experiments.line_faults.faults import COUNTS, KINDS, FaultyChannel
 from robot_runtime.link.port import PortError
 
 Direction = Literal["to_board", "from_board"]
@@ -34,7 +34,7 @@ _STALL_MAX = 3600.0  # s
 _LOOK = 0.1  # s between two looks whether the line has ended
 
 
-class FaultLine:
+class PtyProxy:
     """The pseudo-terminal at `link` and the port behind it, with a thread that carries bytes between them.
 
     Raises PortError where one of them cannot be had. `failure` says why the line ended by itself.
@@ -42,7 +42,9 @@ class FaultLine:
 
     def __init__(self, port: str, baud: int, link: Path, seed: int = 0) -> None:
         self.failure = ""
-        self.channels: dict[Direction, Channel] = {name: Channel(name, seed) for name in DIRECTIONS}
+        self.channels: dict[Direction, FaultyChannel] = {
+            name: FaultyChannel(name, seed) for name in DIRECTIONS
+        }
         self._stalled_until: dict[Direction, float] = dict.fromkeys(DIRECTIONS, 0.0)
         self._pending = b""
         self._path, self._link = port, link
@@ -153,7 +155,7 @@ class FaultLine:
         channel.counts["lost"] += len(arriving) - given
 
 
-def obey(line: FaultLine, command: str) -> str:
+def obey(line: PtyProxy, command: str) -> str:
     """Do what a command says; the answer. Raises ValueError where it makes no sense."""
     match command.split():
         case ["stats"]:
@@ -170,7 +172,7 @@ def obey(line: FaultLine, command: str) -> str:
     return "ok"
 
 
-def _disturb(line: FaultLine, direction: Direction, words: list[str]) -> None:
+def _disturb(line: PtyProxy, direction: Direction, words: list[str]) -> None:
     channel = line.channels[direction]
     match words:
         case [("bit_errors" | "drop" | "double" | "insert") as kind, rate]:
@@ -193,7 +195,7 @@ def main() -> None:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: sys.exit(0))
     try:
-        with FaultLine(arguments.port, arguments.baud, arguments.link, arguments.seed) as line:
+        with PtyProxy(arguments.port, arguments.baud, arguments.link, arguments.seed) as line:
             for name in [arguments.direction] if arguments.direction else DIRECTIONS:
                 for kind in KINDS:
                     line.channels[name].disturb(kind, getattr(arguments, kind))
@@ -204,7 +206,7 @@ def main() -> None:
         sys.exit(f"fault line: {problem}")
 
 
-def _serve(line: FaultLine) -> None:
+def _serve(line: PtyProxy) -> None:
     _say("ready")
     sources, rest = [sys.stdin.fileno()], b""
     while line.running():

@@ -22,7 +22,7 @@ import cv2
 
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
-from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.link.port import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
 from robot_runtime.simulation.boards.emulator_process import BoardError
@@ -32,7 +32,7 @@ EVENTS, BLOCKS = 0, 1
 REFUSED, FAILED = 2, 1
 
 
-class Messages:
+class RunOutput:
     """Writes to a stream what a run tells."""
 
     def __init__(self, stream: IO[bytes]) -> None:
@@ -60,13 +60,13 @@ def main() -> int:
     cv2.setNumThreads(1)
     with ExitStack() as opened:
         stream = opened.enter_context(options.out.open("wb")) if options.out else sys.stdout.buffer
-        messages = Messages(stream)
+        messages = RunOutput(stream)
         try:
             scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"))
         except ScenarioError as problem:
             messages.event("refused", problems=list(problem.problems))
             return REFUSED
-        run = Run(scenario, made[options.board], messages)
+        run = ScenarioRun(scenario, made[options.board], messages)
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: run.cancel())
         try:

@@ -7,18 +7,18 @@ from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Truth
 from robot_runtime.experiments.scenario.document import Scenario, Scene
 from robot_runtime.experiments.scenario.events import Card
-from robot_runtime.simulation.scene.contents import Contents, Place, Target
+from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.vision.camera import Camera, Frame
-from robot_runtime.vision.cards import Card as Held
+from robot_runtime.vision.camera import Camera, CameraFrame
+from robot_runtime.vision.cards import CameraCard as Held
 
 
-def needs_eyes(scenario: Scenario) -> bool:
+def needs_camera(scenario: Scenario) -> bool:
     """Whether there is anything to see in it: before the card camera, nothing but cards."""
     return scenario.vision.camera == "scene" or any(isinstance(event, Card) for event in scenario.events)
 
 
-class SceneCamera(Camera):
+class RenderedSceneCamera(Camera):
     """Renders what the robot sees now. Raises RuntimeError or ImportError where nothing can be rendered."""
 
     def __init__(
@@ -30,7 +30,7 @@ class SceneCamera(Camera):
         card: Callable[[], Held | None],
     ) -> None:
         # Loads MuJoCo, which most scenarios do without.
-        from robot_runtime.simulation.scene.scene import Scene as Rendered
+        from robot_runtime.simulation.scene.scene import SceneRenderer as Rendered
 
         self._size = (config.width, config.height)
         self._clock = clock
@@ -39,7 +39,7 @@ class SceneCamera(Camera):
         self._place = scenario.scene
         self._rendered = Rendered(_contents(self._place, simulator), scenario.robot)
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         """What it sees now."""
         contents = _contents(self._place, self._simulator)
         if contents != self._rendered.contents:
@@ -50,7 +50,7 @@ class SceneCamera(Camera):
         picture = self._rendered.render_camera(
             time, seen, *self._size, card.paint if card else None, marked=bool(card and card.marked)
         )
-        return Frame(picture, time)
+        return CameraFrame(picture, time)
 
     def close(self) -> None:
         """Give back what rendering took."""
@@ -63,7 +63,7 @@ class SceneCamera(Camera):
 
 def _contents(scene: Scene, simulator: Simulator) -> Contents:
     return Contents(
-        place=Place(kind=scene.kind, turbidity=scene.turbidity),
+        place=SceneWater(kind=scene.kind, turbidity=scene.turbidity),
         basin=scene.basin,
         beacons=simulator.surroundings().beacons,
         targets=tuple(

@@ -12,7 +12,7 @@ from robot_runtime.config import ControlConfig
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
 from robot_runtime.contract.parsing import parse, place, read_value
 from robot_runtime.experiments.scenario.events import Colour, Event, WavesChange, check_controller, read_event
-from robot_runtime.simulation.water.parameters import Parameters, Quality, Vector
+from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import (
     BUOYANCY_MAX,
     BUOYANCY_MIN,
@@ -20,7 +20,7 @@ from robot_runtime.simulation.water.surroundings import (
     OFFSET_MAX,
     Basin,
     Current,
-    Start,
+    StartPose,
     Trim,
     Waves,
     check_beacons,
@@ -56,7 +56,7 @@ class ScenarioError(ConfigError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Target:
+class TargetBall:
     """A coloured ball that the camera can see; position in m north, east, down, size in m across."""
 
     colour: Colour
@@ -74,7 +74,7 @@ class Scene:
     width: float | None = None
     turbidity: Annotated[float, Range(0, 1)] = 0.1
     """0: clear, 1: nothing is seen beyond a hand's breadth."""
-    targets: list[Target] = field(default_factory=list)
+    targets: list[TargetBall] = field(default_factory=list)
     beacons: tuple[Vector, ...] = ()
 
     def __post_init__(self) -> None:
@@ -92,7 +92,7 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Water:
+class WaterMotion:
     """How the water moves at the start."""
 
     current: Current = field(default_factory=Current)
@@ -118,10 +118,10 @@ class Scenario:
     duration: Annotated[float, DURATION]
     seed: Annotated[int, SEED] = 1
     scene: Scene
-    start: Start = FLOATING
-    water: Water = Water()
+    start: StartPose = FLOATING
+    water: WaterMotion = WaterMotion()
     trim: Trim | None = None
-    robot: Parameters = field(default_factory=Parameters)
+    robot: SimulationParameters = field(default_factory=SimulationParameters)
     control: ControlConfig = field(default_factory=ControlConfig)
     vision: VisionChoice = VisionChoice()
     events: tuple[Event, ...] = ()
@@ -240,9 +240,9 @@ def _read_events(tables: Any, problems: list[str]) -> list[Event]:
     return events
 
 
-def _read_robot(table: Any) -> Parameters:
+def _read_robot(table: Any) -> SimulationParameters:
     """The simulated robot with what the scenario changes about it. Raises ConfigError."""
-    plain = Parameters()
+    plain = SimulationParameters()
     if not isinstance(table, dict):
         raise ConfigError("robot must be a table")
     problems = [f"robot: {name} belongs to {there}" for name, there in _ELSEWHERE.items() if name in table]
@@ -253,10 +253,10 @@ def _read_robot(table: Any) -> Parameters:
             # What a sensor's table leaves out stays as it is.
             given[name] = asdict(default) | value  # type: ignore[arg-type]
     try:
-        changed = parse(Parameters, given, "robot")
+        changed = parse(SimulationParameters, given, "robot")
     except ConfigError as problem:
         raise ConfigError(*problems, *problem.problems) from problem
-    for one in fields(Parameters):
+    for one in fields(SimulationParameters):
         if one.name in given:
             problems += _check_number(one.name, getattr(changed, one.name), getattr(plain, one.name))
     if problems:
@@ -272,7 +272,7 @@ def _check_number(name: str, value: Any, default: Any) -> list[str]:
             for index, (one, own) in enumerate(zip(value, default, strict=True))
             for problem in _check_number(f"{name}[{index}]", one, own)
         ]
-    if isinstance(value, Quality):
+    if isinstance(value, SensorQuality):
         return _check_number(f"{name}.latency", value.latency, 0.0) if value.latency else []
     if not isinstance(value, float):
         return []

@@ -13,7 +13,7 @@ from robot_runtime.contract.parsing import parse, place
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.control.loop import SET_POINTS, LoopName
 from robot_runtime.control.supervisor import ALONE_MAX
-from robot_runtime.simulation.water.faults import Fault, Kind, check_sensor
+from robot_runtime.simulation.water.faults import Kind, SimulatedFault, check_sensor
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.surroundings import Current, Trim, Waves, check_beacons
 
@@ -318,7 +318,9 @@ class SensorFault(Event):
     speed: float | None = None
 
     def __post_init__(self) -> None:
-        check_sensor(self.sensor, Fault(kind=self.kind, share=self.share, size=self.size, speed=self.speed))
+        check_sensor(
+            self.sensor, SimulatedFault(kind=self.kind, share=self.share, size=self.size, speed=self.speed)
+        )
 
     @property
     def words(self) -> str:

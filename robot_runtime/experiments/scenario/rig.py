@@ -9,7 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config, LinkConfig, VisionConfig
 from robot_runtime.contract.documents import Event
 from robot_runtime.core import Core
-from robot_runtime.experiments.scenario.cameras import SceneCamera
+from robot_runtime.experiments.scenario.cameras import RenderedSceneCamera
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER
@@ -21,7 +21,7 @@ from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.outbox import STREAM, Outbox
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera
-from robot_runtime.vision.cards import Card
+from robot_runtime.vision.cards import CameraCard
 
 _NOISY = -round(1.0 / PERIOD)
 _TRUTH_EVERY = round(TRUTH_PERIOD / PERIOD)
@@ -35,7 +35,7 @@ class MakeBoard(Protocol):
         ...
 
 
-class Robot(Core):
+class SimulatedRobot(Core):
     """The robot whose time is the scenario's; `send` gets what it publishes, blocks one after the other."""
 
     def __init__(
@@ -77,7 +77,7 @@ class Robot(Core):
         )
 
 
-class Stage:
+class ScenarioRig:
     """Everything as it is at the scenario's start, `prelude` (s) before it.
 
     The board feels still water at the surface until time 0. Raises BoardError where there is no board.
@@ -99,7 +99,7 @@ class Stage:
         self._noise = Random(f"{scenario.seed} prelude").gauss
         self._broken: frozenset[str] = frozenset()
         self._camera: Camera | None = None
-        self.robot = Robot(scenario, self.clock, send, self._open_camera)
+        self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera)
         self.board = make_board(self._feel)
         self.board.seed_line(scenario.seed)
         self.robot.conversation.open(self.board.write)
@@ -144,7 +144,7 @@ class Stage:
     def _open_camera(self) -> Camera:
         vision, config = self.robot.vision, self.robot.config.vision
 
-        def card() -> Card | None:
+        def card() -> CameraCard | None:
             return vision.held
 
         self._camera = CardCamera(config.width, config.height, self.clock, card)
@@ -152,7 +152,9 @@ class Stage:
             try:
                 problem = missing()
                 if problem is None:
-                    self._camera = SceneCamera(self.scenario, config, self.clock, self.simulator, card)
+                    self._camera = RenderedSceneCamera(
+                        self.scenario, config, self.clock, self.simulator, card
+                    )
             except (ImportError, RuntimeError) as error:
                 problem = str(error)
             if problem is not None:

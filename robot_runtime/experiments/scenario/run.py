@@ -12,10 +12,10 @@ from robot_runtime.commands import Commands
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import Refused
-from robot_runtime.experiments.scenario.cameras import needs_eyes
+from robot_runtime.experiments.scenario.cameras import needs_camera
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Arm, Event, Line, Mark
-from robot_runtime.experiments.scenario.rig import MakeBoard, Stage
+from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.link.link_driver import PERIOD as GATHERING
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.requests import changes
@@ -30,7 +30,7 @@ _SAME_TIME = 1e-6
 """s; much less than a step, much more than sums of steps are off by."""
 
 
-class Teller(Protocol):
+class RunListener(Protocol):
     """Who is told of the run; times are s since its start."""
 
     def blocks(self, data: bytes) -> None:
@@ -42,7 +42,7 @@ class Teller(Protocol):
         ...
 
 
-class _Rhythm:
+class _PeriodicTask:
     """Something that is done every `period` (s); what came late is not made up for."""
 
     def __init__(self, start: float, period: float, action: Callable[[], object]) -> None:
@@ -57,14 +57,14 @@ class _Rhythm:
             self._action()
 
 
-class Run:
+class ScenarioRun:
     """One run of a scenario on this kind of board; `perform` does it all."""
 
-    def __init__(self, scenario: Scenario, make_board: MakeBoard, teller: Teller) -> None:
+    def __init__(self, scenario: Scenario, make_board: MakeBoard, teller: RunListener) -> None:
         self._scenario = scenario
         self._make_board = make_board
         self._teller = teller
-        self._performance: _Performance | None = None
+        self._performance: _RunLoop | None = None
         self._cancelled = False
 
     def cancel(self) -> None:
@@ -76,8 +76,8 @@ class Run:
 
         Raises BoardError where there is no board, or it goes away.
         """
-        with Stage(self._scenario, self._make_board, self._send, PRELUDE) as stage:
-            performance = _Performance(stage, self._teller, lambda: self._cancelled)
+        with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE) as stage:
+            performance = _RunLoop(stage, self._teller, lambda: self._cancelled)
             performance.wait_for_start()
             self._teller.event("started", time=0.0, **describe(stage.board.firmware))
             self._performance = performance
@@ -89,10 +89,10 @@ class Run:
             self._teller.blocks(data)
 
 
-class _Performance:
+class _RunLoop:
     """What happens on the stage, from the prelude on; `stopped` tells whether it is to end early."""
 
-    def __init__(self, stage: Stage, teller: Teller, stopped: Callable[[], bool]) -> None:
+    def __init__(self, stage: ScenarioRig, teller: RunListener, stopped: Callable[[], bool]) -> None:
         self._stage = stage
         self._teller = teller
         self._stopped = stopped
@@ -104,10 +104,10 @@ class _Performance:
         self._heard = b""
         self._look_at = now = stage.clock.now()
         self._rhythms = [
-            _Rhythm(now, 1 / stage.scenario.control.rate, stage.robot.control_tick),
-            _Rhythm(now, PUBLISH_EVERY, stage.robot.publish_tick),
+            _PeriodicTask(now, 1 / stage.scenario.control.rate, stage.robot.control_tick),
+            _PeriodicTask(now, PUBLISH_EVERY, stage.robot.publish_tick),
         ]
-        self._looks = needs_eyes(stage.scenario)
+        self._looks = needs_camera(stage.scenario)
 
     def wait_for_start(self) -> None:
         """Let the prelude pass."""
@@ -115,7 +115,7 @@ class _Performance:
         robot = self._stage.robot
         robot.outbox.flush()
         robot.announce()
-        self._rhythms.append(_Rhythm(0.0, PROGRESS_EVERY, self._tell_progress))
+        self._rhythms.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._tell_progress))
 
     def play(self) -> None:
         """Let everything happen, until the end or until it is stopped."""

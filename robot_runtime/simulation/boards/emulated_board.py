@@ -4,7 +4,7 @@ import tempfile
 from pathlib import Path
 
 from robot_runtime.config import LinkConfig
-from robot_runtime.simulation.boards.emulator_process import BoardProcess, FaultKind
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess, FaultKind
 from robot_runtime.simulation.boards.paused_port import PausedPort
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
 
@@ -17,7 +17,7 @@ class EmulatedBoard(SteppedBoard):
         place = Path(self._folder.name)
         try:
             options = ("--paused", "--with-parent")
-            self._process = BoardProcess(program, elf, place / "tty", place / "board", *options)
+            self._process = EmulatorProcess(program, elf, place / "tty", place / "board", *options)
         except Exception:
             self._folder.cleanup()
             raise

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Literal, Self
 
-from robot_runtime.simulation.boards.board_line import Lines, read_fins, write_sense
+from robot_runtime.simulation.boards.board_protocol import LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 
@@ -39,13 +39,13 @@ class BoardError(Exception):
     """The board did not start, went away, or refused a command; the text says why."""
 
 
-class Board:
+class EmulatorClient:
     """A connection to the board's socket. Where it is the water, it answers the board's `fins` lines."""
 
     def __init__(self, path: Path) -> None:
         """Connect. Raises BoardError where no board answers at `path`."""
         self._water: Water | None = None
-        self._lines = Lines()
+        self._lines = LineBuffer()
         self._pending: list[str] = []
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.settimeout(ANSWER_TIMEOUT)
@@ -189,7 +189,7 @@ class Board:
         return self._pending.pop(0)
 
 
-class BoardProcess:
+class EmulatorProcess:
     """The board's program; ends with the `with` statement. `tty` and `socket` are the paths that it makes."""
 
     def __init__(self, program: Path, elf: Path | None, tty: Path, socket: Path, *options: str) -> None:
@@ -218,9 +218,9 @@ class BoardProcess:
     def __exit__(self, *_: object) -> None:
         self.stop()
 
-    def connect(self) -> Board:
+    def connect(self) -> EmulatorClient:
         """A new connection to its socket."""
-        return Board(self.socket)
+        return EmulatorClient(self.socket)
 
     def stop(self) -> int:
         """End it as a signal would, wait, and return its exit status."""

@@ -18,7 +18,7 @@ _SOURCES = Path(__file__).parents[3] / "firmware"
 _LINES_TOLD = 5
 
 
-class BuildError(Exception):
+class FirmwareBuildError(Exception):
     """The firmware cannot be built; the text says why and what to do."""
 
 
@@ -43,7 +43,7 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     if shutil.which("make") is None or shutil.which("avr-gcc") is None:
         if product.exists():
             return
-        raise BuildError(
+        raise FirmwareBuildError(
             f"There is no firmware for {baud} baud ({product}), and no compiler to build it. Install make, "
             "gcc-avr and arduino-core-avr, or set link.baud in robot.toml to what the firmware was built for."
         )
@@ -52,7 +52,7 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode != 0:
         last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_TOLD:]).strip()
-        raise BuildError(f"The firmware for {baud} baud could not be built: {last}")
+        raise FirmwareBuildError(f"The firmware for {baud} baud could not be built: {last}")
 
 
 def main() -> int:
@@ -68,7 +68,7 @@ def main() -> int:
     try:
         config = load(options.config)
         build_firmware(options.build.absolute(), config.link.baud, hil=config.robot.mode == "hil")
-    except (ConfigError, BuildError) as problem:
+    except (ConfigError, FirmwareBuildError) as problem:
         print(problem, file=sys.stderr)  # noqa: T201 - a command line speaks
         return 1
     return 0

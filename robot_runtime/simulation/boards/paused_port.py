@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from robot_runtime.link.port import Port
-from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 
 PATIENCE = 60.0
 """s of real time for what the operating system does between two processes, on a busy computer."""
@@ -22,7 +22,7 @@ class PausedPort:
     So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
     """
 
-    def __init__(self, board: Board, tty: Path, baud: int) -> None:
+    def __init__(self, board: EmulatorClient, tty: Path, baud: int) -> None:
         self.written = 0
         self.read = 0
         self._board = board

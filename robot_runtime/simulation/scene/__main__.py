@@ -6,7 +6,7 @@ import signal
 import sys
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.simulation.scene.process import Process
+from robot_runtime.simulation.scene.process import SceneProcess
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
@@ -27,7 +27,7 @@ def main() -> None:
         else ZenohTransport(arguments.robot, arguments.listen, arguments.connect)
     )
     with joined as messages:
-        process = Process(messages, SteadyClock())
+        process = SceneProcess(messages, SteadyClock())
         if arguments.server_lock is not None:
             watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
         for number in (signal.SIGTERM, signal.SIGINT):

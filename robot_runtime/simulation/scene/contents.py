@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from robot_runtime.contract.card_colours import PAINTS, Paint
 from robot_runtime.contract.limits import Range
 from robot_runtime.simulation.scene.water import TURBIDITY, Kind
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import FAR, Basin, check_beacons
 
 TARGETS_MAX = 16
@@ -37,7 +37,7 @@ class Target:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class SceneWater:
     """What sort of water it is."""
 
     kind: Kind | None = None
@@ -57,9 +57,9 @@ class Targets:
             raise ValueError(f"{len(self.targets)} targets; there can be at most {TARGETS_MAX}")
 
 
-START_BEACONS = Parameters().beacons
-START_BEACONS = Parameters().beacons
-START_BASIN = Basin(Parameters().floor)
+START_BEACONS = SimulationParameters().beacons
+START_BEACONS = SimulationParameters().beacons
+START_BASIN = Basin(SimulationParameters().floor)
 START_TARGETS = (
     Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
     Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
@@ -69,8 +69,8 @@ START_TARGETS = (
 """Chosen: one of each colour, ahead."""
 
 
-START_BEACONS = Parameters().beacons
-START_BASIN = Basin(Parameters().floor)
+START_BEACONS = SimulationParameters().beacons
+START_BASIN = Basin(SimulationParameters().floor)
 START_TARGETS = (
     Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
     Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
@@ -84,7 +84,7 @@ START_TARGETS = (
 class Contents:
     """Everything in the scene but the robot. Raises ValueError on what cannot be."""
 
-    place: Place = Place()
+    place: SceneWater = SceneWater()
     basin: Basin = START_BASIN
     beacons: tuple[Vector, ...] = START_BEACONS
     targets: tuple[Target, ...] = START_TARGETS

@@ -13,7 +13,7 @@ import numpy as np
 from robot_runtime.simulation.scene import shapes, textures
 from robot_runtime.simulation.scene.contents import Contents
 from robot_runtime.simulation.scene.water import water
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 
 WIDTH_MAX, HEIGHT_MAX = 1280, 960
 FIELD_OF_VIEW = 48.8
@@ -57,7 +57,7 @@ _ELLIPSOID, _CAPSULE = _M.mjtGeom.mjGEOM_ELLIPSOID, _M.mjtGeom.mjGEOM_CAPSULE
 _MESH, _HFIELD = _M.mjtGeom.mjGEOM_MESH, _M.mjtGeom.mjGEOM_HFIELD
 
 
-def build(contents: Contents, parameters: Parameters) -> Any:
+def build(contents: Contents, parameters: SimulationParameters) -> Any:
     """The compiled model (MjModel) of this scene with the robot in it."""
     spec = mujoco.MjSpec()
     spec.stat.extent = 1.0
@@ -209,7 +209,7 @@ def _things(spec: Any, contents: Contents) -> None:
         _rope(spec, north, east, down + 0.1, floor, line)
 
 
-def _robot(spec: Any, parameters: Parameters) -> None:
+def _robot(spec: Any, parameters: SimulationParameters) -> None:
     length, width, height = (side / 2 for side in parameters.size)
     robot = spec.worldbody.add_body(name="robot")
     robot.add_freejoint()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.simulation.scene import textures
-from robot_runtime.simulation.scene.water import Water
+from robot_runtime.simulation.scene.water import WaterOptics
 from robot_runtime.simulation.water.geometry import Matrix
 from robot_runtime.simulation.water.parameters import Vector
 
@@ -46,7 +46,7 @@ BLUR = 5
 """Pixels of half the picture's size over which scattered light spreads."""
 
 
-class Look:
+class UnderwaterOptics:
     """For pictures of `width` × `height` pixels with this upright field of view (°)."""
 
     def __init__(self, width: int, height: int, field_of_view: float) -> None:
@@ -67,7 +67,7 @@ class Look:
         self,
         picture: Picture,
         depth: Floats,
-        water: Water,
+        water: WaterOptics,
         position: Vector,
         axes: Matrix,
         time: float,
@@ -101,7 +101,9 @@ class Look:
         seen = self._blur(_bytes(lens), sharp)
         return self._grain(seen, time, noise) if noise else seen
 
-    def _light(self, depth: Floats, water: Water, position: Vector, axes: Matrix, time: float) -> Floats:
+    def _light(
+        self, depth: Floats, water: WaterOptics, position: Vector, axes: Matrix, time: float
+    ) -> Floats:
         """How much more or less light than on average falls on what is seen; 1: as much."""
         far = _floats(cv2.resize(depth, self._half, interpolation=cv2.INTER_NEAREST))
         np.minimum(far, CAUSTICS_FAR, out=far)

@@ -24,14 +24,14 @@ from robot_runtime.contract.scene_picture import Picture, Request, read_request,
 from robot_runtime.contract.topics import BY_NAME, Block, read_blocks, read_rows, row
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.simulation.scene.availability import missing
-from robot_runtime.simulation.scene.contents import Contents, Place, Targets
-from robot_runtime.simulation.scene.view import View
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.scene.contents import Contents, SceneWater, Targets
+from robot_runtime.simulation.scene.view import ObserverView
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import Basin, check_beacons
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 if TYPE_CHECKING:
-    from robot_runtime.simulation.scene.scene import Scene
+    from robot_runtime.simulation.scene.scene import SceneRenderer
 
 log = logging.getLogger(__name__)
 
@@ -50,23 +50,23 @@ JPEG_QUALITY = 80
 Question = dict[str, Any]
 
 
-class Process:
+class SceneProcess:
     """Answers and publishes until `end`; `run` must be called in the thread that is to render."""
 
     def __init__(self, messages: ZenohTransport, clock: Clock) -> None:
         self._messages = messages
         self._clock = clock
         self._contents = Contents()
-        self._view = View()
+        self._view = ObserverView()
         self._card: Paint | None = None
         self._lock = threading.Lock()
         self._truth: tuple[float, Truth] | None = None
-        self._scene: Scene | None = None
+        self._scene: SceneRenderer | None = None
         self._problem = missing()
         self._jobs: queue.Queue[tuple[Request, Future[Picture]]] = queue.Queue()
         self._asked = float("-inf")
         self._observe_due = clock.now()
-        self._observed: tuple[float, View] | None = None
+        self._observed: tuple[float, ObserverView] | None = None
         self._observer_number = 0
         self._ending = False
         if self._problem:
@@ -113,7 +113,7 @@ class Process:
             self._truth = (time, truth)
 
     def _set_place(self, question: Question) -> None:
-        place = parse(Place, question)
+        place = parse(SceneWater, question)
         with self._lock:
             self._contents = replace(self._contents, place=place)
 
@@ -130,7 +130,7 @@ class Process:
         return {"world": place, "targets": {"targets": [asdict(one) for one in contents.targets]}}
 
     def _set_view(self, question: Question) -> None:
-        self._view = parse(View, question)
+        self._view = parse(ObserverView, question)
 
     def _answer_picture(self, data: bytes) -> bytes:
         request = read_request(data)
@@ -182,7 +182,7 @@ class Process:
         self._observer_number += 1
         self._messages.publish("observer", block.data)
 
-    def _ready_scene(self) -> "Scene":
+    def _ready_scene(self) -> "SceneRenderer":
         """The scene with everything in it. Raises Refused where nothing can be rendered."""
         self._ask_surroundings()
         if self._problem is not None:
@@ -195,12 +195,12 @@ class Process:
             self._scene.fill(contents)
         return self._scene
 
-    def _make(self, contents: Contents) -> "Scene":
+    def _make(self, contents: Contents) -> "SceneRenderer":
         try:
             # Here and not above: this loads MuJoCo and OpenGL.
-            from robot_runtime.simulation.scene.scene import Scene
+            from robot_runtime.simulation.scene.scene import SceneRenderer
 
-            return Scene(contents, Parameters())
+            return SceneRenderer(contents, SimulationParameters())
         except Exception as problem:
             # PyOpenGL and MuJoCo raise ImportError, AttributeError, RuntimeError and others of their own.
             log.exception("the scene cannot be rendered")

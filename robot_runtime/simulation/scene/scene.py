@@ -15,12 +15,12 @@ from robot_runtime.contract.card_colours import Paint
 from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.scene import model as modelling
 from robot_runtime.simulation.scene.contents import Contents
-from robot_runtime.simulation.scene.optics import Look, Picture
+from robot_runtime.simulation.scene.optics import Picture, UnderwaterOptics
 from robot_runtime.simulation.scene.view import FIELD_OF_VIEW as OBSERVER_VIEW
-from robot_runtime.simulation.scene.view import View
-from robot_runtime.simulation.scene.water import NOISE, Water, water
+from robot_runtime.simulation.scene.view import ObserverView
+from robot_runtime.simulation.scene.water import NOISE, WaterOptics, water
 from robot_runtime.simulation.water.geometry import Matrix, normalize, rotation, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 
 Floats = NDArray[np.float32]
 
@@ -40,16 +40,16 @@ class _Eye:
     groups: tuple[int, ...]
 
 
-class Scene:
+class SceneRenderer:
     """Renders by MuJoCo, in the thread that makes it, and in no other. Close it.
 
     The same contents, truth and time give the same pictures. Raises RuntimeError or ImportError where there
     is no OpenGL to render with.
     """
 
-    def __init__(self, contents: Contents, parameters: Parameters) -> None:
+    def __init__(self, contents: Contents, parameters: SimulationParameters) -> None:
         self._parameters = parameters
-        self._looks: dict[tuple[int, int, float], Look] = {}
+        self._looks: dict[tuple[int, int, float], UnderwaterOptics] = {}
         self._gl: Any = GLContext(modelling.WIDTH_MAX, modelling.HEIGHT_MAX)
         self._gl.make_current()
         self._context: Any = None
@@ -96,7 +96,13 @@ class Scene:
         return self.look(picture, depth, eye, time)
 
     def render_observer(
-        self, time: float, truth: Truth, view: View, width: int, height: int, card: Paint | None = None
+        self,
+        time: float,
+        truth: Truth,
+        view: ObserverView,
+        width: int,
+        height: int,
+        card: Paint | None = None,
     ) -> Picture:
         """What somebody sees who swims along and looks at the robot, as `render_camera`."""
         self._pose(time, truth, card)
@@ -150,13 +156,13 @@ class Scene:
         self.close()
 
     @property
-    def _water(self) -> Water:
+    def _water(self) -> WaterOptics:
         return water(self.contents.kind, self.contents.place.turbidity)
 
-    def _look(self, width: int, height: int, field_of_view: float) -> Look:
+    def _look(self, width: int, height: int, field_of_view: float) -> UnderwaterOptics:
         key = (width, height, field_of_view)
         if key not in self._looks:
-            self._looks[key] = Look(*key)
+            self._looks[key] = UnderwaterOptics(*key)
         return self._looks[key]
 
     @staticmethod
@@ -210,7 +216,7 @@ class Scene:
         return picture.astype(np.uint8, copy=False), depth
 
 
-def _camera(view: View, truth: Truth) -> Any:
+def _camera(view: ObserverView, truth: Truth) -> Any:
     """MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
     azimuth, elevation = view.line_of_sight(truth)
     north, east, down = truth.position

@@ -14,7 +14,7 @@ FIELD_OF_VIEW = 45.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class View:
+class ObserverView:
     """One way to look at the robot; "follow" turns with its heading, the others keep to the world."""
 
     name: Literal["follow", "side", "top"] = "follow"

@@ -32,7 +32,7 @@ NOISE = 2.5
 
 
 @dataclass(frozen=True, slots=True)
-class Water:
+class WaterOptics:
     """How the water looks."""
 
     attenuation: Colours
@@ -44,29 +44,29 @@ class Water:
     caustics: float
     """Contrast, 0 to 1, of the light that ripples gather on what is just under the surface."""
 
-    def clearer(self, times: float) -> "Water":
+    def clearer(self, times: float) -> "WaterOptics":
         """Water through which one sees so many times as far."""
         blue, green, red = (beta / times for beta in self.attenuation)
-        return Water((blue, green, red), self.glow, self.scattering / times, self.caustics)
+        return WaterOptics((blue, green, red), self.glow, self.scattering / times, self.caustics)
 
 
 CLEAN = {
-    "pool": Water((0.030, 0.055, 0.30), (190.0, 164.0, 44.0), SCATTERING, 0.5),
+    "pool": WaterOptics((0.030, 0.055, 0.30), (190.0, 164.0, 44.0), SCATTERING, 0.5),
     # Pure water absorbs 0.009, 0.043 and 0.28 (450, 530, 620 nm; R. M. Pope and E. S. Fry, Applied Optics 36,
     # 1997, 8710); the rest is scattering, assumed. Its own light is chosen: tiles in daylight.
-    "natural": Water((0.06, 0.09, 0.60), (150.0, 128.0, 30.0), 1.5 * SCATTERING, 0.7),
+    "natural": WaterOptics((0.06, 0.09, 0.60), (150.0, 128.0, 30.0), 1.5 * SCATTERING, 0.7),
     # Chosen: as the card camera's, coastal water in which yellow turns green at about 3 m.
 }
 """Clean water of each kind of scene."""
 
 
-def water(kind: Kind, turbidity: float) -> Water:
+def water(kind: Kind, turbidity: float) -> WaterOptics:
     """The water of this kind of scene with so much turbidity, 0 to 1."""
     clean = CLEAN[kind]
     added = TURBIDITY_ATTENUATION * turbidity**TURBIDITY_POWER
     blue, green, red = (beta + added for beta in clean.attenuation)
     glow = tuple(own + (silt - own) * turbidity for own, silt in zip(clean.glow, SILT, strict=True))
-    return Water(
+    return WaterOptics(
         (blue, green, red),
         (glow[0], glow[1], glow[2]),
         clean.scattering + TURBIDITY_SCATTERING * added,

@@ -20,16 +20,16 @@ from robot_runtime.simulation.water.geometry import (
     to_body,
     to_world,
 )
-from robot_runtime.simulation.water.parameters import Parameters, Vector
-from robot_runtime.simulation.water.state import State, at_rest
-from robot_runtime.simulation.water.surroundings import FLOATING, Start, Trim
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
+from robot_runtime.simulation.water.state import BodyState, at_rest
+from robot_runtime.simulation.water.surroundings import FLOATING, StartPose, Trim
 from robot_runtime.simulation.water.world import World
 
 
 class Body:
     """A hull in water, pushed by fins."""
 
-    def __init__(self, parameters: Parameters, propulsion: Propulsion, world: World) -> None:
+    def __init__(self, parameters: SimulationParameters, propulsion: Propulsion, world: World) -> None:
         self._propulsion = propulsion
         self.world = world
         self._contact = Contact(parameters)
@@ -40,7 +40,7 @@ class Body:
         self.trim = Trim(parameters.buoyancy, 0.0, 0.0, parameters.buoyancy_height)
         self.start()
 
-    def start(self, start: Start = FLOATING) -> None:
+    def start(self, start: StartPose = FLOATING) -> None:
         """Be there at rest at time 0."""
         depth = self.world.floating_depth(self.trim.buoyancy) if start.down is None else start.down
         self.time = 0.0
@@ -61,7 +61,7 @@ class Body:
         self.state = self._contact.settle(moved, self.world.basin)
         self.time += duration
 
-    def derivative(self, state: State, angles: Four, speeds: Four, later: float = 0.0) -> State:
+    def derivative(self, state: BodyState, angles: Four, speeds: Four, later: float = 0.0) -> BodyState:
         """Time derivative of each part of a state that is reached `later` (s) than now."""
         position, attitude, velocity, rate = state
         matrix = rotation(attitude)
@@ -87,7 +87,7 @@ class Body:
         # In body axes a steady current turns as the hull turns, and the velocity over ground contains it.
         swing = cross(rate, flow)
         surge, sway, heave = to_body(matrix, water.acceleration)
-        return State(
+        return BodyState(
             to_world(matrix, velocity),
             attitude_rate(attitude, rate),
             (x - swing[0] + surge, y - swing[1] + sway, z - swing[2] + heave),
@@ -115,10 +115,10 @@ class Body:
         )
 
 
-def _advance(state: State, rates: State, duration: float) -> State:
+def _advance(state: BodyState, rates: BodyState, duration: float) -> BodyState:
     (a, b, c), (d, e, f, g), (h, i, j), (k, m, n) = state
     (da, db, dc), (dd, de, df, dg), (dh, di, dj), (dk, dm, dn) = rates
-    return State(
+    return BodyState(
         (a + da * duration, b + db * duration, c + dc * duration),
         (d + dd * duration, e + de * duration, f + df * duration, g + dg * duration),
         (h + dh * duration, i + di * duration, j + dj * duration),

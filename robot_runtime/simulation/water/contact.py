@@ -19,8 +19,8 @@ from robot_runtime.simulation.water.geometry import (
     rotation,
     to_world,
 )
-from robot_runtime.simulation.water.parameters import Parameters, Vector
-from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
+from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Basin
 
 RESTING = 0.01
@@ -30,7 +30,7 @@ RESTING = 0.01
 class Contact:
     """Keeps the hull within its basin."""
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: SimulationParameters) -> None:
         length, width, height = parameters.size
         self._half = (length / 2, width / 2, height / 2)
         self._reach = max(self._half)
@@ -38,7 +38,7 @@ class Contact:
         self._restitution = parameters.restitution
         self._friction = parameters.friction
 
-    def settle(self, state: State, basin: Basin) -> State:
+    def settle(self, state: BodyState, basin: Basin) -> BodyState:
         """The state of a hull that may have gone through floor or walls, put back and stopped there."""
         reach, (north, east, down) = self._reach, state.position
         if down + reach > basin.depth:
@@ -50,7 +50,7 @@ class Contact:
                 state = self._touch(state, 1, 1.0 if east > 0 else -1.0, basin.width / 2)
         return state
 
-    def _touch(self, state: State, axis: int, side: float, limit: float) -> State:
+    def _touch(self, state: BodyState, axis: int, side: float, limit: float) -> BodyState:
         """One plane: across this world axis, at `side`·`limit` (m)."""
         matrix = rotation(state.attitude)
         x, y, z = matrix[axis]
@@ -68,7 +68,9 @@ class Contact:
         place[axis] = side * min(side * place[axis], limit - sqrt((a * x) ** 2 + (b * y) ** 2 + (c * z) ** 2))
         return self._stop(back._replace(position=(place[0], place[1], place[2])), point, inwards)
 
-    def _take_back(self, state: State, matrix: Matrix, point: Vector, inwards: Vector, depth: float) -> State:
+    def _take_back(
+        self, state: BodyState, matrix: Matrix, point: Vector, inwards: Vector, depth: float
+    ) -> BodyState:
         """The state moved and turned as a push at the point would, so far that the point is back inside."""
         size = depth * self._mass_along(point, inwards)
         x, y, z, roll, pitch, yaw = (
@@ -83,7 +85,7 @@ class Contact:
             attitude=normalize((w + turned[0], i + turned[1], j + turned[2], k + turned[3])),
         )
 
-    def _stop(self, state: State, point: Vector, inwards: Vector) -> State:
+    def _stop(self, state: BodyState, point: Vector, inwards: Vector) -> BodyState:
         approach = -_dot(_speed_at(state, point), inwards)
         if approach <= 0:
             return state
@@ -106,7 +108,7 @@ class Contact:
         yielding = sum(part * part / mass for part, mass in zip((*line, *lever), self._mass, strict=True))
         return 1 / yielding
 
-    def _push(self, state: State, point: Vector, line: Vector, impulse: float) -> State:
+    def _push(self, state: BodyState, point: Vector, line: Vector, impulse: float) -> BodyState:
         lever = cross(point, line)
         u, v, w, p, q, r = (
             speed + impulse * part / mass
@@ -117,7 +119,7 @@ class Contact:
         return state._replace(velocity=(u, v, w), rate=(p, q, r))
 
 
-def _speed_at(state: State, point: Vector) -> Vector:
+def _speed_at(state: BodyState, point: Vector) -> Vector:
     x, y, z = cross(state.rate, point)
     u, v, w = state.velocity
     return u + x, v + y, w + z

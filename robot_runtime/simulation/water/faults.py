@@ -26,7 +26,7 @@ _NUMBERS: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fault:
+class SimulatedFault:
     """A sensor's fault. Raises ValueError where the numbers do not belong to the kind."""
 
     kind: Kind = "none"
@@ -56,10 +56,10 @@ class Fault:
             raise ValueError(f"a fault's size is {self.size:g}; it must be above 0")
 
 
-SOUND = Fault()
+NO_FAULT = SimulatedFault()
 
 
-def check_sensor(sensor: str, fault: Fault) -> None:
+def check_sensor(sensor: str, fault: SimulatedFault) -> None:
     """Raises ValueError where there is no such sensor, or it cannot have this fault."""
     if sensor not in SENSORS:
         raise ValueError(f"there is no sensor {sensor!r}; there are {', '.join(SENSORS)}")

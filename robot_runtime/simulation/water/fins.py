@@ -3,7 +3,7 @@
 from math import cos, sin
 from typing import Protocol
 
-from robot_runtime.simulation.water.parameters import Parameters, Six, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
 
 Four = tuple[float, float, float, float]
 
@@ -25,7 +25,7 @@ class Fins:
     own mass is part of the hull's.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: SimulationParameters) -> None:
         self._mounts = [
             (*position, *direction)
             for position, direction in zip(parameters.fin_positions, parameters.fin_directions, strict=True)

@@ -39,7 +39,7 @@ QUIET = 2.0
 """s without a word of the fins after which it is said."""
 
 
-class Loop:
+class HilSimulator:
     """Joins the simulator and a robot elsewhere. `run` returns after `end`."""
 
     def __init__(self, simulator: Simulator, messages: ZenohTransport) -> None:

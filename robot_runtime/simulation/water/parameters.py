@@ -19,7 +19,7 @@ Six = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quality:
+class SensorQuality:
     """How well a sensor tells what it feels, in the units of its reading. Raises ValueError below 0."""
 
     rate: float = 200.0
@@ -44,7 +44,7 @@ class Quality:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parameters:
+class SimulationParameters:
     """What the physics needs to know. Raises ValueError where a number makes no physical sense."""
 
     # The hull
@@ -97,28 +97,32 @@ class Parameters:
     # The sensors
     pressure_position: Vector = (0.0, 0.0, -0.05)
     """m, of the pressure sensor in the body; the IMU is at the centre of mass. Assumed: on the back."""
-    pressure: Quality = Quality(noise=42.0, walk=1.0, step=0.67)
+    pressure: SensorQuality = SensorQuality(noise=42.0, walk=1.0, step=0.67)
     """Pa. MS5837-30BA: noise by its data sheet 20 Pa at OSR 8192, twice that at the firmware's 2048, which
     takes a quarter of the samples; step one count of its 24-bit converter. Walk assumed, within a factor of
     five: temperature and gel. No offset, as the firmware takes the surface as its zero. The emulated part
     adds its 4.5 ms of conversion."""
-    gyroscope: Quality = Quality(latency=0.005, noise=2e-4, bias=2e-3, walk=2e-5, step=pi / 180 / 65.536)
+    gyroscope: SensorQuality = SensorQuality(
+        latency=0.005, noise=2e-4, bias=2e-3, walk=2e-5, step=pi / 180 / 65.536
+    )
     """rad/s. MPU-6050: noise of its class (by the data sheet up to 7e-4 behind the 44 Hz filter); latency of
     that filter 4.8 ms, step at ±500 °/s, both data sheet. Bias and walk assumed, after a calibration at rest:
     the data sheet allows 0.35 rad/s without one."""
-    accelerometer: Quality = Quality(latency=0.005, noise=1.7e-2, bias=2e-2, walk=1e-4, step=9.80665 / 8192)
+    accelerometer: SensorQuality = SensorQuality(
+        latency=0.005, noise=1.7e-2, bias=2e-2, walk=1e-4, step=9.80665 / 8192
+    )
     """m/s². MPU-6050: noise of its class (by the data sheet 3.3e-2 behind the 44 Hz filter); latency of that
     filter 4.9 ms, step at ±4 g, both data sheet. Bias and walk assumed, after a calibration at rest: the data
     sheet allows 0.5 m/s² without one."""
-    encoder: Quality = Quality(noise=2.1e-3, bias=3e-3)
+    encoder: SensorQuality = SensorQuality(noise=2.1e-3, bias=3e-3)
     """rad, each fin's. AS5040: noise data sheet, 0.12°. Bias assumed: half a tick of the calibrated zero; the
     data sheet allows 0.5° for a centred magnet. The emulated part has the 1024 ticks of a turn; the real
     part's delay of 0.1 ms is left out."""
-    beacon_right: Quality = Quality(rate=20.0, latency=0.05, noise=0.02)
-    beacon_left: Quality = Quality(rate=20.0, latency=0.05, noise=0.02)
+    beacon_right: SensorQuality = SensorQuality(rate=20.0, latency=0.05, noise=0.02)
+    beacon_left: SensorQuality = SensorQuality(rate=20.0, latency=0.05, noise=0.02)
     """Share of range and view by which it sees or misses; the reading is whether that is above 0. Assumed
     throughout: nothing of the tone detectors is published; within a factor of three."""
-    battery: Quality = Quality(rate=100.0, noise=5e-3, bias=2e-2, step=10 / 1023)
+    battery: SensorQuality = SensorQuality(rate=100.0, noise=5e-3, bias=2e-2, step=10 / 1023)
     """V. Divider and converter of the ATmega328P: step 10 bit of 10 V. Noise assumed: half a count; bias
     assumed: resistors of 0.25 %."""
     beacon_detector: float = pi / 4

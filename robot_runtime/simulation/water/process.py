@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robot_runtime.clock import Clock
-from robot_runtime.simulation.boards.board_line import LineError, Lines, read_fins, write_sense
+from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.outbox import Outbox
@@ -26,7 +26,7 @@ PATIENCE = 0.1
 """s for which a silent board is waited for before looking whether to end."""
 
 
-class Process:
+class WaterProcess:
     """Joins the simulator, the emulated board's socket and the other processes."""
 
     def __init__(self, simulator: Simulator, board: Path, messages: ZenohTransport, clock: Clock) -> None:
@@ -50,7 +50,7 @@ class Process:
                     line.settimeout(PATIENCE)
                     line.connect(str(self._board))
                     self._attend(line)
-            except (OSError, LineError) as problem:
+            except (OSError, BoardLineError) as problem:
                 if self._attached is not False:
                     log.warning("no board at %s (%s); trying again until there is one", self._board, problem)
                 self._attached = False
@@ -81,7 +81,7 @@ class Process:
             self._publish_truth(now)
 
     def _lines(self, line: socket.socket) -> Iterator[str]:
-        lines = Lines()
+        lines = LineBuffer()
         while not self._ending:
             try:
                 data = line.recv(4096)

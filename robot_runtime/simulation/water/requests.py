@@ -5,10 +5,10 @@ from dataclasses import asdict
 from typing import Any, cast
 
 from robot_runtime.errors import Refused
-from robot_runtime.simulation.water.faults import Fault, Kind
+from robot_runtime.simulation.water.faults import Kind, SimulatedFault
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.simulation.water.surroundings import Basin, Current, Start, Trim, Waves
+from robot_runtime.simulation.water.surroundings import Basin, Current, StartPose, Trim, Waves
 
 Question = Mapping[str, Any]
 Change = Callable[[Question], Question | None]
@@ -23,7 +23,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
     def reset(question: Question) -> None:
         _expect(question, (), ("north", "east", "down", "heading", "seed"))
         numbers = {name: value for name, value in question.items() if name != "seed"}
-        simulator.reset(Start(**_numbers(numbers)), _whole(question, "seed"))
+        simulator.reset(StartPose(**_numbers(numbers)), _whole(question, "seed"))
 
     def current(question: Question) -> None:
         _expect(question, ("north", "east", "down"), ("turning",))
@@ -49,7 +49,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
         _expect(question, ("sensor", "kind"), ("share", "size", "speed"))
         sensor, kind = _text(question, "sensor"), _text(question, "kind")
         numbers = _numbers({name: question[name] for name in question.keys() - {"sensor", "kind"}})
-        simulator.set_fault(sensor, Fault(kind=cast(Kind, kind), **numbers))
+        simulator.set_fault(sensor, SimulatedFault(kind=cast(Kind, kind), **numbers))
 
     def surroundings(question: Question) -> Question:
         _expect(question)
@@ -96,7 +96,7 @@ def _whole(question: Question, name: str) -> int | None:
     return value
 
 
-def _given(setting: Basin | Current | Waves | Trim | Fault) -> dict[str, Any]:
+def _given(setting: Basin | Current | Waves | Trim | SimulatedFault) -> dict[str, Any]:
     return {name: value for name, value in asdict(setting).items() if value is not None}
 
 

@@ -3,8 +3,8 @@
 from collections import deque
 from random import Random
 
-from robot_runtime.simulation.water.faults import SOUND, Fault
-from robot_runtime.simulation.water.parameters import Quality
+from robot_runtime.simulation.water.faults import NO_FAULT, SimulatedFault
+from robot_runtime.simulation.water.parameters import SensorQuality
 
 Numbers = tuple[float, ...]
 
@@ -21,7 +21,7 @@ class Sensor:
     another sensor, and what is wrong with this one, leaves its noise as it is.
     """
 
-    def __init__(self, name: str, quality: Quality, axes: int, seed: int) -> None:
+    def __init__(self, name: str, quality: SensorQuality, axes: int, seed: int) -> None:
         self._noise, self._walk, self._step = quality.noise, quality.walk, quality.step
         self._latency = quality.latency
         self._interval = 1 / quality.rate
@@ -32,12 +32,12 @@ class Sensor:
         self._wanders = WANDERING
         self._shown: Numbers | None = None
         self._coming: deque[tuple[float, Numbers]] = deque()
-        self._fault = SOUND
+        self._fault = NO_FAULT
         self._since = 0.0
         self.holds = False
         """Whether its newest reading never came, so that it shows an older one."""
 
-    def break_(self, fault: Fault, time: float) -> None:
+    def break_(self, fault: SimulatedFault, time: float) -> None:
         """Have this fault, and no other, from `time` (s) on."""
         self._fault = fault
         self._since = time
@@ -72,7 +72,7 @@ class Sensor:
     def _spoilt(self, time: float, reading: Numbers) -> Numbers | None:
         """The reading as it comes out in steps; None where it is lost."""
         fault = self._fault
-        if fault is not SOUND:
+        if fault is not NO_FAULT:
             if fault.kind == "stuck" or (fault.kind == "dropout" and self._chance() < (fault.share or 0)):
                 return None
             if fault.kind == "spike" and self._chance() < (fault.share or 0):

@@ -3,12 +3,12 @@
 from math import cos, hypot, nan, pi, remainder, sin
 from typing import NamedTuple
 
-from robot_runtime.simulation.water.faults import DEVICES, SENSORS, SOUND, Fault, check_sensor
+from robot_runtime.simulation.water.faults import DEVICES, NO_FAULT, SENSORS, SimulatedFault, check_sensor
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.geometry import Matrix, rotation, to_body, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Quality, Vector
+from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.sensor import Sensor
-from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import check_beacons
 from robot_runtime.simulation.water.world import World
 
@@ -35,12 +35,12 @@ class Reading(NamedTuple):
 class Sensors:
     """Reads the hull's state. The same seed gives the same readings."""
 
-    def __init__(self, parameters: Parameters, world: World, seed: int) -> None:
+    def __init__(self, parameters: SimulationParameters, world: World, seed: int) -> None:
         self._parameters = parameters
         self._world = world
         self.seed = seed
         """Of all their noise, from the next start on."""
-        self.faults = dict.fromkeys(SENSORS, SOUND)
+        self.faults = dict.fromkeys(SENSORS, NO_FAULT)
         self.beacons = parameters.beacons
         self.start()
 
@@ -54,7 +54,7 @@ class Sensors:
             self._sensors[name].break_(fault, 0.0)
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
-    def break_(self, sensor: str, fault: Fault, time: float) -> None:
+    def break_(self, sensor: str, fault: SimulatedFault, time: float) -> None:
         """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
         check_sensor(sensor, fault)
         self.faults[sensor] = fault
@@ -70,7 +70,7 @@ class Sensors:
         """The emulated board's devices that must not answer."""
         return frozenset(DEVICES[name] for name, fault in self.faults.items() if fault.kind == "bus")
 
-    def read(self, time: float, state: State, acceleration: Vector, battery: float) -> Reading:
+    def read(self, time: float, state: BodyState, acceleration: Vector, battery: float) -> Reading:
         """What they show at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
         parameters, sensors = self._parameters, self._sensors
         matrix = rotation(state.attitude)
@@ -92,12 +92,12 @@ class Sensors:
             encoders=(first, second, third, fourth),
         )
 
-    def _pressure(self, time: float, state: State, matrix: Matrix) -> float:
+    def _pressure(self, time: float, state: BodyState, matrix: Matrix) -> float:
         x, y, z = to_world(matrix, self._parameters.pressure_position)
         north, east, down = state.position
         return self._world.pressure(time, (north + x, east + y, down + z))
 
-    def _seen(self, state: State, matrix: Matrix) -> tuple[float, float]:
+    def _seen(self, state: BodyState, matrix: Matrix) -> tuple[float, float]:
         """How well the right and the left detector see: shares of range and view that are left, above 0 seen.
 
         A detector sees a beacon that is near enough and within its view; the brightest counts.
@@ -126,7 +126,7 @@ def _encoder_error(encoder: Sensor, time: float) -> float:
     return nan if encoder.holds else remainder(error, 2 * pi)
 
 
-def _qualities(parameters: Parameters) -> dict[str, tuple[Quality, int]]:
+def _qualities(parameters: SimulationParameters) -> dict[str, tuple[SensorQuality, int]]:
     """How well each sensor tells, and how many axes it has."""
     return {
         "pressure": (parameters.pressure, 1),

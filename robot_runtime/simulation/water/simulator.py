@@ -6,16 +6,16 @@ from typing import NamedTuple
 
 from robot_runtime.contract.documents import Truth
 from robot_runtime.simulation.water.body import Body
-from robot_runtime.simulation.water.faults import Fault
+from robot_runtime.simulation.water.faults import SimulatedFault
 from robot_runtime.simulation.water.fins import Fins, Four
 from robot_runtime.simulation.water.geometry import rotation, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.sensors import Reading, Sensors
 from robot_runtime.simulation.water.surroundings import (
     FLOATING,
     Basin,
     Current,
-    Start,
+    StartPose,
     Trim,
     Waves,
     check_start,
@@ -41,7 +41,7 @@ class FinMotion(NamedTuple):
     """Whether the motors have power."""
 
 
-class Surroundings(NamedTuple):
+class SimulationSetup(NamedTuple):
     """All that can be set about water, hull and sensors."""
 
     basin: Basin
@@ -49,14 +49,14 @@ class Surroundings(NamedTuple):
     waves: Waves
     trim: Trim
     beacons: tuple[Vector, ...]
-    faults: dict[str, Fault]
+    faults: dict[str, SimulatedFault]
     """By sensor."""
 
 
 class Simulator:
     """Body, world and sensors together. Its methods may be called from any thread."""
 
-    def __init__(self, parameters: Parameters, seed: int) -> None:
+    def __init__(self, parameters: SimulationParameters, seed: int) -> None:
         self._parameters = parameters
         self._world = World(parameters)
         self._body = Body(parameters, Fins(parameters), self._world)
@@ -88,7 +88,7 @@ class Simulator:
             )
             return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
-    def reset(self, start: Start = FLOATING, seed: int | None = None) -> None:
+    def reset(self, start: StartPose = FLOATING, seed: int | None = None) -> None:
         """Back to the start: time 0, at rest, by default floating and looking north, with a full battery.
 
         The sensors' noise begins anew, too, by another `seed` where one is given. Water, trim, beacons and
@@ -129,16 +129,16 @@ class Simulator:
         with self._lock:
             self._sensors.set_beacons(positions)
 
-    def set_fault(self, sensor: str, fault: Fault) -> None:
+    def set_fault(self, sensor: str, fault: SimulatedFault) -> None:
         """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
         with self._lock:
             self._sensors.break_(sensor, fault, self._body.time)
 
-    def surroundings(self) -> Surroundings:
+    def surroundings(self) -> SimulationSetup:
         """Everything that can be set, as it is now."""
         with self._lock:
             world, sensors = self._world, self._sensors
-            return Surroundings(
+            return SimulationSetup(
                 world.basin,
                 world.current,
                 world.waves,
@@ -161,7 +161,7 @@ class Simulator:
                 position=position, attitude=attitude, velocity=velocity, rate=rate, fins=self._angles
             )
 
-    def _start(self, start: Start = FLOATING) -> None:
+    def _start(self, start: StartPose = FLOATING) -> None:
         self._body.start(start)
         self._world.set_current(self._world.current)
         self._sensors.start()

@@ -7,7 +7,7 @@ from robot_runtime.simulation.water.geometry import Quaternion
 from robot_runtime.simulation.water.parameters import Vector
 
 
-class State(NamedTuple):
+class BodyState(NamedTuple):
     """The hull's state; also its time derivative, in the same units per second."""
 
     position: Vector
@@ -20,7 +20,7 @@ class State(NamedTuple):
     """rad/s, in body axes."""
 
 
-def at_rest(depth: float, north: float = 0.0, east: float = 0.0, heading: float = 0.0) -> State:
+def at_rest(depth: float, north: float = 0.0, east: float = 0.0, heading: float = 0.0) -> BodyState:
     """Upright and at rest at this place (m), looking this far (rad) from north to east."""
     attitude = (cos(heading / 2), 0.0, 0.0, sin(heading / 2))
-    return State((north, east, depth), attitude, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return BodyState((north, east, depth), attitude, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

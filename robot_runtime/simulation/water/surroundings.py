@@ -83,7 +83,7 @@ class Trim:
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class StartPose:
     """Where the hull is at time 0, at rest. Raises ValueError beyond its limits."""
 
     north: float = 0.0
@@ -122,7 +122,7 @@ class Basin:
             _limit("a pool's width", self.width, SIDE_MIN, SIDE_MAX, "m")
 
 
-def check_start(start: Start, basin: Basin, size: Vector) -> None:
+def check_start(start: StartPose, basin: Basin, size: Vector) -> None:
     """Raises ValueError where a hull of this size (m) would be in the floor or in a wall."""
     reach = max(size) / 2
     if start.down is not None and start.down + size[2] / 2 > basin.depth:
@@ -146,4 +146,4 @@ def _limit(name: str, value: float, least: float, most: float, unit: str) -> Non
         raise ValueError(f"{name} is {value:g} {unit}; it must be between {least:g} and {most:g}")
 
 
-FLOATING = Start()
+FLOATING = StartPose()

@@ -3,7 +3,7 @@
 from math import cos, exp, pi, sin, sqrt, tanh
 from typing import NamedTuple
 
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import Basin, Current, Waves
 
 BREAKING = 0.142
@@ -37,7 +37,7 @@ class World:
     breaks the surface it makes waves of its own, which takes energy. Fins work everywhere alike.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: SimulationParameters) -> None:
         self._gravity = parameters.gravity
         self._specific_weight = parameters.density * parameters.gravity
         self._surface_pressure = parameters.surface_pressure

@@ -9,7 +9,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Event, Line
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.scenarios.live_setup import Before, Surroundings
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import Run, RunCancelled, RunFailed
@@ -195,7 +195,7 @@ class Live:
         reasons = []
         if not self._settings.emulated_board and any(isinstance(one, Line) for one in scenario.events):
             reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
-        if scenario.robot != Parameters():
+        if scenario.robot != SimulationParameters():
             reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")
         state = self._watch.state() or {}
         rate = state.get("control_rate", scenario.control.rate)

@@ -10,7 +10,7 @@ from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import Refused
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Event, Line
-from robot_runtime.simulation.boards.emulator_process import Board, BoardError
+from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
 from server.stream.bridge import Bridge, RuntimeSilent
 
@@ -165,7 +165,7 @@ class Surroundings:
 
 
 def _order(socket: Path, command: str) -> None:
-    with Board(socket) as board:
+    with EmulatorClient(socket) as board:
         board.order(command)
 
 

@@ -9,8 +9,8 @@ from robot_runtime.contract.documents import Event, Mode
 from robot_runtime.contract.packets import Navigation
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.experiments.scenario.rig import MakeBoard, Stage
-from robot_runtime.experiments.scenario.run import PRELUDE, _Performance
+from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
+from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
 from robot_runtime.simulation.water.requests import changes
 from tests.runtime.experiments.scenario.staging import Told, document
 
@@ -25,7 +25,7 @@ class Flight:
 
     def __init__(self, board: str | MakeBoard = "host", more: str = "") -> None:
         make = boards()[board] if isinstance(board, str) else board
-        self.stage = Stage(read_scenario(document(3600, more=more)), make, lambda _: None, PRELUDE)
+        self.stage = ScenarioRig(read_scenario(document(3600, more=more)), make, lambda _: None, PRELUDE)
         self.robot, self.clock = self.stage.robot, self.stage.clock
         self.supervisor, self.board = self.robot.supervisor, self.stage.board
         self.events: list[Event] = []
@@ -35,7 +35,7 @@ class Flight:
         self._sequence = 0
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
-        self._performance = _Performance(self.stage, Told(), lambda: False)
+        self._performance = _RunLoop(self.stage, Told(), lambda: False)
         self.robot.bus.on_document("event", self._hear)
         self.robot.bus.on_row(
             "navigation", lambda _, time, record: self.sent.append((time, Navigation.from_bytes(record)))

@@ -11,7 +11,7 @@ from robot_runtime.control.attitude import euler_angles, wrap_angle
 from robot_runtime.control.controllers import Tilt
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.experiments.scenario.run import ScenarioRun
 
 SECONDS = 0.1
 TURN, END = 15.0, 40.0
@@ -99,7 +99,7 @@ class _Truths:
 
 def test_in_the_simulated_water_it_turns_and_stays_while_the_depth_is_held() -> None:
     truths = _Truths()
-    Run(read_scenario(SWIM), boards()["host"], truths).perform(lambda _: {})
+    ScenarioRun(read_scenario(SWIM), boards()["host"], truths).perform(lambda _: {})
     after = [(time, heading, depth) for time, heading, depth in truths.taken if TURN <= time < END]
     assert abs(degrees(after[0][1])) < 10
     assert all(abs(depth - DEPTH) < 0.1 for _, _, depth in after)

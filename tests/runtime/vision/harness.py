@@ -6,7 +6,7 @@ from typing import NamedTuple
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Box
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange, VisionSettings
-from robot_runtime.vision.camera import Camera, CameraError, Frame
+from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
 from robot_runtime.vision.detector import Detector
@@ -55,10 +55,10 @@ class ShakyCamera(Camera):
             raise self.failure
         return self
 
-    def read(self) -> Frame:
+    def read(self) -> CameraFrame:
         if self.failure is not None:
             raise self.failure
-        return Frame(self.picture, self.clock.now())
+        return CameraFrame(self.picture, self.clock.now())
 
     def close(self) -> None:
         self.closed += 1

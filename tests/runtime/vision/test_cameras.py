@@ -13,7 +13,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.card_camera import ATTENUATION, CARD_DISTANCE, NOISE, CardCamera
-from robot_runtime.vision.cards import Card, make_card
+from robot_runtime.vision.cards import CameraCard, make_card
 from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
@@ -47,7 +47,7 @@ class TestCardCamera:
         assert picture[:40].mean() > 1.3 * picture[-40:].mean()
 
     def test_water_takes_red_from_a_card(self) -> None:
-        white = Card("white", (255, 255, 255))
+        white = CameraCard("white", (255, 255, 255))
         camera = CardCamera(320, 240, SimulatedClock(), lambda: white)
         blue, green, red = camera.draw(0.0, white)[110:130, 150:170].reshape(-1, 3).mean(axis=0)
         assert blue > green > red

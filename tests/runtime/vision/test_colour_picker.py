@@ -11,13 +11,13 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange
 from robot_runtime.errors import Refused
 from robot_runtime.vision.camera import CameraError
-from robot_runtime.vision.colour_picker import Place, propose, range_of
+from robot_runtime.vision.colour_picker import PickPoint, propose, range_of
 from robot_runtime.vision.node import VisionNode
 from robot_runtime.vision.patches import find_colour
 from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import ShakyCamera, drawn, find
 
-MIDDLE = Place(x=0.5, y=0.5)
+MIDDLE = PickPoint(x=0.5, y=0.5)
 
 
 def circle(low: int, span: int) -> list[int]:
@@ -95,13 +95,13 @@ def test_several_colours_are_not_picked_as_one() -> None:
     picture = one_colour(20, 20, 220)
     picture[:, 80:] = (20, 220, 20)
     with pytest.raises(Refused, match="several colours"):
-        propose(picture, Place(x=0.5, y=0.5, radius=0.1))
-    assert propose(picture, Place(x=0.2, y=0.5)).share == pytest.approx(0.5)
+        propose(picture, PickPoint(x=0.5, y=0.5, radius=0.1))
+    assert propose(picture, PickPoint(x=0.2, y=0.5)).share == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("corner", [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
 def test_the_edges_of_the_picture_can_be_picked(corner: tuple[float, float]) -> None:
-    proposal = propose(one_colour(20, 220, 220), Place(x=corner[0], y=corner[1]))
+    proposal = propose(one_colour(20, 220, 220), PickPoint(x=corner[0], y=corner[1]))
     assert proposal.share == 1.0
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from robot_runtime.experiments.comm_test.builder import SKETCHES
 from robot_runtime.experiments.comm_test.document import CommTest, read_document
 from robot_runtime.experiments.comm_test.lab import EmulatedLab
-from robot_runtime.experiments.comm_test.line import Stop
+from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.results import Direction
 from server import VERSION
 
@@ -40,7 +40,7 @@ def main() -> int:
     unknown = [name for name in names if name not in SAMPLES]
     if unknown:
         parser.error(f"no sample {', '.join(unknown)}; there are {', '.join(SAMPLES)}")
-    lab = EmulatedLab(BUILD, Stop())
+    lab = EmulatedLab(BUILD, Cancellation())
     for name in names or SAMPLES:
         began = time.monotonic()
         run = _run(name, lab)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.experiments.comm_test import builder as module
-from robot_runtime.experiments.comm_test.builder import Builder, BuildError
+from robot_runtime.experiments.comm_test.builder import Builder, SketchBuildError
 from tests.board.rig import ROOT
 from tests.runtime.experiments.comm_test.conftest import make_test
 
@@ -58,7 +58,7 @@ def test_another_source_is_another_firmware(
     (sketch / "counts.h").write_text("#error broken\n")
     broken = Builder(tmp_path / "made")
     assert broken.firmware_hash != builder.firmware_hash
-    with pytest.raises(BuildError, match="broken"):
+    with pytest.raises(SketchBuildError, match="broken"):
         broken.build(make_test(), 9600, 0.0)
     assert list((tmp_path / "made").iterdir()) == []
 
@@ -73,12 +73,12 @@ def test_another_library_is_another_firmware(
     (library / "link/baud.h").write_text("#error broken\n")
     broken = Builder(tmp_path / "made")
     assert broken.firmware_hash != builder.firmware_hash
-    with pytest.raises(BuildError, match="broken"):
+    with pytest.raises(SketchBuildError, match="broken"):
         broken.build(make_test(framing="robot"), 9600, 0.0)
     broken.build(make_test(framing="plain"), 9600, 0.0)
 
 
 def test_a_compiler_that_is_not_there_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(BuildError, match="install the package gcc-avr"):
+    with pytest.raises(SketchBuildError, match="install the package gcc-avr"):
         Builder(tmp_path)

@@ -9,7 +9,7 @@ import pytest
 
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, chip_baud, read_document
 from robot_runtime.experiments.comm_test.faults import Faults
-from robot_runtime.experiments.comm_test.results import Cell
+from robot_runtime.experiments.comm_test.results import GridCell
 
 ROOT = Path(__file__).resolve().parents[4]
 THESIS = (ROOT / "firmware/examples/comm_test/figure10.json").read_text()
@@ -32,10 +32,10 @@ def test_the_thesis_s_own_example_is_75_cells() -> None:
     assert (test.framing, test.direction, test.expected) == ("thesis", "to_board", 100)
     assert len(test.cells) == 75
     assert test.cells[:4] == [
-        Cell(1200, 0.0, 0.0),
-        Cell(1200, 0.0, 0.5),
-        Cell(1200, 0.0, 1.0),
-        Cell(1200, 0.1, 0.0),
+        GridCell(1200, 0.0, 0.0),
+        GridCell(1200, 0.0, 0.5),
+        GridCell(1200, 0.0, 1.0),
+        GridCell(1200, 0.1, 0.0),
     ]
 
 

@@ -12,11 +12,11 @@ from robot_runtime.experiments.comm_test.link_end import GREETING_PATIENCE, esti
 from robot_runtime.experiments.comm_test.results import CellResult, Counts
 from robot_runtime.experiments.comm_test.runner import Runner, run_cell
 from robot_runtime.link.session import SILENCE
-from robot_runtime.simulation.boards.emulator_process import Board, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
 from tests.runtime.experiments.comm_test.conftest import Run, make_test
 
 DIRECTIONS = ("to_board", "to_host", "both")
-Harm = Callable[[Board], None]
+Harm = Callable[[EmulatorClient], None]
 RunHarmed = Callable[..., CellResult]
 
 
@@ -42,7 +42,9 @@ def run_harmed(builder: Builder, program: Path, tmp_path: Path) -> RunHarmed:
         (cell,) = test.cells
         product = builder.build(test, baud_of_sketch, cell.arduino_delay)
         with (
-            BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+            EmulatorProcess(
+                program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused"
+            ) as process,
             process.connect() as board,
             HarmedLine(board, process.tty, cell.baud) as line,
         ):
@@ -85,7 +87,7 @@ def test_a_slow_sketch_loses_nothing(run: Run, direction: str) -> None:
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_a_bad_line_costs_time_and_no_number(run_harmed: RunHarmed, direction: str) -> None:
-    def harm(board: Board) -> None:
+    def harm(board: EmulatorClient) -> None:
         board.seed_line(1)
         for way in ("to_board", "from_board"):
             board.disturb_line(way, "bit_errors", 1e-3)
@@ -140,7 +142,7 @@ def test_a_line_that_is_cut_for_good_is_given_up_loudly(run_harmed: RunHarmed) -
 
 
 def test_a_line_that_is_cut_for_a_while_loses_nothing(run_harmed: RunHarmed) -> None:
-    def harm(board: Board) -> None:
+    def harm(board: EmulatorClient) -> None:
         for way in ("to_board", "from_board"):
             board.stall_line(way, 3.0)
 

@@ -12,7 +12,7 @@ from robot_runtime.experiments.comm_test.reset_pin import ResetError, find_reset
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER
 from robot_runtime.link.port import Port
 from robot_runtime.link.session import LinkSession, SessionStage
-from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from tests.board.host import BAUD
 from tests.board.rig import ROOT, build, wait_for
 from tests.runtime.experiments.comm_test.conftest import make_test
@@ -23,32 +23,32 @@ ROBOT = ROOT / "build/firmware/robot.hex"
 
 
 @pytest.fixture
-def arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+def arduino(program: Path, tmp_path: Path) -> Iterator[EmulatorProcess]:
     """A board with the robot's firmware and a boot loader; opening its port resets it, as on many boards."""
     with start_board(program, tmp_path, "--reset-on-open") as process:
         yield process
 
 
 @pytest.fixture
-def bare_arduino(program: Path, tmp_path: Path) -> Iterator[BoardProcess]:
+def bare_arduino(program: Path, tmp_path: Path) -> Iterator[EmulatorProcess]:
     """The same, whose reset pin has to be pulled, as on the robot."""
     with start_board(program, tmp_path) as process:
         yield process
 
 
-def start_board(program: Path, folder: Path, *options: str) -> BoardProcess:
+def start_board(program: Path, folder: Path, *options: str) -> EmulatorProcess:
     build(ROOT / "firmware", "robot")
     bootloader = ("--bootloader", str(program.parent / BOOTLOADER))
-    return BoardProcess(
+    return EmulatorProcess(
         program, ROBOT.with_suffix(".elf"), folder / "tty", folder / "socket", *bootloader, *options
     )
 
 
-def place(arduino: BoardProcess, reset: str = "dtr") -> tuple[str, ...]:
+def place(arduino: EmulatorProcess, reset: str = "dtr") -> tuple[str, ...]:
     return ("--port", str(arduino.tty), "--reset", reset)
 
 
-def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
+def check_restored(arduino: EmulatorProcess, reset: str = "dtr") -> None:
     """The robot's firmware is uploaded, and answers a greeting once the boot loader has waited in vain."""
     assert run_lab(b"", "--restore", str(ROBOT), *place(arduino, reset)) == (0, [])
     session = LinkSession(1, BAUD)
@@ -60,7 +60,7 @@ def check_restored(arduino: BoardProcess, reset: str = "dtr") -> None:
             assert session.stage is not SessionStage.REFUSED
 
 
-def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:
+def test_cells_run_and_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     faulty = make_test(framing="plain", to_val=21, expected=20, faults=Faults(drop=0.1))
     status, events = run_lab(write_document(SHORT, faulty), "--where", "robot", *place(arduino))
     assert (status, [event["state"] for event in events if event["event"] == "ended"]) == (
@@ -74,7 +74,7 @@ def test_cells_run_and_the_firmware_comes_back(arduino: BoardProcess) -> None:
     check_restored(arduino)
 
 
-def test_a_board_whose_reset_pin_is_pulled(bare_arduino: BoardProcess) -> None:
+def test_a_board_whose_reset_pin_is_pulled(bare_arduino: EmulatorProcess) -> None:
     reset = f"board:{bare_arduino.socket}"
     linked = make_test(framing="robot", direction="both", to_val=21, expected=20)
     status, events = run_lab(write_document(linked), "--where", "robot", *place(bare_arduino, reset))
@@ -82,7 +82,7 @@ def test_a_board_whose_reset_pin_is_pulled(bare_arduino: BoardProcess) -> None:
     check_restored(bare_arduino, reset)
 
 
-def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) -> None:
+def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: EmulatorProcess) -> None:
     slow = make_test(delay=(10.0,))
     with lab(write_document(slow), "--where", "robot", *place(arduino)) as process:
         read_until(process.stdout, event="phase", phase="run")
@@ -91,7 +91,7 @@ def test_cancelled_in_the_middle_the_firmware_comes_back(arduino: BoardProcess) 
     check_restored(arduino)
 
 
-def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: BoardProcess) -> None:
+def test_killed_in_the_middle_of_an_upload_the_firmware_can_be_restored(arduino: EmulatorProcess) -> None:
     with lab(write_document(SHORT), "--where", "robot", *place(arduino)) as process:
         read_until(process.stdout, event="phase", phase="upload")
         with arduino.connect() as board:

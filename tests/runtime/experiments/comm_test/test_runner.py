@@ -7,9 +7,9 @@ import pytest
 
 from robot_runtime.experiments.comm_test.builder import Builder
 from robot_runtime.experiments.comm_test.emulated_line import EmulatedLine
-from robot_runtime.experiments.comm_test.results import Cell, Counts
+from robot_runtime.experiments.comm_test.results import Counts, GridCell
 from robot_runtime.experiments.comm_test.runner import Runner, run_cell
-from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from tests.runtime.experiments.comm_test.conftest import Run, make_test
 
 RING = 63
@@ -79,10 +79,10 @@ def test_the_same_test_gives_the_same_results_however_many_cells_run_at_once(
 def test_a_board_that_does_not_understand_is_a_lost_result(
     builder: Builder, program: Path, tmp_path: Path
 ) -> None:
-    test, cell = make_test(baud_rate=(9600,)), Cell(9600, 0.0, 0.0)
+    test, cell = make_test(baud_rate=(9600,)), GridCell(9600, 0.0, 0.0)
     product = builder.build(test, 19200, 0.0)
     with (
-        BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+        EmulatorProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
         process.connect() as board,
         EmulatedLine(board, process.tty, cell.baud) as line,
     ):

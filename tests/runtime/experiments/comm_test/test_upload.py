@@ -8,15 +8,15 @@ import pytest
 from robot_runtime.experiments.comm_test import upload as module
 from robot_runtime.experiments.comm_test.builder import Builder
 from robot_runtime.experiments.comm_test.emulated_line import EmulatedLine
-from robot_runtime.experiments.comm_test.line import Stop, StoppedError
-from robot_runtime.experiments.comm_test.results import Cell, CellResult
+from robot_runtime.experiments.comm_test.line import Cancellation, StoppedError
+from robot_runtime.experiments.comm_test.results import CellResult, GridCell
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER, run_cell
 from robot_runtime.experiments.comm_test.upload import UploadError, avrdude_version, upload_paused
-from robot_runtime.simulation.boards.emulator_process import Board, BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient, EmulatorProcess
 from tests.runtime.experiments.comm_test.conftest import make_test
 
-TEST, CELL = make_test(framing="robot"), Cell(115200, 0.0, 0.0)
-Empty = tuple[BoardProcess, Board]
+TEST, CELL = make_test(framing="robot"), GridCell(115200, 0.0, 0.0)
+Empty = tuple[EmulatorProcess, EmulatorClient]
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def empty(program: Path, tmp_path: Path) -> Iterator[Empty]:
     """A board with nothing but its boot loader, and no time that passes."""
     options = ("--bootloader", str(program.parent / BOOTLOADER), "--paused")
     with (
-        BoardProcess(program, None, tmp_path / "tty", tmp_path / "socket", *options) as process,
+        EmulatorProcess(program, None, tmp_path / "tty", tmp_path / "socket", *options) as process,
         process.connect() as board,
     ):
         yield process, board
@@ -43,12 +43,12 @@ def test_avrdude_says_which_it_is() -> None:
 def test_how_an_upload_went_leaves_no_trace(builder: Builder, empty: Empty) -> None:
     process, board = empty
     product = builder.build(TEST, CELL.baud, 0.0)
-    upload_paused(product.hex, process.tty, board, Stop())
+    upload_paused(product.hex, process.tty, board, Cancellation())
     first = run_there(empty)
     assert first.rate == 1.0
-    upload_paused(product.hex, process.tty, board, Stop())
+    upload_paused(product.hex, process.tty, board, Cancellation())
     board.run(0.3)  # the sketch runs, and counts its start in the EEPROM
-    upload_paused(product.hex, process.tty, board, Stop())
+    upload_paused(product.hex, process.tty, board, Cancellation())
     again = run_there(empty)
     assert again == first
 
@@ -59,7 +59,7 @@ def test_a_host_that_thinks_for_long_finds_the_boot_loader_waiting(
     # Much longer between two looks than between two of avrdude's commands.
     monkeypatch.setattr(module, "LOOK", 0.05)
     process, board = empty
-    upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Stop())
+    upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Cancellation())
     assert board.stats()["time"] < 3.0
     assert run_there(empty).rate == 1.0
 
@@ -69,17 +69,17 @@ def test_a_board_without_a_boot_loader_is_told_in_avrdudes_words(
 ) -> None:
     product = builder.build(TEST, CELL.baud, 0.0)
     with (
-        BoardProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
+        EmulatorProcess(program, product.elf, tmp_path / "tty", tmp_path / "socket", "--paused") as process,
         process.connect() as board,
         pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: .*not in sync") as told,
     ):
-        upload_paused(product.hex, process.tty, board, Stop())
+        upload_paused(product.hex, process.tty, board, Cancellation())
     assert "\n" not in str(told.value)
 
 
 def test_an_upload_can_be_cancelled(builder: Builder, empty: Empty) -> None:
     process, board = empty
-    stop = Stop()
+    stop = Cancellation()
     stop.set()
     with pytest.raises(StoppedError):
         upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, stop)

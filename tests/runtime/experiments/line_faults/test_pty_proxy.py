@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 import serial
 
-from robot_runtime.experiments.line_faults.faults import KINDS, Channel, Kind, Recurrence
-from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, Direction, FaultLine, obey
+from robot_runtime.experiments.line_faults.faults import KINDS, FaultyChannel, Kind, Recurrence
+from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, Direction, PtyProxy, obey
 from robot_runtime.link.port import PortError
 from tests.runtime.board_end import DEADLINE, BoardEnd
 
@@ -36,17 +36,17 @@ def wrong_bits(sent: bytes, arrived: bytes) -> int:
 
 
 @pytest.fixture
-def channel() -> Channel:
-    return Channel("to_board", seed=1)
+def channel() -> FaultyChannel:
+    return FaultyChannel("to_board", seed=1)
 
 
-def test_a_clean_channel_harms_nothing(channel: Channel) -> None:
+def test_a_clean_channel_harms_nothing(channel: FaultyChannel) -> None:
     assert channel.carry(DATA) == DATA
     assert not any(channel.counts.values())
 
 
 @pytest.mark.parametrize("rate", [0.0005, 0.02, 0.5, 1.0])
-def test_as_many_bits_are_wrong_as_are_counted(channel: Channel, rate: float) -> None:
+def test_as_many_bits_are_wrong_as_are_counted(channel: FaultyChannel, rate: float) -> None:
     channel.disturb("bit_errors", rate)
     wrong = wrong_bits(DATA, channel.carry(DATA))
     assert wrong == channel.counts["bit_errors"]
@@ -54,7 +54,7 @@ def test_as_many_bits_are_wrong_as_are_counted(channel: Channel, rate: float) ->
     assert abs(wrong - rate * bits) <= 4 * (bits * rate * (1 - rate)) ** 0.5
 
 
-def test_dropped_bytes_are_missing(channel: Channel) -> None:
+def test_dropped_bytes_are_missing(channel: FaultyChannel) -> None:
     channel.disturb("drop", 0.1)
     arrived = channel.carry(DATA)
     assert len(DATA) - len(arrived) == channel.counts["drops"]
@@ -63,7 +63,7 @@ def test_dropped_bytes_are_missing(channel: Channel) -> None:
 
 
 @pytest.mark.parametrize(("kind", "count"), [("double", "doubles"), ("insert", "inserts")])
-def test_there_are_more_bytes_as_counted(channel: Channel, kind: Kind, count: str) -> None:
+def test_there_are_more_bytes_as_counted(channel: FaultyChannel, kind: Kind, count: str) -> None:
     channel.disturb(kind, 0.1)
     arrived = channel.carry(DATA)
     assert len(arrived) - len(DATA) == channel.counts[count]
@@ -71,12 +71,12 @@ def test_there_are_more_bytes_as_counted(channel: Channel, kind: Kind, count: st
     assert is_part(DATA, arrived)
 
 
-def test_doubled_bytes_come_twice_in_a_row(channel: Channel) -> None:
+def test_doubled_bytes_come_twice_in_a_row(channel: FaultyChannel) -> None:
     channel.disturb("double", 1.0)
     assert channel.carry(b"abc") == b"aabbcc"
 
 
-def test_bursts_hit_half_of_their_bits(channel: Channel) -> None:
+def test_bursts_hit_half_of_their_bits(channel: FaultyChannel) -> None:
     channel.burst(0.0005, 40)
     zeros = bytes(len(DATA))
     arrived = channel.carry(zeros)
@@ -90,14 +90,14 @@ def test_bursts_hit_half_of_their_bits(channel: Channel) -> None:
     assert groups > 0.8 * counts["bursts"]
 
 
-def test_a_dropped_byte_is_not_doubled_as_well(channel: Channel) -> None:
+def test_a_dropped_byte_is_not_doubled_as_well(channel: FaultyChannel) -> None:
     channel.disturb("drop", 1.0)
     channel.disturb("double", 1.0)
     assert channel.carry(b"abc") == b""
     assert (channel.counts["drops"], channel.counts["doubles"]) == (3, 0)
 
 
-def test_a_bit_in_a_burst_is_harmed_by_nothing_else(channel: Channel) -> None:
+def test_a_bit_in_a_burst_is_harmed_by_nothing_else(channel: FaultyChannel) -> None:
     channel.burst(1.0, 100)
     channel.disturb("bit_errors", 1.0)
     wrong = wrong_bits(DATA, channel.carry(DATA))
@@ -105,7 +105,7 @@ def test_a_bit_in_a_burst_is_harmed_by_nothing_else(channel: Channel) -> None:
     assert channel.counts["bit_errors"] == 0
 
 
-def test_a_cut_channel_loses_everything(channel: Channel) -> None:
+def test_a_cut_channel_loses_everything(channel: FaultyChannel) -> None:
     channel.cut(True)
     assert channel.carry(b"lost") == b""
     channel.cut(False)
@@ -114,7 +114,7 @@ def test_a_cut_channel_loses_everything(channel: Channel) -> None:
 
 
 def everything(seed: int, portion: int, name: str = "to_board") -> bytes:
-    channel = Channel(name, seed)
+    channel = FaultyChannel(name, seed)
     for kind in KINDS:
         channel.disturb(kind, 0.01)
     channel.burst(0.001, 30)
@@ -128,7 +128,7 @@ def test_a_seed_decides_and_the_portions_do_not() -> None:
     assert everything(1, len(DATA), "from_board") != whole
 
 
-def test_seeding_anew_repeats_it(channel: Channel) -> None:
+def test_seeding_anew_repeats_it(channel: FaultyChannel) -> None:
     channel.disturb("drop", 0.1)
     channel.seed(9)
     first = channel.carry(DATA)
@@ -136,7 +136,7 @@ def test_seeding_anew_repeats_it(channel: Channel) -> None:
     assert channel.carry(DATA) == first
 
 
-def test_clean_ends_it_all_and_the_counts_stay(channel: Channel) -> None:
+def test_clean_ends_it_all_and_the_counts_stay(channel: FaultyChannel) -> None:
     channel.disturb("drop", 1.0)
     channel.burst(1.0, 10_000)
     channel.carry(b"lost")
@@ -163,7 +163,7 @@ class Ends:
     def __init__(self, folder: Path) -> None:
         self.far = BoardEnd(folder / "port")
         self.link = folder / "link"
-        self.line = FaultLine(str(folder / "port"), 250_000, self.link, seed=1)
+        self.line = PtyProxy(str(folder / "port"), 250_000, self.link, seed=1)
         self.host = serial.Serial(str(self.link), 250_000, timeout=0)
 
     def send(self, direction: Direction, data: bytes) -> None:
@@ -206,7 +206,7 @@ def test_it_carries_every_byte_as_it_is(ends: Ends, direction: Direction) -> Non
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_it_harms_one_direction_as_its_channel_does(ends: Ends, direction: Direction) -> None:
     ends.line.channels[direction].disturb("bit_errors", 0.01)
-    twin = Channel(direction, seed=1)
+    twin = FaultyChannel(direction, seed=1)
     twin.disturb("bit_errors", 0.01)
     expected = twin.carry(DATA[:3000])
     ends.send(direction, DATA[:3000])
@@ -260,14 +260,14 @@ def test_what_is_in_the_way_is_kept(tmp_path: Path) -> None:
     end = BoardEnd(tmp_path / "port")
     (tmp_path / "file").write_text("kept")
     with pytest.raises(PortError, match=r"cannot make .*file"):
-        FaultLine(str(tmp_path / "port"), 250_000, tmp_path / "file")
+        PtyProxy(str(tmp_path / "port"), 250_000, tmp_path / "file")
     assert (tmp_path / "file").read_text() == "kept"
     end.vanish()
 
 
 def test_a_port_that_is_none_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PortError, match="cannot open /nowhere"):
-        FaultLine("/nowhere", 250_000, tmp_path / "link")
+        PtyProxy("/nowhere", 250_000, tmp_path / "link")
 
 
 def test_commands_do_as_the_boards(ends: Ends) -> None:
@@ -330,7 +330,7 @@ def test_it_runs_as_a_program(tmp_path: Path) -> None:
     end = BoardEnd(tmp_path / "port")
     options = ("--seed", "1", "--bit-errors", "0.01", "--direction", "to_board")
     with run(tmp_path, *options) as program:
-        twin = Channel("to_board", seed=1)
+        twin = FaultyChannel("to_board", seed=1)
         twin.disturb("bit_errors", 0.01)
         host = os.open(tmp_path / "link", os.O_RDWR | os.O_NOCTTY)
         os.write(host, DATA[:1000])

@@ -8,7 +8,7 @@ from typing import Any
 from robot_runtime.contract.topics import Kind, read_blocks, read_rows
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
-from robot_runtime.experiments.scenario.run import Run
+from robot_runtime.experiments.scenario.run import ScenarioRun
 
 ROOT = Path(__file__).resolve().parents[4]
 POOL = 'kind = "pool"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0'
@@ -74,5 +74,5 @@ def perform(scenario: str | Scenario, board: str = "host", told: Told | None = N
     """Run it to its end."""
     told = told or Told()
     read = read_scenario(scenario) if isinstance(scenario, str) else scenario
-    Run(read, boards()[board], told).perform(lambda firmware: {"firmware": str(len(firmware))})
+    ScenarioRun(read, boards()[board], told).perform(lambda firmware: {"firmware": str(len(firmware))})
     return told

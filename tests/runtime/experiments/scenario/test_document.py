@@ -7,8 +7,8 @@ import pytest
 from robot_runtime.contract.vision_settings import COLOURS
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
 from robot_runtime.experiments.scenario.events import EVENTS, Arm, Card, Colour, Line, WavesChange
-from robot_runtime.simulation.water.parameters import Parameters
-from robot_runtime.simulation.water.surroundings import Start, Trim
+from robot_runtime.simulation.water.parameters import SimulationParameters
+from robot_runtime.simulation.water.surroundings import StartPose, Trim
 
 WHOLE = """
 name = "whole"
@@ -113,11 +113,11 @@ def test_everything_is_read() -> None:
     assert scenario.seed == 4294967295
     assert (scenario.scene.basin.length, scenario.scene.beacons) == (6.0, ((1.0, 2.0, 0.5),))
     assert (scenario.scene.targets[0].position, scenario.scene.targets[0].size) == ((2.0, 0.0, 0.8), 0.2)
-    assert scenario.start == Start(north=-1.0, down=0.5, heading=1.57)
+    assert scenario.start == StartPose(north=-1.0, down=0.5, heading=1.57)
     assert scenario.water.current.turning == 0.01
     assert scenario.trim == Trim(1.01, 0.001, 0.0, 0.02)
     assert (scenario.robot.mass, scenario.robot.pressure.noise) == (3.2, 10)
-    assert scenario.robot.pressure.walk == Parameters().pressure.walk
+    assert scenario.robot.pressure.walk == SimulationParameters().pressure.walk
     assert scenario.control.gains == {"pid": {"kp": 4.0}}
     assert {one.do for one in scenario.events} == {one.do for one in EVENTS} == ALL_EVENTS.keys()
     assert all(one.words for one in scenario.events)
@@ -125,7 +125,7 @@ def test_everything_is_read() -> None:
 
 def test_what_is_left_out_is_as_the_robot_is() -> None:
     scenario = read_scenario(BARE)
-    assert (scenario.robot, scenario.trim, scenario.start.down) == (Parameters(), None, None)
+    assert (scenario.robot, scenario.trim, scenario.start.down) == (SimulationParameters(), None, None)
     assert (scenario.scene.beacons, scenario.water.waves.amplitude, scenario.events) == ((), 0, ())
 
 

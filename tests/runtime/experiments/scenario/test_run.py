@@ -16,7 +16,7 @@ import pytest
 
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.experiments.scenario.run import AFTERWARDS, Run
+from robot_runtime.experiments.scenario.run import AFTERWARDS, ScenarioRun
 from robot_runtime.simulation.scene.availability import missing
 from tests.runtime.experiments.scenario.staging import ROOT, Told, document, perform
 
@@ -184,7 +184,7 @@ def test_the_rendered_scene_is_seen() -> None:
 
 def test_a_cancelled_run_disarms_and_ends_in_order() -> None:
     told = Told()
-    run = Run(read_scenario(document(60, ARM)), boards()["host"], told)
+    run = ScenarioRun(read_scenario(document(60, ARM)), boards()["host"], told)
     told.on_event = lambda event: run.cancel() if event.get("time") == 3.0 else None
     run.perform(lambda _: {})
     assert told.ended["state"] == "cancelled"

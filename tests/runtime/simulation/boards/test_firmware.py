@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_runtime.simulation.boards.firmware import BuildError, build_firmware, firmware_path
+from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware, firmware_path
 
 BUILD = Path(__file__).resolve().parents[4] / "build"
 
@@ -28,7 +28,7 @@ def test_without_a_compiler_it_takes_what_is_there_or_says_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(BuildError, match=r"no firmware for 4800 baud .*Install make, gcc-avr"):
+    with pytest.raises(FirmwareBuildError, match=r"no firmware for 4800 baud .*Install make, gcc-avr"):
         build_firmware(tmp_path, 4800)
     product = firmware_path(tmp_path, 4800, ".elf")
     product.parent.mkdir(parents=True)
@@ -37,5 +37,5 @@ def test_without_a_compiler_it_takes_what_is_there_or_says_what_to_do(
 
 
 def test_what_the_compiler_refuses_is_told(tmp_path: Path) -> None:
-    with pytest.raises(BuildError, match=r"could not be built: .*2\.5 % off"):
+    with pytest.raises(FirmwareBuildError, match=r"could not be built: .*2\.5 % off"):
         build_firmware(tmp_path, 460_800)

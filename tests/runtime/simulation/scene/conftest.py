@@ -8,12 +8,12 @@ import pytest
 
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 
 if TYPE_CHECKING:
-    from robot_runtime.simulation.scene.scene import Scene
+    from robot_runtime.simulation.scene.scene import SceneRenderer
 
-Make = Callable[[Contents], "Scene"]
+Make = Callable[[Contents], "SceneRenderer"]
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def scene() -> Iterator[Make]:
     problem = missing()
     if problem:
         pytest.skip(problem)
-    from robot_runtime.simulation.scene.scene import Scene
+    from robot_runtime.simulation.scene.scene import SceneRenderer
 
     with ExitStack() as stack:
-        yield lambda contents: stack.enter_context(Scene(contents, Parameters()))
+        yield lambda contents: stack.enter_context(SceneRenderer(contents, SimulationParameters()))

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from robot_runtime.contract.documents import Truth
-from robot_runtime.simulation.scene.contents import Contents, Place, Target
+from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
 from robot_runtime.simulation.scene.water import Kind
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.surroundings import Basin
@@ -30,7 +30,7 @@ def truth(
 
 def open_water(*targets: Target, kind: Kind = "pool", turbidity: float = 0.0) -> Contents:
     """Deep water with nothing else in it; a pool, unless it is said, whose walls are far away."""
-    place = Place(kind=kind, turbidity=turbidity)
+    place = SceneWater(kind=kind, turbidity=turbidity)
     return Contents(place=place, basin=Basin(40.0), beacons=(), targets=targets)
 
 

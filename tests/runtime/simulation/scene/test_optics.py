@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from robot_runtime.simulation.scene.optics import Look
-from robot_runtime.simulation.scene.water import CLEAN, TURBIDITY_ATTENUATION, Water, water
+from robot_runtime.simulation.scene.optics import UnderwaterOptics
+from robot_runtime.simulation.scene.water import CLEAN, TURBIDITY_ATTENUATION, WaterOptics, water
 
 LEVEL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 WIDTH, HEIGHT = 64, 48
@@ -12,12 +12,12 @@ WIDTH, HEIGHT = 64, 48
 
 @pytest.mark.parametrize("distance", [0.1, 1.0, 3.4, 20.0])
 def test_a_wall_looks_as_the_formula_says(distance: float) -> None:
-    seen = Water((0.06, 0.09, 0.6), (150.0, 128.0, 30.0), 0.05, caustics=0.0)
+    seen = WaterOptics((0.06, 0.09, 0.6), (150.0, 128.0, 30.0), 0.05, caustics=0.0)
     paint = (20, 190, 245)
     picture = np.full((HEIGHT, WIDTH, 3), paint, np.uint8)
     # Straight ahead, where distance and depth are the same, and up and down cancel out.
     wall = np.full((HEIGHT, WIDTH), distance, np.float32)
-    look = Look(WIDTH, HEIGHT, 1.0)
+    look = UnderwaterOptics(WIDTH, HEIGHT, 1.0)
     result = look.apply(picture, wall, seen, (0.0, 0.0, 5.0), LEVEL, 0.0, noise=0.0)
     kept = np.exp(-np.array(seen.attenuation) * distance)
     expected = np.array(paint) * kept + np.array(seen.glow) * (1 - kept)
@@ -25,10 +25,10 @@ def test_a_wall_looks_as_the_formula_says(distance: float) -> None:
 
 
 def test_noise_is_as_strong_as_said_and_of_its_time() -> None:
-    calm = Water((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, caustics=0.0)
+    calm = WaterOptics((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, caustics=0.0)
     picture = np.full((HEIGHT, WIDTH, 3), 128, np.uint8)
     near = np.ones((HEIGHT, WIDTH), np.float32)
-    look = Look(WIDTH, HEIGHT, 48.8)
+    look = UnderwaterOptics(WIDTH, HEIGHT, 48.8)
     first, same, other = (
         look.apply(picture, near, calm, (0.0, 0.0, 5.0), LEVEL, time, noise=4.0) for time in (1.0, 1.0, 1.05)
     )

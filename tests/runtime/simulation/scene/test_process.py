@@ -26,8 +26,8 @@ from robot_runtime.contract.topics import BY_NAME, Block, Kind, read_blocks, row
 from robot_runtime.errors import NoAnswer, Refused
 from robot_runtime.simulation.scene import process as process_module
 from robot_runtime.simulation.scene.availability import missing
-from robot_runtime.simulation.scene.process import Process
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.scene.process import SceneProcess
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -43,7 +43,7 @@ SLOW = 30.0
 class Ends:
     """The scene's process, and the other end of its conversation."""
 
-    def __init__(self, process: Process, other: ZenohTransport) -> None:
+    def __init__(self, process: SceneProcess, other: ZenohTransport) -> None:
         self.process = process
         self.other = other
 
@@ -82,7 +82,7 @@ def conversation() -> Iterator[Ends]:
             ZenohTransport("turtle", [endpoint]) as other,
             ZenohTransport("turtle", connect=[endpoint]) as own,
         ):
-            process = Process(own, SteadyClock())
+            process = SceneProcess(own, SteadyClock())
             thread = threading.Thread(target=process.run)
             thread.start()
             try:
@@ -108,7 +108,7 @@ def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
 
 @rendered
 def test_floor_walls_and_beacons_are_the_simulators() -> None:
-    simulator = Simulator(Parameters(), 1)
+    simulator = Simulator(SimulationParameters(), 1)
     with conversation() as ends:
         for name, change in changes(simulator).items():
             ends.other.answer(f"simulator/{name}", change)

@@ -9,8 +9,8 @@ import pytest
 from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS, WHITE
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.simulation.scene.contents import Contents, Place, Target
-from robot_runtime.simulation.scene.view import View
+from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
+from robot_runtime.simulation.scene.view import ObserverView
 from robot_runtime.simulation.scene.water import Kind
 from robot_runtime.simulation.water.surroundings import Basin
 from robot_runtime.vision.detector import Detector
@@ -158,8 +158,8 @@ def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
     one, other = scene(Contents()), scene(Contents())
     first = one.render_camera(3.0, pose, *SIZE)
     one.render_camera(4.0, truth((0.0, 0.0, 0.6)), *SIZE, PAINTS["red"])
-    one.fill(Contents(place=Place(kind="pool"), basin=Basin(2.0, 8.0, 5.0)))
-    one.render_observer(4.0, pose, View(), *SIZE)
+    one.fill(Contents(place=SceneWater(kind="pool"), basin=Basin(2.0, 8.0, 5.0)))
+    one.render_observer(4.0, pose, ObserverView(), *SIZE)
     one.fill(Contents())
     assert one.render_camera(3.0, pose, *SIZE).tobytes() == first.tobytes()
     assert other.render_camera(3.0, pose, *SIZE).tobytes() == first.tobytes()
@@ -169,13 +169,13 @@ def test_the_same_truth_gives_the_same_bytes(scene: Make) -> None:
 @pytest.mark.parametrize(
     "view",
     [
-        View(),
-        View(name="side", azimuth=90.0, elevation=0.0),
-        View(name="top", azimuth=0.0, elevation=89.0, distance=1.2),
+        ObserverView(),
+        ObserverView(name="side", azimuth=90.0, elevation=0.0),
+        ObserverView(name="top", azimuth=0.0, elevation=89.0, distance=1.2),
     ],
     ids=lambda view: view.name,
 )
-def test_a_bystander_sees_the_robot_and_its_camera_does_not(scene: Make, view: View) -> None:
+def test_a_bystander_sees_the_robot_and_its_camera_does_not(scene: Make, view: ObserverView) -> None:
     one = scene(open_water())
     pose = truth(yaw=50.0)
     patch = find(one.render_observer(1.0, pose, view, 640, 360), "yellow", 0.001)
@@ -187,7 +187,7 @@ def test_a_bystander_sees_the_robot_and_its_camera_does_not(scene: Make, view: V
 
 
 def test_from_above_north_is_up_and_east_to_the_right(scene: Make) -> None:
-    view = View(name="top", azimuth=0.0, elevation=89.0, distance=3.0)
+    view = ObserverView(name="top", azimuth=0.0, elevation=89.0, distance=3.0)
     red = Target(colour="red", position=(0.5, 0.5, 5.0), size=0.3)
     patch = find(
         scene(open_water(red, kind="pool")).render_observer(1.0, truth(), view, 640, 360), "red", 0.001
@@ -200,7 +200,7 @@ def test_from_above_north_is_up_and_east_to_the_right(scene: Make) -> None:
 
 def test_fins_move(scene: Make) -> None:
     one = scene(open_water())
-    view = View(name="side", azimuth=90.0, elevation=10.0, distance=0.6)
+    view = ObserverView(name="side", azimuth=90.0, elevation=10.0, distance=0.6)
     turned = Truth(**{**asdict(truth()), "fins": (0.0, 0.0, 0.0, 1.0)})
     before = one.render_observer(1.0, truth(), view, 640, 360)
     after = one.render_observer(1.0, turned, view, 640, 360)

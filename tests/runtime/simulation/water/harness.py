@@ -5,12 +5,12 @@ from math import cos, pi, sin
 
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.fins import Fins, Four
-from robot_runtime.simulation.water.parameters import Parameters, Quality, Six, Vector
-from robot_runtime.simulation.water.state import State, at_rest
+from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Six, Vector
+from robot_runtime.simulation.water.state import BodyState, at_rest
 from robot_runtime.simulation.water.world import World
 
-PERFECT = Quality()
-QUIET = Parameters(
+PERFECT = SensorQuality()
+QUIET = SimulationParameters(
     pressure=PERFECT,
     gyroscope=PERFECT,
     accelerometer=PERFECT,
@@ -21,7 +21,7 @@ QUIET = Parameters(
 )
 """The default robot with sensors that tell just what they feel."""
 STILL: Four = (0.0, 0.0, 0.0, 0.0)
-NEUTRAL = Parameters(buoyancy=1.0, floor=1000.0)
+NEUTRAL = SimulationParameters(buoyancy=1.0, floor=1000.0)
 UNDAMPED = replace(NEUTRAL, damping_linear=(0.0,) * 6, damping_quadratic=(0.0,) * 6)
 
 
@@ -36,21 +36,21 @@ class SteadyPush:
         return self.wrench
 
 
-def pushed(parameters: Parameters, wrench: Six = (0.0,) * 6, depth: float = 100.0) -> Body:
+def pushed(parameters: SimulationParameters, wrench: Six = (0.0,) * 6, depth: float = 100.0) -> Body:
     """A body at rest under a steady push."""
     body = Body(parameters, SteadyPush(wrench), World(parameters))
     body.state = at_rest(depth)
     return body
 
 
-def finned(parameters: Parameters = NEUTRAL, depth: float = 100.0) -> Body:
+def finned(parameters: SimulationParameters = NEUTRAL, depth: float = 100.0) -> Body:
     """A body at rest with its fins."""
     body = Body(parameters, Fins(parameters), World(parameters))
     body.state = at_rest(depth)
     return body
 
 
-def drift(body: Body, seconds: float, duration: float = 0.002) -> State:
+def drift(body: Body, seconds: float, duration: float = 0.002) -> BodyState:
     """The state after this time with fins at rest."""
     for _ in range(round(seconds / duration)):
         body.step(duration, STILL, STILL)
@@ -89,7 +89,7 @@ class Flapping:
         )
         return a, b, c, d
 
-    def swim(self, body: Body, seconds: float, duration: float = 0.002, start: float = 0.0) -> State:
+    def swim(self, body: Body, seconds: float, duration: float = 0.002, start: float = 0.0) -> BodyState:
         """Let the body swim; the state after it."""
         for index in range(round(seconds / duration)):
             before, after = self.at(start + index * duration), self.at(start + (index + 1) * duration)

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.simulation.water.fins import Four
-from robot_runtime.simulation.water.parameters import Parameters, Six, Vector
-from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
+from robot_runtime.simulation.water.state import BodyState
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def coriolis(mass: Array, nu: Array) -> Array:
     return np.block([[np.zeros((3, 3)), -skew(top)], [-skew(top), -skew(bottom)]])
 
 
-def acceleration(parameters: Parameters, state: State, current: Vector, wrench: Six) -> Array:
+def acceleration(parameters: SimulationParameters, state: BodyState, current: Vector, wrench: Six) -> Array:
     """ν̇ (m/s², rad/s²) of the body deep under water, in body axes."""
     turn = rotation(np.array(state.attitude))
     omega = np.array(state.rate)
@@ -52,7 +52,9 @@ def acceleration(parameters: Parameters, state: State, current: Vector, wrench: 
     return out
 
 
-def fin_wrench(parameters: Parameters, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Array:
+def fin_wrench(
+    parameters: SimulationParameters, angles: Four, speeds: Four, velocity: Vector, rate: Vector
+) -> Array:
     """Force and torque of the fins by vectors; they lie at 150°, 30°, -30° and -150° from the bow."""
     total = np.zeros(6)
     roots = [(0.110, 0.065, 0), (-0.110, 0.065, 0), (-0.110, -0.065, 0), (0.110, -0.065, 0)]

@@ -10,8 +10,8 @@ import pytest
 
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.geometry import normalize, rotation, to_body, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Six, Vector
-from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
+from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Current
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, UNDAMPED, drift, pushed
 from tests.runtime.simulation.water.reference import acceleration
@@ -31,14 +31,14 @@ def some_vector(random: Random, size: float) -> Vector:
     return random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)
 
 
-def some_state(random: Random) -> State:
+def some_state(random: Random) -> BodyState:
     w, x, y, z = (random.gauss(0, 1) for _ in range(4))
-    return State(
+    return BodyState(
         (0.0, 0.0, 50.0), normalize((w, x, y, z)), some_vector(random, 0.5), some_vector(random, 3.0)
     )
 
 
-def energy(body: Body, parameters: Parameters) -> float:
+def energy(body: Body, parameters: SimulationParameters) -> float:
     """Kinetic, of hull and added mass, and potential, of weight and buoyancy, in J; neutral buoyancy."""
     _, attitude, velocity, rate = body.state
     kinetic = 0.5 * sum(
@@ -52,7 +52,7 @@ def test_acceleration_equals_the_textbook_matrices() -> None:
     random = Random(7)
     for _ in range(50):
         wrench: Six = (*some_vector(random, 2.0), *some_vector(random, 0.2))
-        parameters = Parameters(floor=1000.0)
+        parameters = SimulationParameters(floor=1000.0)
         body = pushed(parameters, wrench)
         current = some_vector(random, 0.5)
         body.world.set_current(Current(*current))
@@ -99,7 +99,7 @@ def test_neutral_hull_hovers() -> None:
 
 
 def test_buoyant_hull_rises_at_the_computed_speed() -> None:
-    parameters = Parameters(floor=1000.0)
+    parameters = SimulationParameters(floor=1000.0)
     net = parameters.weight * (parameters.buoyancy - 1)
     linear, quadratic = parameters.damping_linear[2], parameters.damping_quadratic[2]
     expected = (-linear + sqrt(linear**2 + 4 * quadratic * net)) / (2 * quadratic)
@@ -132,10 +132,10 @@ def test_pendulum_periods(axis: int, period: float) -> None:
     assert measured == pytest.approx(analytic, rel=1e-3)
 
 
-def tumbling(parameters: Parameters) -> Body:
+def tumbling(parameters: SimulationParameters) -> Body:
     body = pushed(parameters)
     tilted = normalize((1.0, 0.3, -0.2, 0.1))
-    body.state = State((0, 0, 100), tilted, (0.2, -0.1, 0.15), (0.5, -0.8, 0.3))
+    body.state = BodyState((0, 0, 100), tilted, (0.2, -0.1, 0.15), (0.5, -0.8, 0.3))
     return body
 
 

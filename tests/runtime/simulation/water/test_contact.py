@@ -8,8 +8,8 @@ import pytest
 
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.geometry import normalize, rotation, to_world
-from robot_runtime.simulation.water.parameters import Parameters
-from robot_runtime.simulation.water.state import State
+from robot_runtime.simulation.water.parameters import SimulationParameters
+from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Basin, Trim
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import STILL, UNDAMPED, Flapping, drift, finned, pushed
@@ -20,14 +20,14 @@ WELL = Basin(depth=100.0, length=1.0, width=1.0)
 HALF = (0.12, 0.05, 0.05)
 
 
-def reach(state: State, axis: int) -> float:
+def reach(state: BodyState, axis: int) -> float:
     """m from the centre to the hull's outermost point along a world axis."""
     return sqrt(
         sum((half * part) ** 2 for half, part in zip(HALF, rotation(state.attitude)[axis], strict=True))
     )
 
 
-def outside(state: State, basin: Basin) -> float:
+def outside(state: BodyState, basin: Basin) -> float:
     """m by which the hull is beyond floor or walls."""
     north, east, down = state.position
     beyond = [down + reach(state, 2) - basin.depth]
@@ -37,7 +37,7 @@ def outside(state: State, basin: Basin) -> float:
     return max(beyond)
 
 
-def energy(body: Body, parameters: Parameters) -> float:
+def energy(body: Body, parameters: SimulationParameters) -> float:
     """J, kinetic with the added mass, and potential of a hull that is deep under water."""
     position, attitude, velocity, rate = body.state
     kinetic = 0.5 * sum(
@@ -48,12 +48,12 @@ def energy(body: Body, parameters: Parameters) -> float:
     return kinetic - weight * position[2] + lift * above
 
 
-def thrown(random: Random, parameters: Parameters) -> Body:
+def thrown(random: Random, parameters: SimulationParameters) -> Body:
     body = pushed(parameters)
     body.world.set_basin(WELL)
     w, x, y, z = (random.gauss(0, 1) for _ in range(4))
     speeds = [random.uniform(-1.5, 1.5) for _ in range(6)]
-    body.state = State(
+    body.state = BodyState(
         (random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 99.5),
         normalize((w, x, y, z)),
         (speeds[0], speeds[1], abs(speeds[2])),
@@ -85,14 +85,14 @@ def test_a_thrown_hull_stays_inside_and_gains_no_energy(restitution: float, fric
         assert highest < 1e-3 * moving
 
 
-def energy_at_rest(parameters: Parameters) -> float:
+def energy_at_rest(parameters: SimulationParameters) -> float:
     """J, lying on the floor."""
     body = pushed(parameters, depth=WELL.depth - HALF[2])
     return energy(body, parameters)
 
 
 def test_lies_on_the_floor_and_stays() -> None:
-    heavy = Parameters(buoyancy=0.99)
+    heavy = SimulationParameters(buoyancy=0.99)
     body = pushed(heavy, depth=2.5)
     drift(body, 20, 0.005)
     there = body.state
@@ -103,7 +103,7 @@ def test_lies_on_the_floor_and_stays() -> None:
 
 
 def test_an_ill_trimmed_hull_tilts_on_the_floor_and_stays() -> None:
-    body = pushed(Parameters(), depth=2.5)
+    body = pushed(SimulationParameters(), depth=2.5)
     body.trim = Trim(0.98, 0.004, 0.003, 0.01)
     drift(body, 60, 0.005)
     there = body.state
@@ -115,7 +115,7 @@ def test_an_ill_trimmed_hull_tilts_on_the_floor_and_stays() -> None:
 
 
 def test_leaves_the_floor_when_it_is_pushed_up() -> None:
-    lifted = pushed(Parameters(), (0, 0, -0.5, 0, 0, 0), depth=2.95)
+    lifted = pushed(SimulationParameters(), (0, 0, -0.5, 0, 0, 0), depth=2.95)
     assert drift(lifted, 2, 0.005).position[2] < 2.9
 
 
@@ -154,7 +154,7 @@ def test_a_blow_to_the_bow_turns_the_hull() -> None:
     body.world.set_basin(POOL)
     attitude = normalize((1.0, 0.0, 0.0, 0.3))
     x, y, z = to_world(rotation(attitude), (0.3, 0.0, 0.0))
-    body.state = State((1.85, 0.0, 1.0), attitude, (0.3, 0.0, 0.0), (0.0, 0.0, 0.0))
+    body.state = BodyState((1.85, 0.0, 1.0), attitude, (0.3, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert x > 0.2
     assert (abs(y), z) == (pytest.approx(0.169, abs=0.01), 0)
     drift(body, 0.3, 0.002)
@@ -163,7 +163,7 @@ def test_a_blow_to_the_bow_turns_the_hull() -> None:
 
 
 def test_swims_against_the_wall_and_stays_inside() -> None:
-    body = finned(Parameters(), 1.0)
+    body = finned(SimulationParameters(), 1.0)
     body.world.set_basin(Basin(depth=2.0, length=2.0, width=2.0))
     flapping = Flapping(STILL, fins=(0, 3))
     for second in range(20):
@@ -180,4 +180,4 @@ def test_open_water_has_no_walls() -> None:
 
 
 def test_world_knows_its_floor_from_the_parameters() -> None:
-    assert World(Parameters(floor=7.0)).basin == Basin(7.0)
+    assert World(SimulationParameters(floor=7.0)).basin == Basin(7.0)

@@ -8,7 +8,7 @@ import pytest
 
 from robot_runtime.simulation.water.fins import Fins, Four
 from robot_runtime.simulation.water.geometry import rotation, to_world
-from robot_runtime.simulation.water.parameters import Parameters, Six
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, Flapping, finned
 from tests.runtime.simulation.water.reference import fin_wrench
 
@@ -26,7 +26,7 @@ def published_thrust(drag: float, amplitude: float, frequency: float) -> float:
     return 8 * 1000 * drag * 0.0045 * 0.045**2 * pi**2 * frequency**2 * (1 - cos(amplitude))
 
 
-def mean_push(parameters: Parameters, flapping: Flapping) -> Six:
+def mean_push(parameters: SimulationParameters, flapping: Flapping) -> Six:
     """Mean wrench over one period on a hull that is held."""
     fins, count = Fins(parameters), 2000
     times = [index * 2 * pi / flapping.omega / count for index in range(count)]

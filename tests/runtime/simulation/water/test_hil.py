@@ -12,8 +12,8 @@ import pytest
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.topics import BY_NAME, Block, row
 from robot_runtime.errors import Refused
-from robot_runtime.simulation.water.hil import GAP_MAX, Loop
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.hil import GAP_MAX, HilSimulator
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
@@ -55,7 +55,7 @@ def motor(angle: float, drive: int = 0) -> Motor:
 
 @pytest.fixture
 def simulator() -> Simulator:
-    return Simulator(Parameters(), seed=3)
+    return Simulator(SimulationParameters(), seed=3)
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def robot(simulator: Simulator) -> Iterator[Robot]:
     ):
         robot = Robot(here)
         with ZenohTransport("turtle", connect=[f"unixsock-stream/{folder}/z"], client=True) as there:
-            loop = Loop(simulator, there)
+            loop = HilSimulator(simulator, there)
             thread = threading.Thread(target=loop.run)
             thread.start()
             try:
@@ -82,7 +82,7 @@ def test_the_water_moves_by_the_boards_time_and_nothing_else(robot: Robot) -> No
     for batch in range(4):
         robot.move(*swing[50 * batch : 50 * (batch + 1)])
         last = robot.hear(batch + 1)
-    alike = Simulator(Parameters(), seed=3)
+    alike = Simulator(SimulationParameters(), seed=3)
     for (_, before), (_, now) in pairwise(swing):
         speed = (now.angle[0] - before.angle[0]) / PERIOD
         reading = alike.advance(PERIOD, FinMotion(now.angle, (speed,) * 4, now.drive, powered=True))
@@ -120,7 +120,7 @@ def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simul
         tempfile.TemporaryDirectory() as folder,
         ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
     ):
-        Loop(simulator, here)
+        HilSimulator(simulator, here)
         here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
         with pytest.raises(Refused, match="has no buses"):
             here.ask("simulator/fault", {"sensor": "pressure", "kind": "bus"})

@@ -19,7 +19,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents
 from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.simulation.water.process import PERIOD, Process
+from robot_runtime.simulation.water.process import PERIOD, WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
@@ -100,9 +100,11 @@ def clock() -> SimulatedClock:
 
 
 @pytest.fixture
-def process(folder: Path, board: Board, messages: ZenohTransport, clock: SimulatedClock) -> Iterator[Process]:
+def process(
+    folder: Path, board: Board, messages: ZenohTransport, clock: SimulatedClock
+) -> Iterator[WaterProcess]:
     del board
-    made = Process(Simulator(QUIET, seed=1), folder / "board", messages, clock)
+    made = WaterProcess(Simulator(QUIET, seed=1), folder / "board", messages, clock)
     thread = threading.Thread(target=made.run)
     thread.start()
     yield made

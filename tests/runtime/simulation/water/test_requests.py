@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.errors import Refused
 from robot_runtime.simulation.water.faults import DEVICES, SENSORS
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import Question, changes
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
@@ -124,7 +124,7 @@ def test_every_sensor_can_have_every_fault_and_only_that_one_changes(
 
 def readings(fault: Question | None) -> list[dict[str, object]]:
     """Of the default robot, breaking after half a second; beacons come and go."""
-    simulator = Simulator(Parameters(), seed=3)
+    simulator = Simulator(SimulationParameters(), seed=3)
     known = changes(simulator)
     rest(simulator, 0.5)
     if fault is not None:
@@ -174,7 +174,7 @@ def test_bus_errors_name_the_boards_devices(simulator: Simulator, ask: Ask) -> N
 
 
 def test_after_a_reset_the_same_bytes_come_again() -> None:
-    simulator = Simulator(Parameters(), seed=9)
+    simulator = Simulator(SimulationParameters(), seed=9)
     known = changes(simulator)
     rest(simulator, 1)
     known["current"](SET["current"])
@@ -187,12 +187,12 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
     east = simulator.truth().position[1]
     known["reset"]({})
     assert rest(simulator, 5) == first
-    fresh = Simulator(Parameters(), seed=9)
+    fresh = Simulator(SimulationParameters(), seed=9)
     for name in ("waves", "current"):
         changes(fresh)[name](SET[name])
     rest(fresh, 5)
     assert fresh.truth().position[1] == pytest.approx(east, abs=1e-12)
-    other = Simulator(Parameters(), seed=10)
+    other = Simulator(SimulationParameters(), seed=10)
     assert rest(other, 5) != first
 
 
@@ -259,7 +259,7 @@ def test_a_reset_into_floor_or_wall_is_refused(ask: Ask, start: dict[str, float]
 
 
 def test_a_reset_may_choose_the_noise(ask: Ask) -> None:
-    noisy = Simulator(Parameters(), seed=1)
+    noisy = Simulator(SimulationParameters(), seed=1)
     first = rest(noisy, 1)
     changes(noisy)["reset"]({"seed": 2})
     assert rest(noisy, 1) != first

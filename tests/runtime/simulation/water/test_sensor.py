@@ -6,14 +6,14 @@ from statistics import fmean, stdev
 
 import pytest
 
-from robot_runtime.simulation.water.faults import SOUND, Fault
-from robot_runtime.simulation.water.parameters import Quality
+from robot_runtime.simulation.water.faults import NO_FAULT, SimulatedFault
+from robot_runtime.simulation.water.parameters import SensorQuality
 from robot_runtime.simulation.water.sensor import Numbers, Sensor
 
 PERIOD = 0.005
 
 
-def made(quality: Quality, name: str = "pressure", axes: int = 1, seed: int = 1) -> Sensor:
+def made(quality: SensorQuality, name: str = "pressure", axes: int = 1, seed: int = 1) -> Sensor:
     return Sensor(name, quality, axes, seed)
 
 
@@ -28,11 +28,11 @@ def ramp(sensor: Sensor, count: int) -> list[float]:
 
 
 def test_a_perfect_sensor_shows_what_it_feels() -> None:
-    assert made(Quality(), axes=3).read(PERIOD, (0.1, -0.2, 0.3)) == (0.1, -0.2, 0.3)
+    assert made(SensorQuality(), axes=3).read(PERIOD, (0.1, -0.2, 0.3)) == (0.1, -0.2, 0.3)
 
 
 def test_noise_has_its_size_and_no_memory() -> None:
-    readings = series(made(Quality(noise=0.5)), 10_000)
+    readings = series(made(SensorQuality(noise=0.5)), 10_000)
     # Five standard errors of mean, deviation and correlation.
     assert fmean(readings) == pytest.approx(0, abs=5 * 0.5 / 100)
     assert stdev(readings) == pytest.approx(0.5, rel=5 / sqrt(20_000))
@@ -41,7 +41,7 @@ def test_noise_has_its_size_and_no_memory() -> None:
 
 
 def test_each_axis_has_noise_and_offset_of_its_own() -> None:
-    sensor = made(Quality(noise=0.1, bias=1.0), axes=3)
+    sensor = made(SensorQuality(noise=0.1, bias=1.0), axes=3)
     offsets = [
         fmean(axis) for axis in zip(*[sensor.read(i * PERIOD, (0, 0, 0)) for i in range(1, 500)], strict=True)
     ]
@@ -51,7 +51,7 @@ def test_each_axis_has_noise_and_offset_of_its_own() -> None:
 def test_offset_is_drawn_with_its_size_and_stays() -> None:
     offsets = []
     for seed in range(2000):
-        first, last = series(made(Quality(bias=0.2), seed=seed), 2)
+        first, last = series(made(SensorQuality(bias=0.2), seed=seed), 2)
         assert first == last
         offsets.append(first)
     assert stdev(offsets) == pytest.approx(0.2, rel=5 / sqrt(4000))
@@ -61,13 +61,13 @@ def test_offset_is_drawn_with_its_size_and_stays() -> None:
 def test_offset_wanders_with_the_root_of_time(seconds: int) -> None:
     ends = []
     for seed in range(600):
-        sensor = made(Quality(walk=0.3, rate=1.0), seed=seed)
+        sensor = made(SensorQuality(walk=0.3, rate=1.0), seed=seed)
         ends.append([sensor.read(float(second), (0.0,))[0] for second in range(1, seconds + 1)][-1])
     assert stdev(ends) == pytest.approx(0.3 * sqrt(seconds), rel=5 / sqrt(1200))
 
 
 def test_readings_come_in_steps() -> None:
-    assert [made(Quality(step=0.5)).read(PERIOD, (felt,))[0] for felt in (0.2, 0.3, -0.8, 7.0)] == [
+    assert [made(SensorQuality(step=0.5)).read(PERIOD, (felt,))[0] for felt in (0.2, 0.3, -0.8, 7.0)] == [
         0,
         0.5,
         -1,
@@ -79,28 +79,28 @@ def test_readings_come_in_steps() -> None:
     ("rate", "expected"), [(200.0, 200), (1000.0, 200), (100.0, 100), (30.0, 30), (1.0, 1)]
 )
 def test_new_readings_come_at_their_rate(rate: float, expected: int) -> None:
-    shown = ramp(made(Quality(rate=rate)), 2000)
+    shown = ramp(made(SensorQuality(rate=rate)), 2000)
     assert len(set(shown)) == pytest.approx(10 * expected, abs=1)
 
 
 @pytest.mark.parametrize("latency", [0.0, 0.005, 0.05])
 def test_readings_come_late(latency: float) -> None:
-    shown = ramp(made(Quality(latency=latency)), 100)
+    shown = ramp(made(SensorQuality(latency=latency)), 100)
     steps = round(latency / PERIOD)
     expected = [max(index - steps, 1) * PERIOD for index in range(1, 101)]
     assert shown == pytest.approx(expected)
 
 
 def test_same_seed_and_name_same_readings() -> None:
-    quality = Quality(noise=1.0, bias=1.0, walk=1.0)
+    quality = SensorQuality(noise=1.0, bias=1.0, walk=1.0)
     assert series(made(quality), 50) == series(made(quality), 50)
     assert series(made(quality), 50) != series(made(quality, seed=2), 50)
     assert series(made(quality), 50) != series(made(quality, name="battery"), 50)
 
 
-def broken(fault: Fault, count: int = 1000, quality: Quality | None = None) -> list[float]:
+def broken(fault: SimulatedFault, count: int = 1000, quality: SensorQuality | None = None) -> list[float]:
     """It feels the time, and breaks after 1 s."""
-    sensor = made(quality or Quality())
+    sensor = made(quality or SensorQuality())
     shown = []
     for index in range(1, count + 1):
         if index == 201:
@@ -110,26 +110,26 @@ def broken(fault: Fault, count: int = 1000, quality: Quality | None = None) -> l
 
 
 def test_stuck_shows_the_last_reading_for_ever() -> None:
-    shown = broken(Fault(kind="stuck"))
-    assert shown[:200] == ramp(made(Quality()), 200)
+    shown = broken(SimulatedFault(kind="stuck"))
+    assert shown[:200] == ramp(made(SensorQuality()), 200)
     assert set(shown[200:]) == {1.0}
 
 
 def test_stuck_from_the_beginning_shows_what_it_felt_first() -> None:
-    sensor = made(Quality())
-    sensor.break_(Fault(kind="stuck"), 0.0)
+    sensor = made(SensorQuality())
+    sensor.break_(SimulatedFault(kind="stuck"), 0.0)
     assert ramp(sensor, 3) == [PERIOD, PERIOD, PERIOD]
 
 
 def test_dropout_loses_its_share_and_keeps_the_last() -> None:
-    shown = broken(Fault(kind="dropout", share=0.3), 4200)[200:]
+    shown = broken(SimulatedFault(kind="dropout", share=0.3), 4200)[200:]
     lost = sum(late == early for early, late in pairwise(shown)) / 3999
     assert lost == pytest.approx(0.3, abs=5 * sqrt(0.3 * 0.7 / 4000))
     assert all(late >= early for early, late in pairwise(shown))
 
 
 def test_spikes_go_up_and_down_and_leave_the_rest() -> None:
-    shown = broken(Fault(kind="spike", share=0.1, size=50.0), 4200)[200:]
+    shown = broken(SimulatedFault(kind="spike", share=0.1, size=50.0), 4200)[200:]
     errors = [value - (201 + index) * PERIOD for index, value in enumerate(shown)]
     ups, downs = sum(error > 49 for error in errors), sum(error < -49 for error in errors)
     assert (ups + downs) / 4000 == pytest.approx(0.1, abs=5 * sqrt(0.09 / 4000))
@@ -138,7 +138,7 @@ def test_spikes_go_up_and_down_and_leave_the_rest() -> None:
 
 
 def test_drift_grows_from_the_moment_it_is_asked_for() -> None:
-    shown = broken(Fault(kind="drift", speed=-2.0))
+    shown = broken(SimulatedFault(kind="drift", speed=-2.0))
     for index in (201, 500, 1000):
         time = index * PERIOD
         assert shown[index - 1] == pytest.approx(time - 2.0 * (time - 1.0))
@@ -147,20 +147,20 @@ def test_drift_grows_from_the_moment_it_is_asked_for() -> None:
 @pytest.mark.parametrize(
     "fault",
     [
-        Fault(kind="stuck"),
-        Fault(kind="dropout", share=0.5),
-        Fault(kind="spike", share=0.5, size=3.0),
-        Fault(kind="drift", speed=1.0),
-        Fault(kind="bus"),
+        SimulatedFault(kind="stuck"),
+        SimulatedFault(kind="dropout", share=0.5),
+        SimulatedFault(kind="spike", share=0.5, size=3.0),
+        SimulatedFault(kind="drift", speed=1.0),
+        SimulatedFault(kind="bus"),
     ],
 )
-def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: Fault) -> None:
-    quality = Quality(noise=1.0, bias=1.0, walk=1.0)
+def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: SimulatedFault) -> None:
+    quality = SensorQuality(noise=1.0, bias=1.0, walk=1.0)
     sound, mended = made(quality), made(quality)
     series(sound, 500)
     mended.break_(fault, 0.0)
     series(mended, 500)
-    mended.break_(SOUND, 2.5)
+    mended.break_(NO_FAULT, 2.5)
     assert series(mended, 500, first=501) == series(sound, 500, first=501)
 
 
@@ -180,7 +180,7 @@ def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: Fault) ->
 )
 def test_senseless_faults_are_refused(numbers: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"takes|must be|there is no fault"):
-        Fault(**numbers)  # type: ignore[arg-type]
+        SimulatedFault(**numbers)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -188,4 +188,4 @@ def test_senseless_faults_are_refused(numbers: dict[str, float]) -> None:
 )
 def test_senseless_qualities_are_refused(numbers: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must"):
-        Quality(**numbers)
+        SensorQuality(**numbers)

@@ -5,9 +5,9 @@ from math import cos, pi, sin
 
 import pytest
 
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.sensors import Reading, Sensors
-from robot_runtime.simulation.water.state import State, at_rest
+from robot_runtime.simulation.water.state import BodyState, at_rest
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import QUIET as PERFECT_SENSORS
 
@@ -15,13 +15,13 @@ QUIET = replace(PERFECT_SENSORS, pressure_position=(0.0, 0.0, 0.0))
 REST: Vector = (0.0, 0.0, 0.0)
 
 
-def read(state: State, acceleration: Vector = REST, parameters: Parameters = QUIET) -> Reading:
+def read(state: BodyState, acceleration: Vector = REST, parameters: SimulationParameters = QUIET) -> Reading:
     return Sensors(parameters, World(parameters), seed=1).read(0.005, state, acceleration, battery=7.5)
 
 
-def turned(axis: Vector, angle: float, position: Vector = (0.0, 0.0, 1.0)) -> State:
+def turned(axis: Vector, angle: float, position: Vector = (0.0, 0.0, 1.0)) -> BodyState:
     x, y, z = (part * sin(angle / 2) for part in axis)
-    return State(position, (cos(angle / 2), x, y, z), REST, (0.1, 0.2, 0.3))
+    return BodyState(position, (cos(angle / 2), x, y, z), REST, (0.1, 0.2, 0.3))
 
 
 def test_accelerometer_at_rest_shows_gravity_upwards() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from robot_runtime.control.controllers import BangBang, BangBangDeadZone, Controller, Pid
 from robot_runtime.simulation.water.fins import Four
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.simulation.water.surroundings import Current
@@ -70,7 +70,7 @@ def test_accelerometer_adds_up_to_the_speed_gained() -> None:
 
 def test_same_seed_same_run() -> None:
     def run(seed: int) -> tuple[list[Reading], object]:
-        simulator = Simulator(Parameters(), seed)
+        simulator = Simulator(SimulationParameters(), seed)
         return swim(simulator, Flapping((UP, UP, 0, 0)), 1), simulator.truth()
 
     assert run(3) == run(3)
@@ -217,7 +217,7 @@ def test_bang_bang_without_dead_zone_swings_too_and_pid_less() -> None:
 
 
 def test_sensors_are_as_noisy_as_their_parameters_say() -> None:
-    simulator = Simulator(Parameters(), seed=2)
+    simulator = Simulator(SimulationParameters(), seed=2)
     readings = [rest(simulator) for _ in range(2000)]
     depths = [depth(reading) for reading in readings]
     assert stdev(depths) == pytest.approx(42 / 9810, rel=0.1)

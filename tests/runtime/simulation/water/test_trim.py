@@ -7,14 +7,14 @@ from math import asin, atan2, pi, sqrt
 import pytest
 
 from robot_runtime.simulation.water.geometry import normalize, rotation
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import Trim
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, UNDAMPED, drift, pushed
 
 
 @pytest.mark.parametrize("buoyancy", [0.97, 0.997, 1.01, 1.05])
 def test_rises_or_sinks_at_the_computed_speed(buoyancy: float) -> None:
-    parameters = Parameters(floor=1000.0)
+    parameters = SimulationParameters(floor=1000.0)
     body = pushed(parameters, depth=500.0)
     body.trim = Trim(buoyancy, 0.0, 0.0, 0.01)
     net = parameters.weight * abs(buoyancy - 1)

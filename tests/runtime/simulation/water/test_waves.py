@@ -6,7 +6,7 @@ from math import cos, exp, pi, tanh
 import pytest
 
 from robot_runtime.simulation.water.body import Body
-from robot_runtime.simulation.water.parameters import Parameters, Vector
+from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import Basin, Current, Waves
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, pushed
@@ -18,7 +18,7 @@ SMALL = 1e-5
 
 
 def waving(waves: Waves, depth: float = 1000.0) -> World:
-    world = World(Parameters())
+    world = World(SimulationParameters())
     world.set_basin(Basin(depth))
     world.set_waves(waves)
     return world
@@ -131,7 +131,7 @@ def test_current_and_waves_add_up() -> None:
 
 
 def test_current_turns_from_north_to_east_and_says_how_it_accelerates() -> None:
-    world = World(Parameters())
+    world = World(SimulationParameters())
     world.set_current(Current(0.3, 0.0, 0.0, turning=0.1), time=7.0)
     place = (0.0, 0.0, 1.0)
     assert world.flow(7.0, place).velocity == pytest.approx((0.3, 0, 0))
@@ -171,7 +171,7 @@ def test_waves_are_not_felt_at_a_depth_of_one_length() -> None:
 
 
 def test_floating_hull_rides_on_long_waves() -> None:
-    parameters = replace(Parameters(), floor=1000.0)
+    parameters = replace(SimulationParameters(), floor=1000.0)
     body = pushed(parameters, depth=World(parameters).floating_depth(1.003))
     floating = body.state.position[2]
     places = floating_in(body, Waves(0.2, 5.0, 0.0), 20.0)

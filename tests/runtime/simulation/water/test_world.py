@@ -4,11 +4,11 @@ from math import pi
 
 import pytest
 
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import STILL, Flapping, drift, finned, pushed
 
-PARAMETERS = Parameters()
+PARAMETERS = SimulationParameters()
 TOP = PARAMETERS.height / 2
 
 
@@ -68,4 +68,4 @@ def test_waves_take_speed_only_where_the_hull_breaks_the_surface() -> None:
 )
 def test_senseless_parameters_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"must be above 0|leaves no room"):
-        Parameters(**wrong)  # type: ignore[arg-type]
+        SimulationParameters(**wrong)  # type: ignore[arg-type]

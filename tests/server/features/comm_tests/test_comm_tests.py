@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from robot_runtime.experiments.comm_test.document import read_document
-from robot_runtime.experiments.comm_test.results import Cell, CellResult, Counts, LineErrors
+from robot_runtime.experiments.comm_test.results import CellResult, Counts, GridCell, LineErrors
 from server.cli import main
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import read_table
@@ -45,7 +45,7 @@ ENTRY: dict[str, Any] = {
     "arduinodelay": [0.1],
 }
 
-LOST = CellResult(Cell(9600, 0.5, 1.0), "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
+LOST = CellResult(GridCell(9600, 0.5, 1.0), "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -11,10 +11,10 @@ import pytest
 from robot_runtime.control.controllers.angle import HeadingPid
 from robot_runtime.errors import Refused
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.simulation.boards.emulator_process import BoardProcess
+from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import firmware_path
-from robot_runtime.simulation.water.faults import Fault
-from robot_runtime.simulation.water.parameters import Parameters
+from robot_runtime.simulation.water.faults import SimulatedFault
+from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
 from server.features.scenarios.live_setup import Surroundings
@@ -112,7 +112,7 @@ class DirectBridge:
 
 @pytest.fixture
 def simulator() -> Simulator:
-    return Simulator(Parameters(), seed=1)
+    return Simulator(SimulationParameters(), seed=1)
 
 
 @pytest.fixture
@@ -121,18 +121,18 @@ def bridge(simulator: Simulator) -> DirectBridge:
 
 
 @pytest.fixture
-def board() -> Iterator[BoardProcess]:
+def board() -> Iterator[EmulatorProcess]:
     build = ROOT / "build"
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         tty, socket = Path(name) / "tty", Path(name) / "socket"
-        with BoardProcess(
+        with EmulatorProcess(
             build / "board", firmware_path(build, 250_000, ".elf"), tty, socket, "--paused"
         ) as one:
             yield one
 
 
 @pytest.fixture
-def surroundings(bridge: DirectBridge, board: BoardProcess) -> Surroundings:
+def surroundings(bridge: DirectBridge, board: EmulatorProcess) -> Surroundings:
     return Surroundings(cast(Bridge, bridge), board.socket)
 
 
@@ -140,7 +140,7 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
     async def work() -> None:
         await surroundings.prepare(SCENARIO, await surroundings.read(STATE))
 
-    simulator.set_fault("battery", Fault(kind="drift", speed=0.1))
+    simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
     asyncio.run(work())
     now = simulator.surroundings()
     assert (now.basin, now.current, now.waves) == (
@@ -163,7 +163,7 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
 
 
 def test_everything_is_put_back(
-    surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge, board: BoardProcess
+    surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge, board: EmulatorProcess
 ) -> None:
     async def work() -> list[str]:
         before = await surroundings.read(STATE)
@@ -173,7 +173,7 @@ def test_everything_is_put_back(
         bridge.commands.clear()
         return await surroundings.put_back(before)
 
-    simulator.set_fault("battery", Fault(kind="drift", speed=0.1))
+    simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
     was, seen = simulator.surroundings(), dict(bridge.sight)
     assert asyncio.run(work()) == []
     assert bridge.sight == seen

@@ -1,10 +1,10 @@
 /** How parameters are found, grouped, checked and compared. */
 import type { ParameterValue } from '../../../api';
-import type { Parameter } from '../../../generated/topics';
+import type { TunableParameter } from '../../../generated/topics';
 
 export interface Group {
   readonly name: string;
-  readonly parameters: readonly Parameter[];
+  readonly parameters: readonly TunableParameter[];
 }
 
 export interface Difference {
@@ -15,7 +15,7 @@ export interface Difference {
 }
 
 /** Those with each word in name, meaning or unit; with `changed` only those that are not at their default. */
-export function find(parameters: readonly Parameter[], search: string, changed: boolean): Parameter[] {
+export function find(parameters: readonly TunableParameter[], search: string, changed: boolean): TunableParameter[] {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   return parameters.filter((one) => {
     const text = `${one.name} ${one.meaning} ${one.unit}`.toLowerCase();
@@ -24,8 +24,8 @@ export function find(parameters: readonly Parameter[], search: string, changed: 
 }
 
 /** By all of the name but its last word, in the order in which they come. */
-export function group(parameters: readonly Parameter[]): Group[] {
-  const groups = new Map<string, Parameter[]>();
+export function group(parameters: readonly TunableParameter[]): Group[] {
+  const groups = new Map<string, TunableParameter[]>();
   for (const one of parameters) {
     const name = one.name.slice(0, one.name.lastIndexOf('.'));
     groups.set(name, [...(groups.get(name) ?? []), one]);
@@ -34,7 +34,7 @@ export function group(parameters: readonly Parameter[]): Group[] {
 }
 
 /** Why the runtime would refuse this value; null where it would not. */
-export function wrong(parameter: Parameter, value: ParameterValue): string | null {
+export function wrong(parameter: TunableParameter, value: ParameterValue): string | null {
   if (parameter.type === 'choice') return parameter.choices.includes(String(value)) ? null : 'No such choice';
   if (parameter.type === 'switch') return null;
   if (typeof value !== 'number' || Number.isNaN(value)) return 'A number is wanted';

@@ -16,11 +16,11 @@ SWING_MAX = 1000.0
 """rad and rad/s beyond which no fin can be or turn; such numbers would break the physics."""
 
 
-class LineError(ValueError):
+class BoardLineError(ValueError):
     """What came from the board is not what was agreed; the text says what is wrong with it."""
 
 
-class Lines:
+class LineBuffer:
     """Puts lines together from bytes as they come."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Lines:
         """The lines that `data` completes, without their ends. Raises LineError on one that never ends."""
         *whole, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > LINE_BYTES_MAX:
-            raise LineError(f"a line of more than {LINE_BYTES_MAX} bytes")
+            raise BoardLineError(f"a line of more than {LINE_BYTES_MAX} bytes")
         for line in whole:
             yield line.decode("utf-8", "replace").strip()
 
@@ -39,13 +39,13 @@ def read_fins(line: str) -> FinMotion:
     """The fins of a `fins` line. Raises LineError where it is none."""
     word, *texts = line.split()
     if word != "fins" or len(texts) != FIN_NUMBERS:
-        raise LineError(f"{line!r} is not `fins` and {FIN_NUMBERS} numbers")
+        raise BoardLineError(f"{line!r} is not `fins` and {FIN_NUMBERS} numbers")
     try:
         numbers = [float(text) for text in texts]
     except ValueError as problem:
-        raise LineError(f"{line!r}: {problem}") from problem
+        raise BoardLineError(f"{line!r}: {problem}") from problem
     if not all(map(isfinite, numbers)) or max(map(abs, numbers[1:9])) > SWING_MAX:
-        raise LineError(f"{line!r} tells of fins that cannot be")
+        raise BoardLineError(f"{line!r} tells of fins that cannot be")
     _, a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power, _ = numbers
     return FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
 

@@ -5,10 +5,12 @@ import math
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.vision.pace import Pace
+from robot_runtime.vision.rate_timer import RateTimer
 
 
-def count(pace: Pace, clock: SimulatedClock, seconds: float, step: float = 0.001, costs: float = 0.0) -> int:
+def count(
+    pace: RateTimer, clock: SimulatedClock, seconds: float, step: float = 0.001, costs: float = 0.0
+) -> int:
     """How many are due in this time, when each takes `costs` seconds."""
     done, end = 0, clock.now() + seconds
     while clock.now() < end - 1e-9:
@@ -23,17 +25,17 @@ def count(pace: Pace, clock: SimulatedClock, seconds: float, step: float = 0.001
 @pytest.mark.parametrize("rate", [2.0, 4.0, 30.0])
 def test_rate_is_kept(rate: float) -> None:
     clock = SimulatedClock(9.0)
-    assert count(Pace(clock, rate), clock, 60) == pytest.approx(60 * rate, abs=1)
+    assert count(RateTimer(clock, rate), clock, 60) == pytest.approx(60 * rate, abs=1)
 
 
 def test_time_that_a_picture_takes_does_not_slow_the_rhythm() -> None:
     clock = SimulatedClock()
-    assert count(Pace(clock, 4.0), clock, 60, costs=0.2) == pytest.approx(240, abs=1)
+    assert count(RateTimer(clock, 4.0), clock, 60, costs=0.2) == pytest.approx(240, abs=1)
 
 
 def test_pictures_that_take_longer_than_the_period_are_not_made_up_for() -> None:
     clock = SimulatedClock()
-    pace = Pace(clock, 10.0)
+    pace = RateTimer(clock, 10.0)
     pace.begin()
     clock.forward(5.0)
     pace.begin()
@@ -41,12 +43,12 @@ def test_pictures_that_take_longer_than_the_period_are_not_made_up_for() -> None
 
 
 def test_first_is_due_at_once() -> None:
-    assert Pace(SimulatedClock(3.0), 2.0).remaining() <= 0
+    assert RateTimer(SimulatedClock(3.0), 2.0).remaining() <= 0
 
 
 def test_new_rate_holds_at_once() -> None:
     clock = SimulatedClock()
-    pace = Pace(clock, 2.0)
+    pace = RateTimer(clock, 2.0)
     pace.begin()
     clock.forward(0.1)
     assert pace.remaining() == pytest.approx(0.4)
@@ -56,7 +58,7 @@ def test_new_rate_holds_at_once() -> None:
 
 @pytest.mark.parametrize("rate", [0.0, 1.9, 30.1, -4.0, math.nan, math.inf])
 def test_impossible_rates_are_refused(rate: float) -> None:
-    pace = Pace(SimulatedClock(), 4.0)
+    pace = RateTimer(SimulatedClock(), 4.0)
     with pytest.raises(ValueError, match=r"not between 2 and 30 Hz"):
         pace.rate = rate
     assert pace.rate == 4.0

@@ -4,7 +4,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.limits import VISION_RATE
 
 
-class Pace:
+class RateTimer:
     """An even rhythm of `rate` Hz, which may change at any time. What came late is not made up for."""
 
     def __init__(self, clock: Clock, rate: float) -> None:

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.simulation.boards.board_line import (
+from robot_runtime.simulation.boards.board_protocol import (
     LINE_BYTES_MAX,
-    LineError,
-    Lines,
+    BoardLineError,
+    LineBuffer,
     read_fins,
     write_sense,
 )
@@ -45,7 +45,7 @@ def test_fins_line_is_read() -> None:
     ],
 )
 def test_what_is_no_fins_line_is_refused(line: str) -> None:
-    with pytest.raises(LineError, match=r"is not|cannot be|could not convert"):
+    with pytest.raises(BoardLineError, match=r"is not|cannot be|could not convert"):
         read_fins(line)
 
 
@@ -60,7 +60,7 @@ def test_sense_line_says_what_was_read() -> None:
 def test_lines_come_whole_however_they_are_cut(cuts: list[int]) -> None:
     wanted = [FINS, "error no", "", "ok 2"]
     data = "".join(line + "\n" for line in wanted).encode()
-    lines, got, at = Lines(), list[str](), 0
+    lines, got, at = LineBuffer(), list[str](), 0
     for cut in [*cuts, len(data)]:
         got += lines.feed(data[at : at + cut])
         at += cut
@@ -68,10 +68,10 @@ def test_lines_come_whole_however_they_are_cut(cuts: list[int]) -> None:
 
 
 def test_a_line_without_end_is_refused() -> None:
-    lines = Lines()
-    with pytest.raises(LineError, match="more than"):
+    lines = LineBuffer()
+    with pytest.raises(BoardLineError, match="more than"):
         list(lines.feed(b"x" * (LINE_BYTES_MAX + 1)))
 
 
 def test_bytes_that_are_no_text_do_no_harm() -> None:
-    assert len(list(Lines().feed(b"\xff\xfe\n"))) == 1
+    assert len(list(LineBuffer().feed(b"\xff\xfe\n"))) == 1

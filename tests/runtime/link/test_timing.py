@@ -3,7 +3,7 @@
 import pytest
 
 from robot_runtime.contract.packets import Depth, Imu, Status
-from robot_runtime.link.pace import periods, stale_after
+from robot_runtime.link.timing import periods, stale_after
 
 
 def test_a_fast_line_carries_the_full_rate() -> None:
