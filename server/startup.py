@@ -28,7 +28,7 @@ def run(settings: Settings) -> int:
 
 def _serve(settings: Settings) -> int:
     # Loaded only now: an error in robot.toml is reported at once, also on a slow computer.
-    from robot_runtime.simulation.boards.firmware import BuildError, build_firmware
+    from robot_runtime.simulation.boards.firmware import FirmwareBuildError, build_firmware
     from server.app import create_app
     from server.http.serving import make_server, open_socket
     from server.platform.certificate import prepare_certificate
@@ -39,7 +39,7 @@ def _serve(settings: Settings) -> int:
     if settings.emulated_board:
         try:
             build_firmware(settings.build, settings.link.baud, hil=settings.in_the_loop)
-        except BuildError as problem:
+        except FirmwareBuildError as problem:
             raise SetupError(str(problem)) from problem
     with open_socket(settings.host, settings.port) as listener:
         certificate = prepare_certificate(settings) if settings.tls else None
