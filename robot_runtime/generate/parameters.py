@@ -2,7 +2,7 @@
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import Config
-from robot_runtime.contract.documents import Parameter
+from robot_runtime.contract.documents import TunableParameter
 from robot_runtime.core import Core
 from robot_runtime.generate.markdown import page, table
 from robot_runtime.link.link_driver import LinkDriver
@@ -25,7 +25,7 @@ def parameters_page() -> str:
     return page("Parameters", SOURCE, INTRODUCTION, table(("parameter", "range", "default", "meaning"), rows))
 
 
-def _registered() -> list[Parameter]:
+def _registered() -> list[TunableParameter]:
     clock, config = SimulatedClock(), Config()
     line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
@@ -33,7 +33,7 @@ def _registered() -> list[Parameter]:
     return robot.parameters.listed()
 
 
-def _row(one: Parameter) -> tuple[str, ...]:
+def _row(one: TunableParameter) -> tuple[str, ...]:
     if one.type == "choice":
         span = ", ".join(one.choices)
     elif one.type == "switch":
