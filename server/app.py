@@ -19,8 +19,8 @@ from server.features.exports import routes as exports
 from server.features.layouts import routes as layouts
 from server.features.layouts.library import UnknownLayout
 from server.features.lease import routes as control
+from server.features.lease.admission import admit
 from server.features.lease.lease import NotInControl
-from server.features.live import history_routes as past
 from server.features.live import routes as live
 from server.features.operate import link_routes as link
 from server.features.operate import routes as robot
@@ -50,7 +50,6 @@ from server.http.page import Page, make_router
 from server.http.problems import EVERYWHERE
 from server.http.security import Guard
 from server.http.sign_in.access import Access
-from server.http.sign_in.authorization import admit
 from server.http.sign_in.devices import UnknownDevice
 from server.http.sign_in.gate import Gate
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
@@ -75,6 +74,7 @@ def create_app(
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         assembly = Assembly(settings, commands, token, app.state.ended)
         app.state.assembly = assembly
+        app.state.services = assembly.services
         async with assembly.run():
             if started is not None:
                 started(assembly.access)
@@ -112,7 +112,7 @@ def create_app(
     app.add_exception_handler(CopyFailed, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
-    robots = (health, robot, vision, simulator, scene, link, live, past, control, parameters, profiles)
+    robots = (health, robot, vision, simulator, scene, link, live, control, parameters, profiles)
     kept = (sessions, marks, replay, storage, backup, compare, exports)
     for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

@@ -5,10 +5,7 @@ import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
-
-from starlette.requests import HTTPConnection
+from typing import Any
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.contract.topics import Block
@@ -18,6 +15,7 @@ from server.features.comm_tests.board_reservation import Board, Handover
 from server.features.comm_tests.lab import Lab
 from server.features.comm_tests.runs import Runs
 from server.features.comm_tests.shipped import import_samples
+from server.features.comparison.comparisons import Comparisons
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.layouts.library import Layouts
@@ -50,9 +48,6 @@ from server.platform.store import Store, StoreError
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
 from server.stream.bridge import SENT_BY, Bridge, RuntimeSilent
 from server.stream.hub import Hub
-
-if TYPE_CHECKING:
-    from server.features.comparison.comparer import Comparer
 
 HEALTH_SECONDS = 1.0
 BEAT_SECONDS = 1.0
@@ -96,6 +91,7 @@ class Assembly:
         self.jobs = Jobs(settings.data, self.store)
         self.imports = Imports(settings.data, self.store)
         self.layouts = Layouts(self.store)
+        self.comparisons = Comparisons(self.store)
         self.downloads = Downloads(settings.data)
         self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
@@ -122,25 +118,10 @@ class Assembly:
             self._scenario_on,
         )
 
-    @cached_property
-    def comparer(self) -> "Comparer":
-        """Lays sessions over each other; made when first asked for, since it needs NumPy."""
-        from server.features.comparison.comparer import Comparer
-
-        return Comparer(self.store)
-
-    @staticmethod
-    def of(connection: HTTPConnection) -> "Assembly":
-        """The assembly that serves this request."""
-        assembly = connection.app.state.assembly
-        assert isinstance(assembly, Assembly)
-        return assembly
-
-    def require_disarmed(self, why: str) -> None:
-        """What uses the computer for itself waits until the robot rests. Raises Refused, with this reason."""
-        state = self.watch.state()
-        if state is not None and state.get("armed"):
-            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
+    @property
+    def services(self) -> dict[type, object]:
+        """The services that routes are provided with, by their types."""
+        return {type(service): service for service in vars(self).values()} | {Clock: self.clock}
 
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:

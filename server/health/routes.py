@@ -1,14 +1,20 @@
 """How everything does."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 
-from server.container import Assembly
-from server.health.monitor import Health
+from server.health.monitor import Health, Watch
+from server.http.dependencies import Provided
+from server.http.sign_in.policy import Need, needs
 
 router = APIRouter(prefix="/api", tags=["health"])
 
 
-@router.get("/health", summary="How the server and every part of the robot do", operation_id="getHealth")
-async def get_health(request: Request) -> Health:
+@router.get(
+    "/health",
+    summary="How the server and every part of the robot do",
+    operation_id="getHealth",
+    openapi_extra=needs(Need.VIEWER),
+)
+async def get_health(watch: Provided[Watch]) -> Health:
     """Always answered with 200 while the server runs; `status` says how things are."""
-    return Assembly.of(request).watch.health()
+    return watch.health()

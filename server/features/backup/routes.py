@@ -3,8 +3,10 @@
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
-from server.container import Assembly
+from server.features.backup.download import Downloads
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
 
 router = APIRouter(prefix="/api/backup", tags=["sessions"])
 
@@ -13,6 +15,7 @@ router = APIRouter(prefix="/api/backup", tags=["sessions"])
     "",
     summary="Download a copy of the database",
     operation_id="downloadBackup",
+    openapi_extra=needs(Need.OPERATOR),
     response_class=Response,
     responses={
         200: {
@@ -22,6 +25,6 @@ router = APIRouter(prefix="/api/backup", tags=["sessions"])
         **answers(_409="Another one is being copied or downloaded", _507="It cannot be copied"),
     },
 )
-async def download_backup(request: Request) -> Response:
+async def download_backup(request: Request, downloads: Provided[Downloads]) -> Response:
     """Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile."""
-    return await Assembly.of(request).downloads.begin(request)
+    return await downloads.begin(request)

@@ -7,9 +7,8 @@ from fastapi.responses import Response
 
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
-from server.container import Assembly
 from server.features.comm_tests import tables
-from server.features.comm_tests.lab import read_limited
+from server.features.comm_tests.lab import Lab, read_limited
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
 from server.features.comm_tests.runs import Runs
 from server.features.comm_tests.schemas import (
@@ -26,7 +25,10 @@ from server.features.comm_tests.schemas import (
 )
 from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
+from server.health.monitor import Watch
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX, CommTestRun
 
 UNKNOWN = answers(_404="There is no such run")
@@ -37,14 +39,22 @@ Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
 @router.get(
-    "/documents", summary="The documents that come with the program", operation_id="listTestDocuments"
+    "/documents",
+    summary="The documents that come with the program",
+    operation_id="listTestDocuments",
+    openapi_extra=needs(Need.VIEWER),
 )
 def get_documents() -> list[TestDocument]:
     """The thesis's own example (Figure 10) first."""
     return shipped_documents()
 
 
-@router.post("/check", summary="What is wrong with a document", operation_id="checkTestDocument")
+@router.post(
+    "/check",
+    summary="What is wrong with a document",
+    operation_id="checkTestDocument",
+    openapi_extra=needs(Need.VIEWER),
+)
 def check(document: DocumentText) -> Check:
     """Its problems, field by field; or its tests, with about how long they take."""
     try:
@@ -58,6 +68,7 @@ def check(document: DocumentText) -> Check:
     status_code=201,
     summary="Run a document",
     operation_id="startTestRun",
+    openapi_extra=needs(Need.OPERATOR),
     responses=answers(
         _409="Refused now",
         _422="The document cannot be run",
@@ -65,66 +76,87 @@ def check(document: DocumentText) -> Check:
         _503="The database does not work",
     ),
 )
-async def start(request: Request, wanted: Start) -> Started:
+async def start(request: Request, watch: Provided[Watch], lab: Provided[Lab], wanted: Start) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
     if wanted.place == "robot":
         require_control(request)
-    Assembly.of(request).require_disarmed("A communication test builds and uploads programs.")
+    watch.require_disarmed("A communication test builds and uploads programs.")
     try:
-        return Started(run=await Assembly.of(request).lab.start(wanted.text, wanted.place))
+        return Started(run=await lab.start(wanted.text, wanted.place))
     except DocumentError as problem:
         raise HTTPException(422, "\n".join(problem.problems)) from problem
 
 
-@router.post("/cancel", status_code=204, summary="Cancel what runs", operation_id="cancelTestRun")
-async def cancel(request: Request) -> None:
+@router.post(
+    "/cancel",
+    status_code=204,
+    summary="Cancel what runs",
+    operation_id="cancelTestRun",
+    openapi_extra=needs(Need.OPERATOR),
+)
+async def cancel(lab: Provided[Lab]) -> None:
     """The cells that are finished are kept. Its end is told on the live socket."""
-    Assembly.of(request).lab.cancel()
+    lab.cancel()
 
 
-@router.get("/runs", summary="All runs, newest first", operation_id="listTestRuns")
-def get_runs(request: Request) -> list[RunSummary]:
+@router.get(
+    "/runs", summary="All runs, newest first", operation_id="listTestRuns", openapi_extra=needs(Need.VIEWER)
+)
+def get_runs(lab: Provided[Lab]) -> list[RunSummary]:
     """One's own and those that come with the program."""
-    return list(_runs(request).summaries())
+    return list(lab.runs.summaries())
 
 
-@router.get("/runs/{run}", summary="One run", operation_id="getTestRun", responses=UNKNOWN)
-def get_run(request: Request, run: Identifier) -> Run:
+@router.get(
+    "/runs/{run}",
+    summary="One run",
+    operation_id="getTestRun",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
+)
+def get_run(lab: Provided[Lab], run: Identifier) -> Run:
     """With its configuration and its cells."""
-    return _runs(request).whole(_find(request, run))
+    return lab.runs.whole(_find(lab.runs, run))
 
 
 @router.get(
     "/runs/{run}/csv",
     summary="Download a run's cells",
     operation_id="downloadTestRunCsv",
+    openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}, "description": "A line for each cell"}, **UNKNOWN},
 )
-def get_csv(request: Request, run: Identifier) -> Response:
+def get_csv(lab: Provided[Lab], run: Identifier) -> Response:
     """A line for each cell."""
-    found = _find(request, run)
-    return _file(tables.write_csv(found, _runs(request).cells(run)), "text/csv", f"comm_test_{run}.csv")
+    found = _find(lab.runs, run)
+    return _file(tables.write_csv(found, lab.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
 @router.get(
     "/runs/{run}/json",
     summary="Download a run",
     operation_id="downloadTestRunJson",
+    openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={
         200: {"content": {"application/json": {}}, "description": "Everything known of it"},
         **UNKNOWN,
     },
 )
-def get_json(request: Request, run: Identifier) -> Response:
+def get_json(lab: Provided[Lab], run: Identifier) -> Response:
     """Everything that is known of it, and its cells."""
-    found = _find(request, run)
-    text = tables.write_json(found, _runs(request).cells(run))
+    found = _find(lab.runs, run)
+    text = tables.write_json(found, lab.runs.cells(run))
     return _file(text, "application/json", f"comm_test_{run}.json")
 
 
-@router.get("/tables", summary="The thesis's own results", operation_id="listTestTables")
+@router.get(
+    "/tables",
+    summary="The thesis's own results",
+    operation_id="listTestTables",
+    openapi_extra=needs(Need.VIEWER),
+)
 def get_tables() -> list[ThesisTable]:
     """Table 5 (plain numbers) and Table 6 (packets)."""
     return [
@@ -155,12 +187,8 @@ def _describe(test: CommTest) -> CheckedTest:
     )
 
 
-def _runs(request: Request) -> Runs:
-    return Assembly.of(request).lab.runs
-
-
-def _find(request: Request, run: int) -> CommTestRun:
-    found = _runs(request).find(run)
+def _find(runs: Runs, run: int) -> CommTestRun:
+    found = runs.find(run)
     if found is None:
         raise HTTPException(404, f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")
     return found

@@ -2,15 +2,17 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Path, Query
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, Response
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from server.container import Assembly
+from server.features.comparison.comparisons import Comparisons
 from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.features.comparison.signals import Signal
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
 
 REPORT_POINTS = 2000
@@ -56,10 +58,11 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
     "/compare/report",
     summary="A comparison as one HTML file",
     operation_id="getComparisonReport",
+    openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"text/html": {}}, "description": "The file"}, **UNKNOWN},
 )
-def get_report(request: Request, query: Annotated[ReportQuery, Query()]) -> HTMLResponse:
+def get_report(comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]) -> HTMLResponse:
     """Charts, figures and differences, with all that they need: it opens without any network."""
     from server.features.comparison.report import write_report  # Plotly is not needed before
 
@@ -67,7 +70,7 @@ def get_report(request: Request, query: Annotated[ReportQuery, Query()]) -> HTML
         wanted = query.wanted()
     except ValidationError as problem:
         raise RequestValidationError(problem.errors()) from problem
-    comparison = Assembly.of(request).comparer.compare(wanted)
+    comparison = comparisons.comparer.compare(wanted)
     name = "_".join(str(one.id) for one in comparison.sessions)
     return HTMLResponse(
         write_report(comparison, _range(query.view_start, query.view_end)),
@@ -79,24 +82,33 @@ def get_report(request: Request, query: Annotated[ReportQuery, Query()]) -> HTML
     "/sessions/{session}/signals",
     summary="What of a session can be drawn over time",
     operation_id="listSignals",
+    openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def get_signals(request: Request, session: Identifier) -> list[Signal]:
+def get_signals(comparisons: Provided[Comparisons], session: Identifier) -> list[Signal]:
     """The columns of its topics that have samples, and numbers of its documents."""
-    return Assembly.of(request).comparer.signals(session)
+    return comparisons.comparer.signals(session)
 
 
 @router.post(
-    "/compare", summary="Lay sessions over each other", operation_id="compareSessions", responses=UNKNOWN
+    "/compare",
+    summary="Lay sessions over each other",
+    operation_id="compareSessions",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
 )
-def compare(request: Request, wanted: WantedComparison) -> Comparison:
+def compare(comparisons: Provided[Comparisons], wanted: WantedComparison) -> Comparison:
     """Lines, figures and what was different about the sessions."""
-    return Assembly.of(request).comparer.compare(wanted)
+    return comparisons.comparer.compare(wanted)
 
 
 @router.post(
-    "/compare/lines", summary="Lines for a part of the time", operation_id="compareLines", responses=UNKNOWN
+    "/compare/lines",
+    summary="Lines for a part of the time",
+    operation_id="compareLines",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
 )
-def lines(request: Request, wanted: WantedLines) -> Lines:
+def lines(comparisons: Provided[Comparisons], wanted: WantedLines) -> Lines:
     """What is fetched when somebody looks closer."""
-    return Assembly.of(request).comparer.lines(wanted)
+    return comparisons.comparer.lines(wanted)

@@ -6,7 +6,6 @@ from fastapi import APIRouter, HTTPException, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
-from server.container import Assembly
 from server.features.exports.archive_reader import ArchiveRefused
 from server.features.exports.files import FileFailed
 from server.features.exports.formats import KINDS
@@ -15,7 +14,11 @@ from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRefused
 from server.features.sessions.session import Session, find_row, from_row
+from server.health.monitor import Watch
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
+from server.platform.store import Store
 
 UNKNOWN = answers(_404="There is no such export")
 
@@ -24,10 +27,15 @@ router = APIRouter(prefix="/api", tags=["exports"])
 Identifier = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 
 
-@router.get("/exports", summary="All exports, newest first", operation_id="listExports")
-async def get_exports(request: Request) -> list[Job]:
+@router.get(
+    "/exports",
+    summary="All exports, newest first",
+    operation_id="listExports",
+    openapi_extra=needs(Need.VIEWER),
+)
+async def get_exports(jobs: Provided[Jobs]) -> list[Job]:
     """Those that are kept, and those that are being made."""
-    return _jobs(request).list()
+    return jobs.list()
 
 
 @router.post(
@@ -35,26 +43,32 @@ async def get_exports(request: Request) -> list[Job]:
     status_code=201,
     summary="Have a session made into a file",
     operation_id="startExport",
+    openapi_extra=needs(Need.OPERATOR),
     responses=answers(_404="There is no such session", _409="Refused now", _422="It cannot be made"),
 )
-async def start_export(request: Request, wanted: NewExport) -> Job:
+async def start_export(store: Provided[Store], jobs: Provided[Jobs], wanted: NewExport) -> Job:
     """Files are made one after the other, apart from the server; GET tells how far it is."""
-    assembly = Assembly.of(request)
-    row = await run_in_threadpool(find_row, assembly.store, wanted.session)
+    row = await run_in_threadpool(find_row, store, wanted.session)
     if row is None:
         raise HTTPException(
             404, f"There is no session {wanted.session}; GET /api/sessions lists those there are."
         )
     try:
-        return assembly.jobs.add(row, wanted)
+        return jobs.add(row, wanted)
     except ExportRefused as problem:
         raise HTTPException(422, str(problem)) from problem
 
 
-@router.get("/exports/{export}", summary="One export", operation_id="getExport", responses=UNKNOWN)
-async def get_export(request: Request, export: Identifier) -> Job:
+@router.get(
+    "/exports/{export}",
+    summary="One export",
+    operation_id="getExport",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
+)
+async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
     """How far it is; its size and checksum when it is there."""
-    return _find(request, export)
+    return _find(jobs, export)
 
 
 @router.delete(
@@ -62,17 +76,19 @@ async def get_export(request: Request, export: Identifier) -> Job:
     status_code=204,
     summary="Cancel or delete an export",
     operation_id="deleteExport",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **answers(_409="It cannot be deleted")},
 )
-async def delete_export(request: Request, export: Identifier) -> None:
+async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
     """The file is gone then."""
-    _jobs(request).remove(_find(request, export))
+    jobs.remove(_find(jobs, export))
 
 
 @router.get(
     "/exports/{export}/file",
     summary="Download an export",
     operation_id="downloadExport",
+    openapi_extra=needs(Need.VIEWER),
     response_class=FileResponse,
     responses={
         200: {
@@ -84,13 +100,13 @@ async def delete_export(request: Request, export: Identifier) -> None:
         **answers(_409="It is not finished"),
     },
 )
-async def get_file(request: Request, export: Identifier) -> FileResponse:
+async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     """A download that was cut goes on where it was: ask with Range, and with If-Range its ETag."""
-    job = _find(request, export)
+    job = _find(jobs, export)
     if job.state != "done":
         raise HTTPException(409, job.problem or "The file is not finished yet. Wait until its state is done.")
     return FileResponse(
-        _jobs(request).path(job),
+        jobs.path(job),
         filename=job.file,
         media_type=KINDS[job.wanted.format].media_type,
         headers={"etag": f'"{job.sha256}"'},
@@ -103,7 +119,8 @@ async def get_file(request: Request, export: Identifier) -> FileResponse:
     summary="Import the archive of a session",
     operation_id="importSession",
     openapi_extra={
-        "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}}
+        **needs(Need.OPERATOR),
+        "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}},
     },
     responses=answers(
         _409="It is here already, another is being imported, or the robot is armed",
@@ -112,32 +129,25 @@ async def get_file(request: Request, export: Identifier) -> FileResponse:
         _507="The disk is full",
     ),
 )
-async def import_session(request: Request) -> Session:
+async def import_session(
+    request: Request, watch: Provided[Watch], imports: Provided[Imports], store: Provided[Store]
+) -> Session:
     """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
-    assembly = Assembly.of(request)
-    assembly.require_disarmed("An upload takes time and disk from what is recorded.")
+    watch.require_disarmed("An upload takes time and disk from what is recorded.")
     length = request.headers.get("content-length")
     try:
-        number = await _imports(request).receive(request.stream(), int(length) if length else None)
+        number = await imports.receive(request.stream(), int(length) if length else None)
     except ArchiveRefused as problem:
         raise HTTPException(422, str(problem)) from problem
     except FileFailed as problem:
         raise HTTPException(507, str(problem)) from problem
-    row = await run_in_threadpool(find_row, assembly.store, number)
+    row = await run_in_threadpool(find_row, store, number)
     assert row is not None
     return from_row(row)
 
 
-def _jobs(request: Request) -> Jobs:
-    return Assembly.of(request).jobs
-
-
-def _imports(request: Request) -> Imports:
-    return Assembly.of(request).imports
-
-
-def _find(request: Request, export: str) -> Job:
-    found = _jobs(request).find(export)
+def _find(jobs: Jobs, export: str) -> Job:
+    found = jobs.find(export)
     if found is None:
         raise HTTPException(404, f"There is no export {export}; GET /api/exports lists those there are.")
     return found

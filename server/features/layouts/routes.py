@@ -3,16 +3,17 @@
 from collections.abc import Sequence
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
-from server.container import Assembly
 from server.features.layouts.document import LayoutDocument
-from server.features.layouts.library import KeptLayout, WholeLayout
-from server.features.sessions.routes import STORING
+from server.features.layouts.library import KeptLayout, Layouts, WholeLayout
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
 
+STORING = answers(_503="The database does not work")
 UNKNOWN = answers(_404="There is no such layout")
 
 router = APIRouter(prefix="/api/layouts", tags=["layouts"])
@@ -28,16 +29,28 @@ class NewLayout(BaseModel):
     document: LayoutDocument
 
 
-@router.get("", summary="The layouts that are kept", operation_id="listLayouts", responses=STORING)
-def list_layouts(request: Request) -> Sequence[KeptLayout]:
+@router.get(
+    "",
+    summary="The layouts that are kept",
+    operation_id="listLayouts",
+    openapi_extra=needs(Need.VIEWER),
+    responses=STORING,
+)
+def list_layouts(layouts: Provided[Layouts]) -> Sequence[KeptLayout]:
     """By name."""
-    return Assembly.of(request).layouts.list()
+    return layouts.list()
 
 
-@router.get("/{layout}", summary="A layout", operation_id="getLayout", responses={**UNKNOWN, **STORING})
-def get_layout(request: Request, layout: LayoutIdentifier) -> WholeLayout:
+@router.get(
+    "/{layout}",
+    summary="A layout",
+    operation_id="getLayout",
+    openapi_extra=needs(Need.VIEWER),
+    responses={**UNKNOWN, **STORING},
+)
+def get_layout(layouts: Provided[Layouts], layout: LayoutIdentifier) -> WholeLayout:
     """With its document as it was kept, which the page reads."""
-    return Assembly.of(request).layouts.get(layout)
+    return layouts.get(layout)
 
 
 @router.post(
@@ -45,11 +58,12 @@ def get_layout(request: Request, layout: LayoutIdentifier) -> WholeLayout:
     status_code=201,
     summary="Keep a layout",
     operation_id="saveLayout",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**answers(_409="There are too many"), **STORING},
 )
-async def save_layout(request: Request, wanted: NewLayout) -> KeptLayout:
+async def save_layout(layouts: Provided[Layouts], wanted: NewLayout) -> KeptLayout:
     """Keep it under its name, over one of that name."""
-    return await Assembly.of(request).layouts.save(wanted.name, wanted.document)
+    return await layouts.save(wanted.name, wanted.document)
 
 
 @router.delete(
@@ -57,8 +71,9 @@ async def save_layout(request: Request, wanted: NewLayout) -> KeptLayout:
     status_code=204,
     summary="Delete a layout",
     operation_id="deleteLayout",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **STORING},
 )
-async def delete_layout(request: Request, layout: LayoutIdentifier) -> None:
+async def delete_layout(layouts: Provided[Layouts], layout: LayoutIdentifier) -> None:
     """Delete it for good; pages that show it go on showing it."""
-    await Assembly.of(request).layouts.delete(layout)
+    await layouts.delete(layout)

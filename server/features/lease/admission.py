@@ -1,24 +1,43 @@
-"""What a request has to show where it needs the control: the key of the seat that has it."""
+"""Admission of requests: the role that an operation needs, and the control where it needs that."""
 
-from fastapi import HTTPException
+from typing import Annotated
+
+from fastapi import Depends, HTTPException
 from starlette.requests import HTTPConnection
 
-from server.container import Assembly
+from server.features.lease.arbiter import Desk
 from server.features.lease.clients import Seat
-from server.http.sign_in.identity import Identity
+from server.http.dependencies import find_service
+from server.http.sign_in.authorization import refusal
+from server.http.sign_in.identity import IDENTITY, Identity
+from server.http.sign_in.policy import Need, need_of
 
 HEADER = "x-mucat-seat"
 
 
-def find_seat(connection: HTTPConnection) -> Seat | None:
-    """The seat that this request names and may use; a program's lasts on by that."""
-    key = connection.headers.get(HEADER)
-    return None if key is None else Assembly.of(connection).desk.seats.use(Identity.of(connection), key)
+async def admit(connection: HTTPConnection) -> None:
+    """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
+    NotInControl where it needs the control, and another seat has it.
+
+    The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
+    """
+    socket = connection.scope["type"] == "websocket"
+    need = Need.VIEWER if socket else need_of(connection.scope["route"])
+    reason = refusal(connection.scope.get(IDENTITY), need)
+    if reason is not None:
+        raise HTTPException(403, reason)
+    if need == Need.CONTROL:
+        require_control(connection)
 
 
-def require_seat(connection: HTTPConnection) -> Seat:
-    """The same, for a route that is about the seat itself. Raises HTTPException (409)."""
-    seat = find_seat(connection)
+def require_control(connection: HTTPConnection) -> None:
+    """Raises NotInControl where it comes from another seat than the one that has control."""
+    find_service(connection, Desk).require(_find_seat(connection))
+
+
+async def require_seat(connection: HTTPConnection) -> Seat:
+    """The seat that this request names. Raises HTTPException (409)."""
+    seat = _find_seat(connection)
     if seat is None:
         raise HTTPException(
             409,
@@ -28,6 +47,13 @@ def require_seat(connection: HTTPConnection) -> Seat:
     return seat
 
 
-def require_control(connection: HTTPConnection) -> None:
-    """Raises NotInControl where it comes from another seat than the one that has control."""
-    Assembly.of(connection).desk.require(find_seat(connection))
+OwnSeat = Annotated[Seat, Depends(require_seat)]
+"""A route's parameter that is the seat of whoever asks."""
+
+
+def _find_seat(connection: HTTPConnection) -> Seat | None:
+    key = connection.headers.get(HEADER)
+    if key is None:
+        return None
+    identity: Identity = connection.scope[IDENTITY]
+    return find_service(connection, Desk).seats.use(identity, key)

@@ -1,23 +1,34 @@
-"""The page's one WebSocket: blocks and news to the page, pings and STOP from it."""
+"""The live socket of a page, and the minutes before it was opened.
+
+The socket carries blocks and news to the page; pings, driving and STOP from it.
+"""
 
 import asyncio
 import json
+from collections.abc import Callable
 from time import time
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
-from pydantic import ValidationError
+from fastapi import APIRouter, Depends, Query, WebSocket, WebSocketDisconnect
+from fastapi.responses import Response
+from pydantic import StringConstraints, ValidationError
 
+from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import DEFINITIONS_HASH
+from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.transport.zenoh_transport import Refused
-from server.container import Assembly
+from server.features.lease.arbiter import Desk
 from server.features.lease.clients import Seat
 from server.features.lease.driving import Drive
+from server.http.dependencies import Provided
+from server.http.page import Page
+from server.http.sign_in.access import Access
 from server.http.sign_in.authorization import may_say
-from server.http.sign_in.identity import Identity
-from server.http.sign_in.policy import MESSAGES
-from server.stream.bridge import RuntimeSilent
-from server.stream.hub import POLICY_VIOLATION, Client, Evicted
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import MESSAGES, Need, needs
+from server.platform.settings import Settings
+from server.stream.bridge import Bridge, RuntimeSilent
+from server.stream.hub import POLICY_VIOLATION, Client, Evicted, Hub
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""
@@ -27,6 +38,9 @@ WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
 
 router = APIRouter()
 
+_ROWS = "|".join(topic.name for topic in TOPICS if topic.kind is Kind.ROWS)
+RowTopic = Annotated[str, StringConstraints(pattern=f"^({_ROWS})$")]
+
 
 class Nonsense(ValueError):  # noqa: N818 - it says what happened
     """A message from the page that is not understood; the text says why."""
@@ -35,10 +49,12 @@ class Nonsense(ValueError):  # noqa: N818 - it says what happened
 class _Conversation:
     """What one page says, and what is done about it."""
 
-    def __init__(self, assembly: Assembly, socket: WebSocket, seat: Seat) -> None:
-        self._assembly = assembly
-        self._seat = seat
+    def __init__(self, socket: WebSocket, seat: Seat, hub: Hub, desk: Desk, bridge: Bridge) -> None:
         self._socket = socket
+        self._seat = seat
+        self._hub = hub
+        self._desk = desk
+        self._bridge = bridge
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
 
@@ -77,9 +93,9 @@ class _Conversation:
             case "stop":
                 self._stop(client)
             case "watch":
-                self._assembly.hub.show(client, _topics(message.get("pictures")))
+                self._hub.show(client, _topics(message.get("pictures")))
             case "drive":
-                self._assembly.desk.drive(self._seat, _drive(message))
+                self._desk.drive(self._seat, _drive(message))
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -90,7 +106,7 @@ class _Conversation:
 
     async def _send_stop(self, client: Client) -> None:
         try:
-            await self._assembly.bridge.command("stop", {})
+            await self._bridge.command("stop", {})
         except (Refused, RuntimeSilent) as problem:
             client.answer({"op": "error", "text": f"STOP has not been confirmed: {problem}"})
         if self._stop_again:
@@ -98,24 +114,48 @@ class _Conversation:
             await self._send_stop(client)
 
 
+Greeting = Callable[[Seat], dict[str, Any]]
+"""Makes the first message to a page that has this seat."""
+
+
+async def greet(settings: Provided[Settings], clock: Provided[Clock], page: Provided[Page]) -> Greeting:
+    """The greeting of this server."""
+    return lambda seat: {
+        "op": "hello",
+        "definitions": f"{DEFINITIONS_HASH:08x}",
+        "robot": settings.robot,
+        "steady": clock.now(),
+        "utc": time(),
+        "page_version": page.version,
+        "you": {"name": seat.identity.name, "role": seat.identity.role, "seat": seat.number},
+        "seat_key": seat.key,
+    }
+
+
 @router.websocket("/api/live")
-async def live(socket: WebSocket) -> None:
+async def live(
+    socket: WebSocket,
+    caller: Caller,
+    access: Provided[Access],
+    hub: Provided[Hub],
+    desk: Provided[Desk],
+    bridge: Provided[Bridge],
+    greeting: Annotated[Greeting, Depends(greet)],
+) -> None:
     """Serve one page until it leaves."""
-    assembly = Assembly.of(socket)
     await socket.accept()
 
     async def send(data: bytes | str) -> None:
         kind = "bytes" if isinstance(data, bytes) else "text"
         await socket.send({"type": "websocket.send", kind: data})
 
-    identity = Identity.of(socket)
     try:
         # It may have been revoked while the socket opened; from here on the hub knows it.
-        if not assembly.access.still(identity):
+        if not access.still(caller):
             raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
-        with assembly.desk.page(identity) as seat:
-            listen = _Conversation(assembly, socket, seat).listen
-            await assembly.hub.serve(send, _greeting(assembly, seat), listen, identity.device)
+        with desk.page(caller) as seat:
+            listen = _Conversation(socket, seat, hub, desk, bridge).listen
+            await hub.serve(send, greeting(seat), listen, caller.device)
     except WebSocketDisconnect:
         return
     except Evicted as reason:
@@ -127,17 +167,27 @@ async def live(socket: WebSocket) -> None:
             return
 
 
-def _greeting(assembly: Assembly, seat: Seat) -> dict[str, Any]:
-    return {
-        "op": "hello",
-        "definitions": f"{DEFINITIONS_HASH:08x}",
-        "robot": assembly.settings.robot,
-        "steady": assembly.clock.now(),
-        "utc": time(),
-        "page_version": assembly.page.version,
-        "you": {"name": seat.identity.name, "role": seat.identity.role, "seat": seat.number},
-        "seat_key": seat.key,
-    }
+@router.get(
+    "/api/past",
+    summary="The last ten minutes of some topics",
+    operation_id="getPast",
+    tags=["live"],
+    openapi_extra=needs(Need.VIEWER),
+    response_class=Response,
+    responses={
+        200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"}
+    },
+)
+async def get_past(
+    hub: Provided[Hub],
+    topic: Annotated[list[RowTopic], Query(min_length=1, description="of rows; may be given several times")],
+    until: Annotated[
+        float, Query(allow_inf_nan=False, description="s, steady clock; a little more may come")
+    ],
+) -> Response:
+    """All rows that the server still has of these topics, up to `until`: topic by topic, the oldest first."""
+    rows = hub.history.rows(topic, until)
+    return Response(rows, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
 
 
 def _read(text: str | None) -> dict[str, Any]:

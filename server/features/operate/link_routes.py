@@ -1,10 +1,12 @@
 """The serial line: the last frames each way, for whoever looks for what has gone wrong."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.container import Assembly
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
+from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/link", tags=["link"])
 
@@ -43,8 +45,9 @@ class LinkFrames(BaseModel):
     "/frames",
     summary="The last frames on the serial line, now and at the last fault",
     operation_id="getLinkFrames",
+    openapi_extra=needs(Need.VIEWER),
     responses=answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s"),
 )
-async def get_frames(request: Request) -> LinkFrames:
+async def get_frames(bridge: Provided[Bridge]) -> LinkFrames:
     """Asked of the runtime at each call; it costs nothing where nobody calls."""
-    return LinkFrames.model_validate(await Assembly.of(request).bridge.query("frames"))
+    return LinkFrames.model_validate(await bridge.query("frames"))

@@ -1,15 +1,21 @@
 """The robot: its state, and commands to it. The runtime checks every command again, and may refuse it."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, HTTPException, Request
+from fastapi import APIRouter, HTTPException
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.documents import State, Steering
-from server.container import Assembly
+from server.features.parameters.changes import Changes
+from server.health.alarms import Alarms
+from server.health.monitor import Watch
+from server.http.dependencies import Provided
 from server.http.problems import answers
-from server.http.sign_in.identity import Identity
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import Need, needs
 from server.platform.disk_space import check_room
+from server.platform.settings import Settings
+from server.stream.bridge import Bridge
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
 COMMAND = {
@@ -82,52 +88,73 @@ class Vision(BaseModel):
     colour: Name | None = None
 
 
-async def tune(request: Request, name: str, payload: dict[str, Any]) -> None:
-    """Have the runtime do what may change parameters; who did is noted."""
-    await Assembly.of(request).changes.command(Identity.of(request).name, name, payload)
-
-
 @router.get(
     "",
     summary="The robot's newest state",
     operation_id="getRobot",
+    openapi_extra=needs(Need.VIEWER),
     responses=answers(_503="The runtime has said nothing yet"),
     response_model=State,
 )
-async def get_robot(request: Request) -> object:
+async def get_robot(watch: Provided[Watch]) -> object:
     """As the runtime sent it last; its `time` says when that was (s, steady clock)."""
-    state = Assembly.of(request).watch.state()
+    state = watch.state()
     if state is None:
         raise HTTPException(503, "The robot's runtime has said nothing yet. Its state is in /api/health.")
     return state
 
 
-@router.post("/stop", status_code=204, summary="Disarm at once", operation_id="stopRobot", responses=SILENT)
-async def stop(request: Request) -> None:
+@router.post(
+    "/stop",
+    status_code=204,
+    summary="Disarm at once",
+    operation_id="stopRobot",
+    openapi_extra=needs(Need.VIEWER),
+    responses=SILENT,
+)
+async def stop(bridge: Provided[Bridge]) -> None:
     """Never refused, and before everything else."""
-    await Assembly.of(request).bridge.command("stop", {})
-
-
-@router.post("/arm", status_code=204, summary="Arm", operation_id="armRobot", responses=COMMAND)
-async def arm(request: Request, driver: Driver | None = None) -> None:
-    """Refused with every reason that stands against it; without a body the depth controller steers."""
-    assembly = Assembly.of(request)
-    check_room(assembly.settings.data)
-    await assembly.bridge.command("arm", driver.model_dump() if driver else {})
-
-
-@router.put("/mode", status_code=204, summary="Hand over", operation_id="putMode", responses=COMMAND)
-async def put_mode(request: Request, driver: Driver) -> None:
-    """Let the pilot or the depth controller steer the armed robot."""
-    await Assembly.of(request).bridge.command("mode", driver.model_dump())
+    await bridge.command("stop", {})
 
 
 @router.post(
-    "/check-fins", status_code=204, summary="Check the fins", operation_id="checkFins", responses=COMMAND
+    "/arm",
+    status_code=204,
+    summary="Arm",
+    operation_id="armRobot",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
 )
-async def check_fins(request: Request) -> None:
+async def arm(settings: Provided[Settings], bridge: Provided[Bridge], driver: Driver | None = None) -> None:
+    """Refused with every reason that stands against it; without a body the depth controller steers."""
+    check_room(settings.data)
+    await bridge.command("arm", driver.model_dump() if driver else {})
+
+
+@router.put(
+    "/mode",
+    status_code=204,
+    summary="Hand over",
+    operation_id="putMode",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
+)
+async def put_mode(bridge: Provided[Bridge], driver: Driver) -> None:
+    """Let the pilot or the depth controller steer the armed robot."""
+    await bridge.command("mode", driver.model_dump())
+
+
+@router.post(
+    "/check-fins",
+    status_code=204,
+    summary="Check the fins",
+    operation_id="checkFins",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
+)
+async def check_fins(bridge: Provided[Bridge]) -> None:
     """Arm for some seconds, try each axis, and tell in an event which fins followed; then disarm."""
-    await Assembly.of(request).bridge.command("check_fins", {})
+    await bridge.command("check_fins", {})
 
 
 @router.post(
@@ -135,13 +162,13 @@ async def check_fins(request: Request) -> None:
     status_code=204,
     summary="Acknowledge the alarms",
     operation_id="acknowledgeAlarms",
+    openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def acknowledge(request: Request) -> None:
+async def acknowledge(alarms: Provided[Alarms], bridge: Provided[Bridge]) -> None:
     """Say that all alarms were seen; after a failsafe the robot may be armed again from then on."""
-    assembly = Assembly.of(request)
-    assembly.alarms.acknowledge()
-    await assembly.bridge.command("acknowledge", {})
+    alarms.acknowledge()
+    await bridge.command("acknowledge", {})
 
 
 @router.put(
@@ -149,11 +176,12 @@ async def acknowledge(request: Request) -> None:
     status_code=204,
     summary="Choose a controller",
     operation_id="putController",
+    openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def put_controller(request: Request, controller: Controller) -> None:
+async def put_controller(changes: Provided[Changes], caller: Caller, controller: Controller) -> None:
     """Choose a controller, and set gains of it."""
-    await tune(request, "controller", controller.model_dump())
+    await changes.command(caller.name, "controller", controller.model_dump())
 
 
 @router.put(
@@ -161,41 +189,67 @@ async def put_controller(request: Request, controller: Controller) -> None:
     status_code=204,
     summary="Steer or hold depth or an angle",
     operation_id="putLoop",
+    openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
 async def put_loop(
-    request: Request, name: Literal["depth", "heading", "pitch", "roll"], change: LoopChange
+    changes: Provided[Changes],
+    caller: Caller,
+    name: Literal["depth", "heading", "pitch", "roll"],
+    change: LoopChange,
 ) -> None:
     """Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing."""
     question = {"name": name, **change.model_dump(exclude_none=True)}
-    await tune(request, "loop", question)
+    await changes.command(caller.name, "loop", question)
 
 
 @router.put(
-    "/set-points", status_code=204, summary="Set depths", operation_id="putSetPoints", responses=COMMAND
+    "/set-points",
+    status_code=204,
+    summary="Set depths",
+    operation_id="putSetPoints",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
 )
-async def put_set_points(request: Request, set_points: SetPoints) -> None:
+async def put_set_points(changes: Provided[Changes], caller: Caller, set_points: SetPoints) -> None:
     """Set the wanted depths."""
-    await tune(request, "set_points", set_points.model_dump(exclude_none=True))
+    await changes.command(caller.name, "set_points", set_points.model_dump(exclude_none=True))
 
 
 @router.put(
-    "/steering", status_code=204, summary="Choose a course", operation_id="putSteering", responses=COMMAND
+    "/steering",
+    status_code=204,
+    summary="Choose a course",
+    operation_id="putSteering",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
 )
-async def put_steering(request: Request, course: Course) -> None:
+async def put_steering(changes: Provided[Changes], caller: Caller, course: Course) -> None:
     """Stay, or swim towards a light beacon."""
-    await tune(request, "steering", course.model_dump())
+    await changes.command(caller.name, "steering", course.model_dump())
 
 
 @router.put(
-    "/card", status_code=204, summary="Show or hide the card", operation_id="putCard", responses=COMMAND
+    "/card",
+    status_code=204,
+    summary="Show or hide the card",
+    operation_id="putCard",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
 )
-async def put_card(request: Request, card: Card) -> None:
+async def put_card(bridge: Provided[Bridge], card: Card) -> None:
     """Show a coloured card to the simulated camera, or take it away."""
-    await Assembly.of(request).bridge.command("card", card.model_dump())
+    await bridge.command("card", card.model_dump())
 
 
-@router.put("/vision", status_code=204, summary="Set up vision", operation_id="putVision", responses=COMMAND)
-async def put_vision(request: Request, vision: Vision) -> None:
+@router.put(
+    "/vision",
+    status_code=204,
+    summary="Set up vision",
+    operation_id="putVision",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
+)
+async def put_vision(changes: Provided[Changes], caller: Caller, vision: Vision) -> None:
     """Set how often the vision node looks, and for which colour."""
-    await tune(request, "vision", vision.model_dump(exclude_none=True))
+    await changes.command(caller.name, "vision", vision.model_dump(exclude_none=True))

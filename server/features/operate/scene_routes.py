@@ -2,11 +2,13 @@
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from server.container import Assembly
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
+from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/scene", tags=["scene"])
 
@@ -30,6 +32,7 @@ class View(BaseModel):
     status_code=204,
     summary="Choose the bystander's view",
     operation_id="putView",
+    openapi_extra=needs(Need.OPERATOR),
     responses=answers(
         _409="The scene refuses",
         _422="The request is not valid",
@@ -37,6 +40,6 @@ class View(BaseModel):
         _504="The scene did not answer within 2 s",
     ),
 )
-async def put_view(request: Request, view: View) -> None:
+async def put_view(bridge: Provided[Bridge], view: View) -> None:
     """Where the pictures of topic `observer` are taken from."""
-    await Assembly.of(request).bridge.scene("view", view.model_dump())
+    await bridge.scene("view", view.model_dump())

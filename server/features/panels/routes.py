@@ -3,27 +3,30 @@
 from collections.abc import Sequence
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path
 from fastapi.responses import HTMLResponse
 
-from server.container import Assembly
 from server.features.panels import frame
 from server.features.panels.scripts import OwnPanel, OwnPanelScript, list_panels, read_panel
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
+from server.platform.settings import Settings
 
 router = APIRouter(prefix="/api/panels", tags=["panels"])
 
 
-@router.get("", summary="One's own panels", operation_id="listPanels")
-def get_panels(request: Request) -> Sequence[OwnPanel]:
+@router.get("", summary="One's own panels", operation_id="listPanels", openapi_extra=needs(Need.VIEWER))
+def get_panels(settings: Provided[Settings]) -> Sequence[OwnPanel]:
     """Those in the folder `panels` of the data folder, by name."""
-    return list_panels(Assembly.of(request).settings.data.panels)
+    return list_panels(settings.data.panels)
 
 
 @router.get(
     "/frame",
     summary="Where one's own panels run",
     operation_id="getPanelFrame",
+    openapi_extra=needs(Need.VIEWER),
     response_class=HTMLResponse,
 )
 def get_frame() -> HTMLResponse:
@@ -35,8 +38,9 @@ def get_frame() -> HTMLResponse:
     "/own/{panel}",
     summary="A panel's script",
     operation_id="getPanel",
+    openapi_extra=needs(Need.VIEWER),
     responses=answers(_404="There is no such panel, or it cannot be read"),
 )
-def get_panel(request: Request, panel: Annotated[str, Path(max_length=60)]) -> OwnPanelScript:
+def get_panel(settings: Provided[Settings], panel: Annotated[str, Path(max_length=60)]) -> OwnPanelScript:
     """As text, which the page hands to a frame."""
-    return read_panel(Assembly.of(request).settings.data.panels, panel)
+    return read_panel(settings.data.panels, panel)

@@ -2,18 +2,21 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi import APIRouter, HTTPException, Path
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from server.container import Assembly
 from server.features.operate.routes import COMMAND, SILENT
-from server.features.parameters.profiles import ProfileError, file_name, read_file, write_file
+from server.features.parameters.changes import Changes
+from server.features.parameters.profiles import ProfileError, Profiles, file_name, read_file, write_file
 from server.features.parameters.routes import ask_parameters
 from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Restored
+from server.http.dependencies import Provided
 from server.http.problems import answers
-from server.http.sign_in.identity import Identity
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
+from server.stream.bridge import Bridge
 
 UNKNOWN = answers(_404="There is no such profile")
 STORED = answers(_503="The database does not work")
@@ -23,10 +26,12 @@ router = APIRouter(prefix="/api/profiles", tags=["parameters"])
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
-@router.get("", summary="Profiles", operation_id="listProfiles", responses=STORED)
-async def get_profiles(request: Request) -> list[Profile]:
+@router.get(
+    "", summary="Profiles", operation_id="listProfiles", openapi_extra=needs(Need.VIEWER), responses=STORED
+)
+async def get_profiles(profiles: Provided[Profiles]) -> list[Profile]:
     """In alphabetical order, with their values."""
-    return await run_in_threadpool(Assembly.of(request).profiles.list)
+    return await run_in_threadpool(profiles.list)
 
 
 @router.post(
@@ -34,13 +39,14 @@ async def get_profiles(request: Request) -> list[Profile]:
     status_code=201,
     summary="Keep what is in force",
     operation_id="saveProfile",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**answers(_409="The name is taken"), **SILENT},
 )
-async def save_profile(request: Request, wanted: NewProfile) -> Profile:
+async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], wanted: NewProfile) -> Profile:
     """Every parameter as it is now, under a name."""
-    listed = await ask_parameters(request)
+    listed = await ask_parameters(bridge)
     values = {one["name"]: one["value"] for one in listed["parameters"]}
-    return await Assembly.of(request).profiles.save(wanted.name, wanted.note, values)
+    return await profiles.save(wanted.name, wanted.note, values)
 
 
 @router.post(
@@ -48,16 +54,19 @@ async def save_profile(request: Request, wanted: NewProfile) -> Profile:
     status_code=201,
     summary="Take a profile from a file",
     operation_id="importProfile",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**answers(_409="The name is taken", _422="The file is no profile of this version"), **SILENT},
 )
-async def import_profile(request: Request, wanted: ProfileText) -> Imported:
+async def import_profile(
+    bridge: Provided[Bridge], profiles: Provided[Profiles], wanted: ProfileText
+) -> Imported:
     """Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told."""
     try:
         found = read_file(wanted.text)
     except ProfileError as problem:
         raise HTTPException(422, str(problem)) from problem
-    listed = await ask_parameters(request)
-    profile = await Assembly.of(request).profiles.save(found.name, found.note, found.parameters)
+    listed = await ask_parameters(bridge)
+    profile = await profiles.save(found.name, found.note, found.parameters)
     known = {one["name"] for one in listed["parameters"]}
     return Imported(profile=profile, unknown=[name for name in found.parameters if name not in known])
 
@@ -66,12 +75,13 @@ async def import_profile(request: Request, wanted: ProfileText) -> Imported:
     "/{profile}/file",
     summary="A profile as a file",
     operation_id="downloadProfile",
+    openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"application/json": {}}}, **UNKNOWN, **STORED},
 )
-async def get_file(request: Request, profile: Identifier) -> Response:
+async def get_file(profiles: Provided[Profiles], profile: Identifier) -> Response:
     """JSON, which another robot takes too."""
-    found = await run_in_threadpool(Assembly.of(request).profiles.find, profile)
+    found = await run_in_threadpool(profiles.find, profile)
     headers = {"Content-Disposition": f'attachment; filename="{file_name(found)}"'}
     return Response(write_file(found), media_type="application/json", headers=headers)
 
@@ -80,16 +90,16 @@ async def get_file(request: Request, profile: Identifier) -> Response:
     "/{profile}/restore",
     summary="Bring a profile into force",
     operation_id="restoreProfile",
+    openapi_extra=needs(Need.CONTROL),
     responses={**UNKNOWN, **COMMAND},
 )
-async def restore_profile(request: Request, profile: Identifier) -> Restored:
+async def restore_profile(
+    profiles: Provided[Profiles], changes: Provided[Changes], caller: Caller, profile: Identifier
+) -> Restored:
     """All of its parameters that can be set now; what is unknown or out of range is left out, and said."""
-    assembly = Assembly.of(request)
-    found = await run_in_threadpool(assembly.profiles.find, profile)
+    found = await run_in_threadpool(profiles.find, profile)
     wanted = {"values": found.values, "partly": True}
-    return await assembly.changes.command(
-        Identity.of(request).name, "parameters", wanted, why=f"Profile “{found.name}”"
-    )
+    return await changes.command(caller.name, "parameters", wanted, why=f"Profile “{found.name}”")
 
 
 @router.delete(
@@ -97,8 +107,9 @@ async def restore_profile(request: Request, profile: Identifier) -> Restored:
     status_code=204,
     summary="Delete a profile",
     operation_id="deleteProfile",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **STORED},
 )
-async def delete_profile(request: Request, profile: Identifier) -> None:
+async def delete_profile(profiles: Provided[Profiles], profile: Identifier) -> None:
     """For good."""
-    await Assembly.of(request).profiles.delete(profile)
+    await profiles.delete(profile)

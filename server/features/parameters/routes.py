@@ -2,22 +2,25 @@
 
 from typing import Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.documents import Parameters
-from server.container import Assembly
 from server.features.operate.routes import COMMAND, SILENT
+from server.features.parameters.changes import Changes
 from server.features.parameters.schemas import Change, NewValues, Restored, Undo
+from server.http.dependencies import Provided
 from server.http.problems import answers
-from server.http.sign_in.identity import Identity
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import Need, needs
+from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/parameters", tags=["parameters"])
 
 
-async def ask_parameters(request: Request) -> dict[str, Any]:
+async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
     """As the runtime knows them now. Raises RuntimeSilent, Refused."""
-    answer = await Assembly.of(request).bridge.query("parameters")
+    answer = await bridge.query("parameters")
     return {name: answer[name] for name in ("time", "parameters")}
 
 
@@ -25,33 +28,47 @@ async def ask_parameters(request: Request) -> dict[str, Any]:
     "",
     summary="Everything that may be tuned",
     operation_id="getParameters",
+    openapi_extra=needs(Need.VIEWER),
     responses={**answers(_409="The robot is lent to a communication test"), **SILENT},
     response_model=Parameters,
 )
-async def get_parameters(request: Request) -> object:
+async def get_parameters(bridge: Provided[Bridge]) -> object:
     """Each with its type, its range, its unit, its meaning and its value, as it is now."""
-    return await ask_parameters(request)
+    return await ask_parameters(bridge)
 
 
-@router.patch("", summary="Change parameters", operation_id="changeParameters", responses=COMMAND)
-async def change_parameters(request: Request, wanted: NewValues) -> Restored:
+@router.patch(
+    "",
+    summary="Change parameters",
+    operation_id="changeParameters",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
+)
+async def change_parameters(changes: Provided[Changes], caller: Caller, wanted: NewValues) -> Restored:
     """All or none, between two control ticks; what has the value already is not changed."""
-    changes = Assembly.of(request).changes
-    return await changes.command(Identity.of(request).name, "parameters", wanted.model_dump())
+    changes = changes
+    return await changes.command(caller.name, "parameters", wanted.model_dump())
 
 
 @router.get(
     "/changes",
     summary="Who changed what",
     operation_id="listParameterChanges",
+    openapi_extra=needs(Need.VIEWER),
     responses=answers(_503="The database does not work"),
 )
-async def get_changes(request: Request) -> list[Change]:
+async def get_changes(changes: Provided[Changes]) -> list[Change]:
     """The newest hundred, the newest first."""
-    return await run_in_threadpool(Assembly.of(request).changes.newest)
+    return await run_in_threadpool(changes.newest)
 
 
-@router.post("/undo", summary="Undo a change", operation_id="undoParameters", responses=COMMAND)
-async def undo(request: Request, wanted: Undo) -> Restored:
+@router.post(
+    "/undo",
+    summary="Undo a change",
+    operation_id="undoParameters",
+    openapi_extra=needs(Need.CONTROL),
+    responses=COMMAND,
+)
+async def undo(changes: Provided[Changes], caller: Caller, wanted: Undo) -> Restored:
     """Set back what the newest change has changed; then the one before it is the newest."""
-    return await Assembly.of(request).changes.undo(Identity.of(request).name, wanted.change)
+    return await changes.undo(caller.name, wanted.change)

@@ -5,7 +5,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, HTTPException, Path, Request, Response
 
-from server.container import Assembly
 from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
     DeviceChanges,
@@ -18,13 +17,15 @@ from server.features.people.schemas import (
     NewToken,
     Pairing,
 )
+from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Device
-from server.http.sign_in.identity import IDENTITY, Identity
+from server.http.sign_in.identity import IDENTITY, Caller, Identity
 from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTries, WrongCode
-from server.http.sign_in.policy import OPERATIONS, Need
+from server.http.sign_in.policy import Need, list_needs, needs
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.settings import Settings
 
 COOKIE_SECONDS = 400 * 86400
 """As long as browsers keep any. Access ends by signing out and by revocation; a Raspberry Pi without a
@@ -38,22 +39,28 @@ router = APIRouter(prefix="/api/access", tags=["access"])
 Number = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
-@router.get("/me", summary="Who asks", operation_id="getMe")
-async def get_me(request: Request) -> Me:
+@router.get("/me", summary="Who asks", operation_id="getMe", openapi_extra=needs(Need.NOTHING))
+async def get_me(request: Request, settings: Provided[Settings], access: Provided[Access]) -> Me:
     """Answered to everybody."""
-    return _me(request, request.scope[IDENTITY])
+    return _me(request, settings, access, request.scope[IDENTITY])
 
 
 @router.post(
     "/pair",
     summary="Sign this browser in with a code",
     operation_id="pairBrowser",
+    openapi_extra=needs(Need.NOTHING),
     responses=answers(_403="The code is not valid", _429="Too many wrong codes; Retry-After says how long")
     | STORING,
 )
-async def pair(request: Request, response: Response, wanted: Pairing) -> Me:
+async def pair(
+    request: Request,
+    settings: Provided[Settings],
+    access: Provided[Access],
+    response: Response,
+    wanted: Pairing,
+) -> Me:
     """Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more."""
-    access = Access.of(request)
     try:
         identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
     except WrongCode as problem:
@@ -69,48 +76,64 @@ async def pair(request: Request, response: Response, wanted: Pairing) -> Me:
             samesite="strict",
             secure=request.url.scheme == "https",
         )
-    return _me(request, identity)
+    return _me(request, settings, access, identity)
 
 
 @router.post(
-    "/sign-out", status_code=204, summary="Sign this browser out", operation_id="signOut", responses=STORING
+    "/sign-out",
+    status_code=204,
+    summary="Sign this browser out",
+    operation_id="signOut",
+    openapi_extra=needs(Need.VIEWER),
+    responses=STORING,
 )
-async def sign_out(request: Request, response: Response) -> None:
+async def sign_out(access: Provided[Access], caller: Caller, response: Response) -> None:
     """It has to be paired anew afterwards. For a program: its token is void."""
-    access = Access.of(request)
-    await access.sign_out(Identity.of(request))
+    await access.sign_out(caller)
     response.delete_cookie(access.cookie, httponly=True, samesite="strict")
 
 
-@router.post("/codes", status_code=201, summary="Make a pairing code", operation_id="makeCode")
-async def make_code(request: Request, wanted: NewCode) -> MadeCode:
+@router.post(
+    "/codes",
+    status_code=201,
+    summary="Make a pairing code",
+    operation_id="makeCode",
+    openapi_extra=needs(Need.OPERATOR),
+)
+async def make_code(
+    request: Request, settings: Provided[Settings], access: Provided[Access], wanted: NewCode
+) -> MadeCode:
     """For one browser, within ten minutes."""
-    code = Access.of(request).codes.make(wanted.role)
-    link = pairing_link(Assembly.of(request).settings.base_url(_called(request)), code)
+    code = access.codes.make(wanted.role)
+    link = pairing_link(settings.base_url(_called(request)), code)
     expires = time.time() + CODE_SECONDS
     return MadeCode(code=code, link=link, role=wanted.role, expires=expires, qr_svg=qr_svg(link))
 
 
-@router.get("/devices", summary="Who may come in", operation_id="listDevices")
-async def get_devices(request: Request) -> list[DeviceShape]:
+@router.get(
+    "/devices", summary="Who may come in", operation_id="listDevices", openapi_extra=needs(Need.OPERATOR)
+)
+async def get_devices(access: Provided[Access], caller: Caller) -> list[DeviceShape]:
     """Browsers and programs, in the order in which they came."""
-    return [_describe(request, device) for device in Access.of(request).devices.all()]
+    return [_describe(caller, device) for device in access.devices.all()]
 
 
 @router.patch(
     "/devices/{device}",
     summary="Rename, promote or demote",
     operation_id="changeDevice",
+    openapi_extra=needs(Need.OPERATOR),
     responses=UNKNOWN | STORING,
 )
-async def change(request: Request, device: Number, said: DeviceChanges) -> DeviceShape:
+async def change(
+    access: Provided[Access], caller: Caller, device: Number, said: DeviceChanges
+) -> DeviceShape:
     """A new role closes its live sockets, which come back in that role."""
-    access = Access.of(request)
     if said.role is not None:
-        await access.set_role(device, said.role, Identity.of(request))
+        await access.set_role(device, said.role, caller)
     if said.name is not None:
         await access.rename(device, said.name)
-    return _describe(request, access.devices.get(device))
+    return _describe(caller, access.devices.get(device))
 
 
 @router.delete(
@@ -118,11 +141,12 @@ async def change(request: Request, device: Number, said: DeviceChanges) -> Devic
     status_code=204,
     summary="Revoke access",
     operation_id="revokeDevice",
+    openapi_extra=needs(Need.OPERATOR),
     responses=UNKNOWN | STORING,
 )
-async def revoke(request: Request, device: Number) -> None:
+async def revoke(access: Provided[Access], caller: Caller, device: Number) -> None:
     """At once, also on live sockets, which are closed."""
-    await Access.of(request).revoke(device, Identity.of(request))
+    await access.revoke(device, caller)
 
 
 @router.post(
@@ -130,32 +154,37 @@ async def revoke(request: Request, device: Number) -> None:
     status_code=201,
     summary="Let a program in",
     operation_id="makeToken",
+    openapi_extra=needs(Need.OPERATOR),
     responses=STORING,
 )
-async def make_token(request: Request, wanted: NewToken) -> MadeToken:
+async def make_token(access: Provided[Access], caller: Caller, wanted: NewToken) -> MadeToken:
     """The token is shown this once; the program sends it as `Authorization: Bearer`."""
-    device, token = await Access.of(request).make_program(wanted.name, wanted.role, Identity.of(request))
-    return MadeToken(token=token, device=_describe(request, device))
+    device, token = await access.make_program(wanted.name, wanted.role, caller)
+    return MadeToken(token=token, device=_describe(caller, device))
 
 
 def _called(request: Request) -> str:
     return request.headers["host"].rsplit(":", 1)[0].lower()
 
 
-def _me(request: Request, identity: Identity | None) -> Me:
+def _me(request: Request, settings: Settings, access: Access, identity: Identity | None) -> Me:
     known = None
     if identity is not None:
         known = Known(device=identity.device, name=identity.name, role=identity.role, kind=identity.kind)
     return Me(
         signed_in=identity is not None,
-        robot=Assembly.of(request).settings.robot,
+        robot=settings.robot,
         identity=known,
-        pairing_open=Access.of(request).codes.any_valid,
-        operators_only=[name for name, need in OPERATIONS.items() if known and need >= Need.OPERATOR],
+        pairing_open=access.codes.any_valid,
+        operators_only=[
+            name
+            for name, need in list_needs(request.app.routes).items()
+            if known and need is not None and need >= Need.OPERATOR
+        ],
     )
 
 
-def _describe(request: Request, device: Device) -> DeviceShape:
+def _describe(caller: Identity, device: Device) -> DeviceShape:
     return DeviceShape(
         id=device.id,
         name=device.name,
@@ -163,5 +192,5 @@ def _describe(request: Request, device: Device) -> DeviceShape:
         kind=device.kind,
         paired=device.paired,
         seen=device.seen,
-        you=Identity.of(request).device == device.id,
+        you=caller.device == device.id,
     )

@@ -4,9 +4,9 @@ from fastapi import APIRouter, HTTPException, Request
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
-from server.container import Assembly
 from server.features.lease.admission import require_control
 from server.features.scenarios.library import keep_scenario, list_scenarios
+from server.features.scenarios.runs import Runs as ScenarioRuns
 from server.features.scenarios.schemas import (
     ScenarioCheck,
     ScenarioDocument,
@@ -17,7 +17,10 @@ from server.features.scenarios.schemas import (
     ScenarioText,
     summarize,
 )
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
+from server.platform.settings import Settings
 
 REFUSED = answers(_409="Refused now", _422="The scenario cannot be run")
 START = {**REFUSED, **answers(_423="On the robot: control is with somebody else")}
@@ -25,23 +28,37 @@ START = {**REFUSED, **answers(_423="On the robot: control is with somebody else"
 router = APIRouter(prefix="/api/scenarios", tags=["scenarios"])
 
 
-@router.get("", summary="The scenarios that there are", operation_id="listScenarios")
-def get_scenarios(request: Request) -> list[ScenarioText]:
+@router.get(
+    "", summary="The scenarios that there are", operation_id="listScenarios", openapi_extra=needs(Need.VIEWER)
+)
+def get_scenarios(settings: Provided[Settings]) -> list[ScenarioText]:
     """Those that come with the program, the thesis's own first, then those in the data folder."""
-    return list_scenarios(Assembly.of(request).settings.data.scenarios)
+    return list_scenarios(settings.data.scenarios)
 
 
-@router.post("", status_code=201, summary="Keep a scenario", operation_id="keepScenario", responses=REFUSED)
-async def keep(request: Request, document: ScenarioDocument) -> ScenarioSummary:
+@router.post(
+    "",
+    status_code=201,
+    summary="Keep a scenario",
+    operation_id="keepScenario",
+    openapi_extra=needs(Need.OPERATOR),
+    responses=REFUSED,
+)
+async def keep(settings: Provided[Settings], document: ScenarioDocument) -> ScenarioSummary:
     """Write it into the data folder under its own name, over one of that name."""
-    folder = Assembly.of(request).settings.data.scenarios
+    folder = settings.data.scenarios
     try:
         return summarize(await run_in_threadpool(keep_scenario, folder, document.text))
     except ScenarioError as problem:
         raise HTTPException(422, "\n".join(problem.problems)) from problem
 
 
-@router.post("/check", summary="What is wrong with a scenario", operation_id="checkScenario")
+@router.post(
+    "/check",
+    summary="What is wrong with a scenario",
+    operation_id="checkScenario",
+    openapi_extra=needs(Need.VIEWER),
+)
 def check(document: ScenarioDocument) -> ScenarioCheck:
     """Its problems, field by field; or what it says."""
     try:
@@ -50,27 +67,40 @@ def check(document: ScenarioDocument) -> ScenarioCheck:
         return ScenarioCheck(problems=list(problem.problems), summary=None)
 
 
-@router.get("/state", summary="What runs", operation_id="getScenarioState")
-async def get_state(request: Request) -> ScenarioState:
+@router.get("/state", summary="What runs", operation_id="getScenarioState", openapi_extra=needs(Need.VIEWER))
+async def get_state(scenarios: Provided[ScenarioRuns]) -> ScenarioState:
     """What runs, what waits, and what ended last, as on the live socket."""
-    return Assembly.of(request).scenarios.state()
+    return scenarios.state()
 
 
 @router.post(
-    "/runs", status_code=201, summary="Run a scenario", operation_id="startScenario", responses=START
+    "/runs",
+    status_code=201,
+    summary="Run a scenario",
+    operation_id="startScenario",
+    openapi_extra=needs(Need.OPERATOR),
+    responses=START,
 )
-async def start(request: Request, wanted: ScenarioStart) -> ScenarioStarted:
+async def start(
+    request: Request, scenarios: Provided[ScenarioRuns], wanted: ScenarioStart
+) -> ScenarioStarted:
     """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
     if wanted.place == "live":
         require_control(request)
     try:
-        run = Assembly.of(request).scenarios.start(wanted.text, wanted.place, wanted.board)
+        run = scenarios.start(wanted.text, wanted.place, wanted.board)
     except ScenarioError as problem:
         raise HTTPException(422, "\n".join(problem.problems)) from problem
     return ScenarioStarted(run=run)
 
 
-@router.post("/cancel", status_code=204, summary="Cancel what runs", operation_id="cancelScenario")
-async def cancel(request: Request) -> None:
+@router.post(
+    "/cancel",
+    status_code=204,
+    summary="Cancel what runs",
+    operation_id="cancelScenario",
+    openapi_extra=needs(Need.OPERATOR),
+)
+async def cancel(scenarios: Provided[ScenarioRuns]) -> None:
     """What was recorded is kept; what waits is forgotten. Its end is told on the live socket."""
-    Assembly.of(request).scenarios.cancel()
+    scenarios.cancel()

@@ -2,13 +2,16 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from server.container import Assembly
-from server.features.sessions.routes import STORING, Identifier
+from server.features.sessions.bookmarks import Markers
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.dependencies import STORING, Identifier
 from server.features.sessions.session import Mark
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
 
 UNKNOWN = answers(_404="There is no such session, or it has no such mark")
@@ -37,22 +40,34 @@ class MarkChanges(BaseModel):
 
 
 @router.post(
-    "", status_code=201, summary="Mark a moment", operation_id="addMark", responses={**UNKNOWN, **STORING}
+    "",
+    status_code=201,
+    summary="Mark a moment",
+    operation_id="addMark",
+    openapi_extra=needs(Need.OPERATOR),
+    responses={**UNKNOWN, **STORING},
 )
-async def add_mark(request: Request, session: Identifier, wanted: NewMark) -> Mark:
+async def add_mark(
+    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, wanted: NewMark
+) -> Mark:
     """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
-    assembly = Assembly.of(request)
-    mark = await assembly.markers.add(session, wanted.time, wanted.text)
-    assembly.catalogue.tell(session)
+    mark = await markers.add(session, wanted.time, wanted.text)
+    catalogue.tell(session)
     return mark
 
 
-@router.patch("/{mark}", summary="Change a mark", operation_id="changeMark", responses={**UNKNOWN, **STORING})
+@router.patch(
+    "/{mark}",
+    summary="Change a mark",
+    operation_id="changeMark",
+    openapi_extra=needs(Need.OPERATOR),
+    responses={**UNKNOWN, **STORING},
+)
 async def change_mark(
-    request: Request, session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
+    markers: Provided[Markers], session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
 ) -> Mark:
     """Move it, or say something else of it."""
-    return await Assembly.of(request).markers.change(session, mark, wanted.time, wanted.text)
+    return await markers.change(session, mark, wanted.time, wanted.text)
 
 
 @router.delete(
@@ -60,10 +75,12 @@ async def change_mark(
     status_code=204,
     summary="Take a mark away",
     operation_id="removeMark",
+    openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **STORING},
 )
-async def remove_mark(request: Request, session: Identifier, mark: MarkIdentifier) -> None:
+async def remove_mark(
+    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
+) -> None:
     """Take it away for good."""
-    assembly = Assembly.of(request)
-    await assembly.markers.remove(session, mark)
-    assembly.catalogue.tell(session)
+    await markers.remove(session, mark)
+    catalogue.tell(session)

@@ -2,14 +2,13 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query, Request
+from fastapi import APIRouter, HTTPException, Query
 from fastapi.responses import Response
 
-from server.container import Assembly
-from server.features.sessions.recording import Recording
+from server.features.sessions.dependencies import UNKNOWN, OpenRecording
 from server.features.sessions.replay import HISTORY_MAX, TooMuch, read_stretch
-from server.features.sessions.routes import UNKNOWN, Identifier
 from server.features.sessions.timeline import Timeline, read_timeline
+from server.http.sign_in.policy import Need, needs
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
@@ -21,17 +20,22 @@ Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=
 
 
 @router.get(
-    "/{session}/timeline", summary="Events and markers", operation_id="getTimeline", responses=UNKNOWN
+    "/{session}/timeline",
+    summary="Events and markers",
+    operation_id="getTimeline",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
 )
-def get_timeline(request: Request, session: Identifier) -> Timeline:
+def get_timeline(recording: OpenRecording) -> Timeline:
     """What happened when in a session, and where nothing was recorded."""
-    return read_timeline(_open(request, session))
+    return read_timeline(recording)
 
 
 @router.get(
     "/{session}/blocks",
     summary="A stretch of a session",
     operation_id="getBlocks",
+    openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"},
@@ -39,8 +43,7 @@ def get_timeline(request: Request, session: Identifier) -> Timeline:
     },
 )
 def get_blocks(
-    request: Request,
-    session: Identifier,
+    recording: OpenRecording,
     start: Seconds,
     end: Seconds,
     history: Annotated[float | None, Query(ge=0, le=HISTORY_MAX, allow_inf_nan=False)] = None,
@@ -53,7 +56,6 @@ def get_blocks(
     """
     if end < start:
         raise HTTPException(422, f"The end, {end:g} s, lies before the start, {start:g} s.")
-    recording = _open(request, session)
     zero = recording.row.started_steady
     try:
         stretch = read_stretch(recording, zero + start, zero + end, history)
@@ -61,8 +63,3 @@ def get_blocks(
         raise HTTPException(422, str(problem)) from problem
     headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
     return Response(stretch.data, media_type="application/octet-stream", headers=headers)
-
-
-def _open(request: Request, session: int) -> Recording:
-    assembly = Assembly.of(request)
-    return Recording(assembly.store, assembly.catalogue.row(session))

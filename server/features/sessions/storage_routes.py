@@ -1,15 +1,17 @@
 """What recordings take of the disk."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 
-from server.container import Assembly
 from server.features.sessions.storage import Storage, measure
+from server.http.dependencies import Provided
+from server.http.sign_in.policy import Need, needs
+from server.platform.settings import Settings
+from server.platform.store import Store
 
 router = APIRouter(prefix="/api/storage", tags=["sessions"])
 
 
-@router.get("", summary="Storage used and free", operation_id="getStorage")
-def get_storage(request: Request) -> Storage:
+@router.get("", summary="Storage used and free", operation_id="getStorage", openapi_extra=needs(Need.VIEWER))
+def get_storage(store: Provided[Store], settings: Provided[Settings]) -> Storage:
     """The disk that holds the data folder, and the rules by which sessions go."""
-    assembly = Assembly.of(request)
-    return measure(assembly.store, assembly.settings)
+    return measure(store, settings)

@@ -1,12 +1,14 @@
 """The simulator of a robot with its hardware in the loop: on this computer, or left to another one."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict
 
 from robot_runtime.errors import Refused
-from server.container import Assembly
+from server.http.dependencies import Provided
 from server.http.problems import answers
-from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE
+from server.http.sign_in.policy import Need, needs
+from server.platform.settings import Settings
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Parts
 
 router = APIRouter(prefix="/api/simulator", tags=["robot"])
 
@@ -23,18 +25,18 @@ class Place(BaseModel):
     status_code=204,
     summary="Start or end the simulator on this computer",
     operation_id="putSimulator",
+    openapi_extra=needs(Need.CONTROL),
     responses=answers(_409="The robot is not in the loop", _423="Control is with somebody else"),
 )
-async def put_simulator(request: Request, wanted: Place) -> None:
+async def put_simulator(settings: Provided[Settings], parts: Provided[Parts], wanted: Place) -> None:
     """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""
-    assembly = Assembly.of(request)
-    if not assembly.settings.in_the_loop:
+    if not settings.in_the_loop:
         raise Refused(
             "Only a robot with its hardware in the loop can do with or without this computer's simulator; "
-            f"robot.mode is {assembly.settings.mode}."
+            f"robot.mode is {settings.mode}."
         )
     for name in SIMULATION:
         if wanted.here:
-            assembly.parts.resume(name)
+            parts.resume(name)
         else:
-            await assembly.parts.pause(name, SIMULATION_ELSEWHERE)
+            await parts.pause(name, SIMULATION_ELSEWHERE)

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from fastapi import APIRouter, HTTPException, Request
+from fastapi import APIRouter, HTTPException
 from fastapi.responses import PlainTextResponse
 
 from robot_runtime.contract.limits import ConfigError
-from server.container import Assembly
-from server.features.operate.routes import COMMAND, SILENT, tune
+from server.features.operate.routes import COMMAND, SILENT
+from server.features.parameters.changes import Changes
 from server.features.vision.schemas import (
     PickedColour,
     PickPlace,
@@ -17,15 +17,25 @@ from server.features.vision.schemas import (
     as_model,
 )
 from server.features.vision.toml_document import check, read_document, write_document
+from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.identity import Caller
+from server.http.sign_in.policy import Need, needs
+from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/vision", tags=["vision"])
 
 
-@router.get("", summary="How the vision node looks", operation_id="getVision", responses=SILENT)
-async def get_vision(request: Request) -> VisionInForce:
+@router.get(
+    "",
+    summary="How the vision node looks",
+    operation_id="getVision",
+    openapi_extra=needs(Need.VIEWER),
+    responses=SILENT,
+)
+async def get_vision(bridge: Provided[Bridge]) -> VisionInForce:
     """All settings that may change while it looks, and what robot.toml says of them."""
-    told = await Assembly.of(request).bridge.query("vision")
+    told = await bridge.query("vision")
     return VisionInForce(settings=as_model(told["settings"]), configured=as_model(told["configured"]))
 
 
@@ -34,27 +44,29 @@ async def get_vision(request: Request) -> VisionInForce:
     status_code=204,
     summary="Have the vision node look otherwise",
     operation_id="putVisionSettings",
+    openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def put_settings(request: Request, settings: VisionSettings) -> None:
+async def put_settings(changes: Provided[Changes], caller: Caller, settings: VisionSettings) -> None:
     """All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that."""
     table = settings.model_dump(mode="json")
     try:
         check(table)
     except ConfigError as problem:
         raise HTTPException(422, "; ".join(problem.problems)) from problem
-    await tune(request, "vision_settings", table)
+    await changes.command(caller.name, "vision_settings", table)
 
 
 @router.post(
     "/pick",
     summary="The colour at a place in the picture",
     operation_id="pickColour",
+    openapi_extra=needs(Need.VIEWER),
     responses={**answers(_409="There is no colour, or no picture"), **SILENT},
 )
-async def pick(request: Request, place: PickPlace) -> PickedColour:
+async def pick(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
     """A range for what is there in the newest picture. It changes nothing."""
-    told = await Assembly.of(request).bridge.query("pick", place.model_dump())
+    told = await bridge.query("pick", place.model_dump())
     return PickedColour.model_validate(told, extra="ignore")
 
 
@@ -62,12 +74,13 @@ async def pick(request: Request, place: PickPlace) -> PickedColour:
     "/toml",
     summary="The settings as a part of robot.toml",
     operation_id="downloadVision",
+    openapi_extra=needs(Need.VIEWER),
     response_class=PlainTextResponse,
     responses=SILENT,
 )
-async def download(request: Request) -> PlainTextResponse:
+async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
     """The table [vision], to be kept or to be put into robot.toml."""
-    told = await Assembly.of(request).bridge.query("vision")
+    told = await bridge.query("vision")
     return PlainTextResponse(
         write_document(told["settings"]),
         headers={"Content-Disposition": 'attachment; filename="vision.toml"'},
@@ -78,6 +91,7 @@ async def download(request: Request) -> PlainTextResponse:
     "/read",
     summary="Read the settings in a robot.toml",
     operation_id="readVision",
+    openapi_extra=needs(Need.VIEWER),
     responses=answers(_422="There are no settings in it that can be used"),
 )
 def read(document: VisionText) -> VisionSettings:

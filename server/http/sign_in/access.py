@@ -47,13 +47,6 @@ class Access:
         self._close_sockets = close_sockets
         self._limit_told = False
 
-    @staticmethod
-    def of(connection: HTTPConnection) -> "Access":
-        """What decides about this request."""
-        access = connection.app.state.assembly.access
-        assert isinstance(access, Access)
-        return access
-
     def open(self) -> None:
         """Know who was paired, and give the shell of this computer its token. Raises StoreError, OSError."""
         self.devices.load()

@@ -1,28 +1,7 @@
-"""Whether somebody may do what is asked: the table in `policy`, applied to every route and message."""
+"""Whether somebody may ask for an operation, or say something on the live socket, by the role."""
 
-from fastapi import HTTPException
-from starlette.requests import HTTPConnection
-
-from server.features.lease.admission import require_control
-from server.http.sign_in.identity import IDENTITY, Identity
-from server.http.sign_in.policy import MESSAGES, OPERATIONS, Need
-
-
-async def admit(connection: HTTPConnection) -> None:
-    """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
-    NotInControl where it needs the control, and another seat has it.
-
-    The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
-    """
-    if connection.scope["type"] == "websocket":
-        need: Need | None = Need.VIEWER
-    else:
-        need = OPERATIONS.get(getattr(connection.scope["route"], "operation_id", None) or "")
-    reason = refusal(connection.scope.get(IDENTITY), need)
-    if reason is not None:
-        raise HTTPException(403, reason)
-    if need == Need.CONTROL:
-        require_control(connection)
+from server.http.sign_in.identity import Identity
+from server.http.sign_in.policy import MESSAGES, Need
 
 
 def may_say(identity: Identity, op: str) -> str | None:
@@ -31,9 +10,9 @@ def may_say(identity: Identity, op: str) -> str | None:
 
 
 def refusal(identity: Identity | None, need: Need | None) -> str | None:
-    """Why this is not for this one; None where it is. What has no entry is for nobody."""
+    """Why this is not for this one; None where it is. What declares no need is for nobody."""
     if need is None:
-        return "Nobody may ask for this: it is not in the server's table of what is allowed."
+        return "Nobody may ask for this: the server does not declare what it needs."
     if need == Need.NOTHING:
         return None
     if identity is None:

@@ -3,6 +3,7 @@
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from server.http.dependencies import find_service
 from server.http.refusal import SAFE_METHODS, refuse
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, Identity
@@ -31,7 +32,7 @@ class Gate:
             await self._app(scope, receive, send)
             return
         connection = HTTPConnection(scope)
-        identity = Access.of(connection).identify(connection)
+        identity = find_service(connection, Access).identify(connection)
         path = scope["path"]
         if identity is None and _is_api(path) and (scope.get("method"), path) not in OPEN:
             await refuse(scope, receive, send, 401, NOBODY)

@@ -1,8 +1,9 @@
 """Somebody who has signed in: a person's browser, a program, or the shell of this computer."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
+from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 Role = Literal["viewer", "operator"]
@@ -21,13 +22,16 @@ class Identity:
     role: Role
     kind: Kind
 
-    @staticmethod
-    def of(connection: HTTPConnection) -> "Identity":
-        """Who asks this; of a request that was admitted there is one."""
-        identity = connection.scope[IDENTITY]
-        assert isinstance(identity, Identity)
-        return identity
 
+async def identify_caller(connection: HTTPConnection) -> Identity:
+    """The identity behind a request that was admitted."""
+    identity = connection.scope[IDENTITY]
+    assert isinstance(identity, Identity)
+    return identity
+
+
+Caller = Annotated[Identity, Depends(identify_caller)]
+"""A route's parameter that is who asks."""
 
 SHELL = Identity(device=0, name="the shell of this computer", role="operator", kind="shell")
 """Whoever can read this computer's data folder."""

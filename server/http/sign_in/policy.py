@@ -1,6 +1,11 @@
-"""What each operation of the interface needs; one that is not named here is refused to everybody."""
+"""The need of each operation: declared at its route. An operation without one is refused to everybody."""
 
+from collections.abc import Iterable
 from enum import IntEnum
+from typing import Any
+
+from fastapi.routing import iter_route_contexts
+from starlette.routing import BaseRoute
 
 
 class Need(IntEnum):
@@ -15,112 +20,27 @@ class Need(IntEnum):
     """To hold the control of the robot, which one page or program has at a time."""
 
 
-OPERATIONS: dict[str, Need] = {
-    "getMe": Need.NOTHING,
-    "pairBrowser": Need.NOTHING,
-    "signOut": Need.VIEWER,
-    "makeCode": Need.OPERATOR,
-    "listDevices": Need.OPERATOR,
-    "changeDevice": Need.OPERATOR,
-    "revokeDevice": Need.OPERATOR,
-    "makeToken": Need.OPERATOR,
-    "getHealth": Need.VIEWER,
-    "getPast": Need.VIEWER,
-    "getRobot": Need.VIEWER,
-    "stopRobot": Need.VIEWER,
-    "armRobot": Need.CONTROL,
-    "putMode": Need.CONTROL,
-    "checkFins": Need.CONTROL,
-    "acknowledgeAlarms": Need.CONTROL,
-    "putController": Need.CONTROL,
-    "putLoop": Need.CONTROL,
-    "putSetPoints": Need.CONTROL,
-    "putSteering": Need.CONTROL,
-    "putCard": Need.CONTROL,
-    "putVision": Need.CONTROL,
-    "getVision": Need.VIEWER,
-    "putVisionSettings": Need.CONTROL,
-    "pickColour": Need.VIEWER,
-    "downloadVision": Need.VIEWER,
-    "readVision": Need.VIEWER,
-    "getParameters": Need.VIEWER,
-    "changeParameters": Need.CONTROL,
-    "listParameterChanges": Need.VIEWER,
-    "undoParameters": Need.CONTROL,
-    "listProfiles": Need.VIEWER,
-    "saveProfile": Need.OPERATOR,
-    "importProfile": Need.OPERATOR,
-    "downloadProfile": Need.VIEWER,
-    "restoreProfile": Need.CONTROL,
-    "deleteProfile": Need.OPERATOR,
-    "putSimulator": Need.CONTROL,
-    "putView": Need.OPERATOR,
-    "getControl": Need.VIEWER,
-    "openSeat": Need.OPERATOR,
-    "takeControl": Need.OPERATOR,
-    "releaseControl": Need.OPERATOR,
-    "renewSeat": Need.OPERATOR,
-    "refuseControl": Need.CONTROL,
-    "handOverControl": Need.CONTROL,
-    "getLinkFrames": Need.VIEWER,
-    "listSessions": Need.VIEWER,
-    "getSession": Need.VIEWER,
-    "startSession": Need.OPERATOR,
-    "stopSession": Need.OPERATOR,
-    "changeSession": Need.OPERATOR,
-    "deleteSession": Need.OPERATOR,
-    "restoreSession": Need.OPERATOR,
-    "purgeSession": Need.OPERATOR,
-    "downloadSession": Need.VIEWER,
-    "getThumbnail": Need.VIEWER,
-    "addMark": Need.OPERATOR,
-    "changeMark": Need.OPERATOR,
-    "removeMark": Need.OPERATOR,
-    "getBlocks": Need.VIEWER,
-    "getTimeline": Need.VIEWER,
-    "listSignals": Need.VIEWER,
-    "getStorage": Need.VIEWER,
-    "downloadBackup": Need.OPERATOR,
-    "compareSessions": Need.VIEWER,
-    "compareLines": Need.VIEWER,
-    "getComparisonReport": Need.VIEWER,
-    "listExports": Need.VIEWER,
-    "getExport": Need.VIEWER,
-    "downloadExport": Need.VIEWER,
-    "startExport": Need.OPERATOR,
-    "deleteExport": Need.OPERATOR,
-    "importSession": Need.OPERATOR,
-    "listTestDocuments": Need.VIEWER,
-    "checkTestDocument": Need.VIEWER,
-    "listTestRuns": Need.VIEWER,
-    "getTestRun": Need.VIEWER,
-    "downloadTestRunCsv": Need.VIEWER,
-    "downloadTestRunJson": Need.VIEWER,
-    "listTestTables": Need.VIEWER,
-    "startTestRun": Need.OPERATOR,
-    "cancelTestRun": Need.OPERATOR,
-    "listScenarios": Need.VIEWER,
-    "checkScenario": Need.VIEWER,
-    "getScenarioState": Need.VIEWER,
-    "keepScenario": Need.OPERATOR,
-    "startScenario": Need.OPERATOR,
-    "cancelScenario": Need.OPERATOR,
-    "listLayouts": Need.VIEWER,
-    "getLayout": Need.VIEWER,
-    "saveLayout": Need.OPERATOR,
-    "deleteLayout": Need.OPERATOR,
-    "listPanels": Need.VIEWER,
-    "getPanel": Need.VIEWER,
-    "getPanelFrame": Need.VIEWER,
-    "getTuningState": Need.VIEWER,
-    "listTuningRuns": Need.VIEWER,
-    "getTuningRun": Need.VIEWER,
-    "startTuningRun": Need.CONTROL,
-    "stopTuningRun": Need.CONTROL,
-    "renameTuningRun": Need.OPERATOR,
-    "deleteTuningRun": Need.OPERATOR,
-}
-"""By `operation_id`. Where it depends on what is asked (a scenario on the robot), the route asks for more."""
+DECLARED = "x-need"
+"""The entry of an operation in the interface's document that says its need."""
+
+
+def needs(need: Need) -> dict[str, Any]:
+    """A route's `openapi_extra` that declares its need. Where the need depends on what is asked (a scenario
+    on the robot), the route itself asks for more."""
+    return {DECLARED: need.name.lower()}
+
+
+def need_of(route: Any) -> Need | None:
+    """The need that a route declares; None where it declares none."""
+    declared = (getattr(route, "openapi_extra", None) or {}).get(DECLARED)
+    return None if declared is None else Need[declared.upper()]
+
+
+def list_needs(routes: Iterable[BaseRoute]) -> dict[str, Need | None]:
+    """The needs of all operations, by `operation_id`."""
+    found = ((getattr(one, "operation_id", None), need_of(one)) for one in iter_route_contexts([*routes]))
+    return {operation: need for operation, need in found if operation is not None}
+
 
 MESSAGES: dict[str, Need] = {
     "ping": Need.VIEWER,

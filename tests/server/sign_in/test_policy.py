@@ -1,16 +1,27 @@
-"""The table of what is allowed names everything that there is, and nothing else."""
+"""Every operation declares its need, and what declares none is refused."""
 
+import asyncio
 from pathlib import Path
 
+import pytest
+from fastapi import APIRouter, Depends, FastAPI, HTTPException
+from fastapi.routing import iter_route_contexts
+from starlette.requests import HTTPConnection
+
 from server.app import create_app
+from server.features.lease.admission import admit
 from server.http.sign_in.gate import OPEN
-from server.http.sign_in.policy import OPERATIONS, Need
+from server.http.sign_in.identity import IDENTITY, SHELL
+from server.http.sign_in.policy import Need, list_needs, needs
 from server.platform.settings import DataFolder, Settings
 
 
-def operations() -> dict[str, tuple[str, str]]:
+def make_app() -> FastAPI:
+    return create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
+
+
+def operations(app: FastAPI) -> dict[str, tuple[str, str]]:
     """Method and path of each operation."""
-    app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
     return {
         operation["operationId"]: (method.upper(), path)
         for path, methods in app.openapi()["paths"].items()
@@ -18,10 +29,32 @@ def operations() -> dict[str, tuple[str, str]]:
     }
 
 
-def test_every_operation_has_an_entry_and_every_entry_an_operation() -> None:
-    assert set(operations()) == set(OPERATIONS)
+def test_every_operation_declares_its_need() -> None:
+    app = make_app()
+    declared = list_needs(app.routes)
+    assert set(declared) == set(operations(app))
+    assert [operation for operation, need in declared.items() if need is None] == []
 
 
 def test_the_gate_is_open_for_what_needs_nothing_alone() -> None:
-    there = operations()
-    assert {there[name] for name, need in OPERATIONS.items() if need is Need.NOTHING} == OPEN
+    app = make_app()
+    there = operations(app)
+    assert {there[name] for name, need in list_needs(app.routes).items() if need is Need.NOTHING} == OPEN
+
+
+def test_an_operation_without_a_need_is_refused_even_to_the_shell() -> None:
+    router = APIRouter()
+    router.get("/declared", openapi_extra=needs(Need.VIEWER))(lambda: None)
+    router.get("/undeclared")(lambda: None)
+    app = FastAPI()
+    app.include_router(router, dependencies=[Depends(admit)])
+    routes = {one.path: one for one in iter_route_contexts(app.routes)}
+
+    def ask(path: str) -> None:
+        scope = {"type": "http", "route": routes[path], IDENTITY: SHELL, "headers": []}
+        asyncio.run(admit(HTTPConnection(scope)))
+
+    ask("/declared")
+    with pytest.raises(HTTPException, match="does not declare") as refused:
+        ask("/undeclared")
+    assert refused.value.status_code == 403
