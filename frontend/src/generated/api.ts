@@ -6350,15 +6350,6 @@ export interface operations {
                     "application/json": components["schemas"]["KeptLayout"][];
                 };
             };
-            /** @description Refused now */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description The database does not work */
             503: {
                 headers: {
@@ -6401,7 +6392,7 @@ export interface operations {
                     "application/json": components["schemas"]["KeptLayout"];
                 };
             };
-            /** @description Refused now */
+            /** @description There are too many */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -6459,15 +6450,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Refused now */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description The database does not work */
             503: {
                 headers: {
@@ -6508,15 +6490,6 @@ export interface operations {
             };
             /** @description There is no such layout */
             404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused now */
-            409: {
                 headers: {
                     [name: string]: unknown;
                 };
