@@ -12,9 +12,9 @@ export const PAGES = [
 /** Pages that are reached from others. */
 const INNER = ['replay', 'people'] as const;
 
-export type PageName = (typeof PAGES)[number]['name'] | (typeof INNER)[number];
+export type PageName = (typeof PAGES)[number]['name'] | (typeof INNER)[number] | 'unknown';
 
-/** The page that the address names after its hash; Operate where it names none. */
+/** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
 export class Router {
   current = $state<PageName>('operate');
   /** what the address names within the page: #/comm-tests/runs/3 is ['runs', '3'] */
@@ -22,8 +22,8 @@ export class Router {
 
   constructor() {
     const read = () => {
-      const [name, ...within] = location.hash.replace(/^#\/?/, '').split('/');
-      this.current = [...PAGES.map((page) => page.name), ...INNER].find((one) => one === name) ?? 'operate';
+      const [name = '', ...within] = location.hash.replace(/^#\/?/, '').split('/');
+      this.current = name === '' ? 'operate' : ([...PAGES.map((page) => page.name), ...INNER].find((one) => one === name) ?? 'unknown');
       this.within = within;
     };
     window.addEventListener('hashchange', read);

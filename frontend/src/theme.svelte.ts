@@ -1,11 +1,10 @@
 import { createContext } from 'svelte';
 
 const KEY = 'mucat-theme';
-const GROUND = { dark: '#0a1117', sunlight: '#f4f7f9' } as const;
 
 /** The page's colours: dark, or light enough for sunlight; remembered on this device. */
 export class Theme {
-  current = $state<keyof typeof GROUND>('dark');
+  current = $state<'dark' | 'sunlight'>('dark');
 
   constructor() {
     try {
@@ -28,7 +27,7 @@ export class Theme {
 
   #show(): void {
     document.documentElement.dataset.theme = this.current;
-    document.querySelector('meta[name=theme-color]')?.setAttribute('content', GROUND[this.current]);
+    document.querySelector('meta[name=theme-color]')?.setAttribute('content', token('ground'));
   }
 }
 
@@ -38,3 +37,6 @@ export const [useTheme, provideTheme] = createContext<Theme>();
 export function token(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
+
+/** A canvas font: a size of the type scale in the page's typeface. */
+export const canvasFont = (size: 'tiny' | 'small'): string => `${token(size)} ${token('font')}`;

@@ -78,6 +78,15 @@ describe('Live', () => {
     expect(live.debug.entries.map(({ text }) => text)).toEqual(['hello']);
   });
 
+  it('counts time by the robot’s clock, whatever this computer’s calendar says', () => {
+    server().greet();
+    vi.setSystemTime(new Date('2031-01-01T00:00:00Z'));
+    const recently = new Date((1e9 - 30) * 1000).toISOString();
+    expect(live.since(recently)).toBeCloseTo(30, 3);
+    vi.advanceTimersByTime(5000);
+    expect(live.since(recently)).toBeCloseTo(35, 3);
+  });
+
   it('opens again for ever, and takes a replay only once', () => {
     server().greet();
     const line = (time: number, text: string) => ({ time, level: 1, text });

@@ -1,4 +1,4 @@
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 
 const CSS = readFileSync(new URL('../src/styles/tokens.css', import.meta.url), 'utf8');
@@ -47,5 +47,42 @@ describe.each([
 
   it.each(['series-measured', 'series-wanted', 'series-third', 'series-4', 'series-5', 'series-6', 'series-7'])('the line %s stands out', (name) => {
     expect(contrast(of(name), of('panel'))).toBeGreaterThanOrEqual(lineLeast);
+  });
+});
+
+const SOURCES = new URL('../src/', import.meta.url);
+/** Colours that are data or print, not the page's own. */
+const OWN_COLOURS: Readonly<Record<string, string>> = {
+  'pages/comm_tests/scale.ts': 'a scale of rates, the same in both themes and in files',
+  'pages/comm_tests/figure.ts': 'no colour at all',
+  'pages/sessions/compare/figure.ts': 'no colour at all',
+  'pages/sessions/compare/save.ts': 'files to print, on white',
+};
+
+const read = (file: string) => readFileSync(new URL(file, SOURCES), 'utf8').replaceAll(/\/\*[^]*?\*\/|<!--[^]*?-->/g, '');
+/** What a file says of styles: all of a style sheet, of a component its styles and its markup's. */
+const stylesOf = (file: string) =>
+  file.endsWith('.css') ? read(file) : [...read(file).matchAll(/<style>[^]*<\/style>|style(:[\w-]+)?="[^"]*"/g)].join('\n');
+const files = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' }).filter((file) => !file.startsWith('generated') && file !== 'styles/tokens.css');
+
+describe('sizes and colours come from tokens.css', () => {
+  const styled = files.filter((file) => /\.(css|svelte)$/.test(file));
+
+  it.each(styled)('%s has no font size of its own', (file) => {
+    expect(stylesOf(file).match(/font(-size)?:[^;}]*\d(px|rem|em|%|pt)[^;}]*/g) ?? []).toEqual([]);
+  });
+
+  it.each(styled)('%s has no colour of its own', (file) => {
+    expect(stylesOf(file).match(/#[0-9a-f]{3,8}\b|\b(rgba?|hsla?|oklch|lab)\(|:\s*(white|black|red|green|blue|yellow|gr[ae]y|orange)\b/gi) ?? []).toEqual([]);
+  });
+
+  it.each(files.filter((file) => /\.(ts|svelte)$/.test(file) && !(file in OWN_COLOURS)))('the code of %s names no colour', (file) => {
+    expect(read(file).match(/['"`]#[0-9a-f]{3,8}['"`]|['"`](rgba?|hsla?)\(\d/gi) ?? []).toEqual([]);
+  });
+
+  it.each(files.filter((file) => /\.(ts|svelte)$/.test(file)))('every token that %s names exists', (file) => {
+    const named = [...read(file).matchAll(/var\(--([\w-]+)/g), ...read(file).matchAll(/\btoken\('([\w-]+)'\)/g)].map(([, name = '']) => name);
+    const own = new Set([...read(file).matchAll(/style:--([\w-]+)|(?:^|[\s;"])--([\w-]+)\s*:/gm)].map(([, one, other]) => one ?? other ?? ''));
+    expect(named.filter((name) => !CSS.includes(`--${name}:`) && !own.has(name))).toEqual([]);
   });
 });

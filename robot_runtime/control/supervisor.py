@@ -217,7 +217,7 @@ class Supervisor:
                 moved = "; ".join(f"{fin} {how}" for fin, how in failed.items())
                 self._alarms.note("fin_failing", f"({moved})")
             words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _FINS_WELL
-            self._leave("checked", "caution" if failed else "info", words)
+            self._leave("checked", "caution" if failed else "info", words, kind="fin_check")
         self._line.send(Stop())
 
     def tick(self) -> None:
@@ -270,7 +270,7 @@ class Supervisor:
         if self._leave("fault", "alarm", f"All-stop: the fins rest. {_ACKNOWLEDGE}"):
             self._line.send(Stop())
 
-    def _leave(self, trigger: Trigger, severity: Severity, why: str) -> bool:
+    def _leave(self, trigger: Trigger, severity: Severity, why: str, kind: str = "disarmed") -> bool:
         """Out of whatever armed state it is; whether it was in one."""
         was_armed = self.armed
         self._end_arming("Stopped before the board was armed.")
@@ -278,7 +278,7 @@ class Supervisor:
         if was_armed:
             self.armed_since = None
             self.watch.note_stopped()
-            self._event("disarmed", severity, why)
+            self._event(kind, severity, why)
         return was_armed
 
     def _go(self, trigger: Trigger) -> bool:

@@ -1,6 +1,6 @@
 import uPlot from 'uplot';
 import { calendar, type Instant } from '../live/clock';
-import { token } from '../theme.svelte';
+import { canvasFont, token } from '../theme.svelte';
 import type { Range } from './range';
 import { ageLabel, agesBefore, momentLabel, momentsBefore, timeStep } from './ticks';
 
@@ -22,7 +22,6 @@ export interface Times {
   readonly held: { readonly end: number; readonly instant: Instant } | null;
 }
 
-const FONT = "12px 'Inter', system-ui, sans-serif";
 const AXIS = 58;
 export const FOOT = 26;
 /** px between two lines of the axis of time */
@@ -39,7 +38,7 @@ export class Frame {
     options: FrameOptions,
   ) {
     const grid = { stroke: token('line'), width: 1 };
-    const axis = { stroke: token('muted'), font: FONT, grid, ticks: { show: false } };
+    const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
     this.#plot = new uPlot(
       {
         width: host.clientWidth,

@@ -180,9 +180,15 @@ export class Live {
     return worst(topics.map((topic) => freshness(this.#newest(topic), now, this.period(topic))));
   }
 
-  /** The instant of a steady time on this computer's calendar. */
+  /** The instant of a steady time by the calendar of the robot's computer. */
   date(steady: number): Date {
     return calendar(steady, this.instant);
+  }
+
+  /** s on the robot's clock since an ISO 8601 time that its computer gave; 0 while that clock is not known. */
+  since(time: string): number {
+    const seconds = (this.date(this.now).getTime() - Date.parse(time)) / 1000;
+    return Number.isFinite(seconds) ? seconds : 0;
   }
 
   #newest(topic: Timed): number | null {

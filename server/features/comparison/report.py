@@ -30,7 +30,7 @@ DEPTHS = frozenset(
         "truth.position_2",
     )
 )
-TOLD = frozenset({"armed", "disarmed", "controller"})
+TOLD = frozenset({"armed", "disarmed", "fin_check", "controller"})
 """Kinds of events that have a sign above the charts, as what is no mere information has."""
 HIGH_FIRST, HIGH, GAP, EDGE, ROW = 300, 180, 46, 60, 22
 FONT = "Inter, Helvetica, Arial, sans-serif"

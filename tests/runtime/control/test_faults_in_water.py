@@ -245,6 +245,6 @@ def test_the_fin_check_finds_the_fin_that_does_not_follow(
     assert list(flight.supervisor.fin_check.failed()) == failed
     flight.run(0.5)
     assert not flight.supervisor.board_armed
-    words = next(event for event in flight.events if event.text.startswith("Fin check:"))
+    words = next(event for event in flight.events if event.kind == "fin_check")
     assert words.severity == ("caution" if failed else "info")
     assert [alarm.fault for alarm in flight.supervisor.alarms] == ["fin_failing"] * bool(failed)

@@ -1,3 +1,4 @@
+import { canvasFont } from '../../theme.svelte';
 import { FLANK, HEAD_FACETS, HULL, LENS, MOUNTS, NECK, finAt, type Facet } from './shape';
 import { dot, eyeOf, FOCAL, turn, turnBack, unit as unitOf, type Camera, type Eye, type Quaternion, type Vector } from './space';
 
@@ -117,7 +118,7 @@ function compass(pen: Pen, colours: Colours): void {
   context.strokeStyle = colours.ring;
   pen.polygon(circle(RING_RADIUS, RING_BELOW));
   context.stroke();
-  context.font = '500 11px Inter, system-ui, sans-serif';
+  context.font = `500 ${canvasFont('tiny')}`;
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   for (let tick = 0; tick < 12; tick += 1) {
@@ -149,7 +150,7 @@ function surface(pen: Pen, height: number, depth: number, colours: Colours): voi
     context.globalAlpha = 1;
   }
   context.fillStyle = colours.text;
-  context.font = '12px Inter, system-ui, sans-serif';
+  context.font = canvasFont('small');
   context.textAlign = 'left';
   context.textBaseline = 'bottom';
   context.fillText(far ? `surface ${depth.toFixed(2)} m above` : 'surface', 0, height);

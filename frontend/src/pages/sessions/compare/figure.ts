@@ -42,7 +42,7 @@ const ABOVE = 8;
 const MEASURED_DASHES = ['solid', 'dot', 'dashdot'];
 const WANTED_DASHES = ['dash', 'longdash', 'longdashdot'];
 const CLEAR = 'rgba(0,0,0,0)';
-const TOLD = new Set(['armed', 'disarmed', 'controller']);
+const TOLD = new Set(['armed', 'disarmed', 'fin_check', 'controller']);
 
 /** The sessions that can be laid over each other. */
 export function laid(comparison: Comparison): Compared[] {

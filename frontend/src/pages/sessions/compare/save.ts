@@ -2,9 +2,10 @@
 import type { Comparison } from '../../../api';
 import { loadPlotly } from '../../../charts/plotly';
 import { saveAs } from '../../../files';
-import { sessionColour } from '../../../parts/sessionColour';
 import { drawPicture, type Finer, type Look, type View } from './figure';
 
+/** on white, told apart by colour-blind eyes */
+const PRINTED = ['#0072b2', '#c25200', '#a3427d', '#00664c', '#6e5d00', '#5b3fa0', '#4a5a66'] as const;
 const WIDTH = 1200;
 const KEY = 22;
 
@@ -16,7 +17,7 @@ function printed(comparison: Comparison): Look {
     line: '#d9e0e5',
     band: 'rgba(0,0,0,0.1)',
     font: 'Inter, Helvetica, Arial, sans-serif',
-    colours: comparison.sessions.map((_, place) => sessionColour(place, 'sunlight')),
+    colours: comparison.sessions.map((_, place) => PRINTED[place % PRINTED.length] ?? PRINTED[0]),
   };
 }
 

@@ -1,5 +1,5 @@
 import uPlot from 'uplot';
-import { token } from '../../../theme.svelte';
+import { canvasFont, token } from '../../../theme.svelte';
 import type { Loop } from './loops';
 
 /** A run's curve, times in s, values in the shown unit. */
@@ -14,7 +14,6 @@ export interface CurveLine {
 
 export type What = 'values' | 'outputs';
 
-const FONT = "12px 'Inter', system-ui, sans-serif";
 const AXIS = 56;
 /** of the range of the values, above and below them */
 const ROOM = 0.06;
@@ -30,7 +29,7 @@ export interface CurvePlotOptions {
 export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], options: CurvePlotOptions): uPlot {
   const { what, loop } = options;
   const grid = { stroke: token('line'), width: 1 };
-  const axis = { stroke: token('muted'), font: FONT, grid, ticks: { show: false } };
+  const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
   const values = what === 'values';
   return new uPlot(
     {

@@ -1,0 +1,13 @@
+"""Addresses of the page: one that does not exist is said to, with a way back."""
+
+from playwright.sync_api import Page, expect
+
+from tests.stack import Stack
+
+
+def test_an_unknown_address_is_not_found(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/seesions/7")
+    expect(page.get_by_role("heading", name="Page not found")).to_be_visible()
+    expect(page.get_by_role("button", name="STOP")).to_be_visible()
+    page.get_by_role("link", name="Go to Operate").click()
+    expect(page.get_by_role("heading", name="Operate")).to_be_attached()

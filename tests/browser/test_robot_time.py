@@ -1,0 +1,44 @@
+"""Durations and times go by the robot's clock: the browser's may be years away from it."""
+
+import re
+from datetime import datetime, timedelta
+
+from playwright.sync_api import Page, expect
+
+from tests.stack import Stack
+
+AHEAD = datetime.now() + timedelta(days=9000, hours=7)
+"""What the browser's calendar says."""
+MINUTES = re.compile(r"\b0\d:\d\d\b")
+"""A duration below ten minutes."""
+
+
+def test_a_recording_is_as_old_as_the_robot_says(page: Page, stack: Stack) -> None:
+    page.clock.install(time=AHEAD)
+    session = stack.api.post("/sessions", json={"name": "timed"}).raise_for_status().json()["id"]
+    try:
+        page.reload()
+        recording = page.get_by_role("banner").get_by_role("button", name=re.compile("REC"))
+        expect(recording).to_have_text(re.compile(r"REC\s*0\d:\d\d$"))
+        page.get_by_role("link", name="Sessions").click()
+        recording_now = page.get_by_role("region", name="Recording now")
+        expect(recording_now.get_by_role("definition").first).to_have_text(MINUTES)
+    finally:
+        stack.api.post(f"/sessions/{session}/stop").raise_for_status()
+
+
+def test_an_invitation_lasts_as_long_as_the_robot_says(page: Page, stack: Stack) -> None:
+    page.clock.install(time=AHEAD)
+    page.goto(f"{stack.url}/#/people")
+    page.reload()
+    people = page.get_by_role("region", name="Let somebody in")
+    people.get_by_role("button", name="Make a link").click()
+    expect(people.get_by_text(re.compile(r"good for (10:00|09:\d\d)"))).to_be_visible()
+
+
+def test_the_clock_shows_the_robots_time(page: Page) -> None:
+    page.clock.install(time=AHEAD)
+    page.reload()
+    now = datetime.now()
+    minutes = "|".join(f"{one:%H:%M}" for one in (now, now + timedelta(minutes=1)))
+    expect(page.get_by_title("Robot’s clock")).to_have_text(re.compile(f"^({minutes})"))
