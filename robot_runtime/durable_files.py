@@ -1,24 +1,40 @@
 """Files that survive a power cut: whole under their name, or not there."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 PART = ".part"
 """Ends the name of a file that is not whole yet."""
+_WRITE = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
 
 
 def write_whole(path: Path, data: bytes, mode: int = 0o666) -> None:
     """Write a file, in place of an older one, for good. Raises OSError; then the older one is still there."""
+    with unfinished(path) as part, os.fdopen(os.open(part, _WRITE, mode), "wb") as file:
+        file.write(data)
+
+
+@contextmanager
+def unfinished(path: Path) -> Iterator[Path]:
+    """Yield the name under which to write a file; then put it in place, for good.
+
+    Where anything fails, it is removed, and an older file is still there. Raises OSError.
+    """
     part = path.with_name(path.name + PART)
     try:
-        with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, mode), "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
+        yield part
+        sync(part)
+        put_in_place(part, path)
     except BaseException:
         part.unlink(missing_ok=True)
         raise
+
+
+def put_in_place(part: Path, path: Path) -> None:
+    """Rename a finished file, for good. Raises OSError."""
+    part.replace(path)
     sync(path.parent)
 
 

@@ -1,12 +1,12 @@
 """The settings that somebody made while the robot ran, kept over its restarts."""
 
 import json
-import os
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import read_value
 from robot_runtime.contract.vision_settings import VisionSettings
+from robot_runtime.durable_files import write_whole
 
 
 class VisionSettingsFile:
@@ -30,12 +30,7 @@ class VisionSettingsFile:
 
     def write(self, settings: VisionSettings) -> None:
         """Keep these. Raises OSError; then those before are kept still."""
-        part = self._path.with_name(self._path.name + ".part")
-        with part.open("w", encoding="utf-8") as file:
-            json.dump(settings.table(), file, indent=1)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(self._path)
+        write_whole(self._path, json.dumps(settings.table(), indent=1).encode())
 
     def forget(self) -> None:
         """Keep none. Raises OSError."""

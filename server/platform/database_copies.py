@@ -8,7 +8,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Literal
 
-from robot_runtime.durable_files import PART, make_folder, sync, write_whole
+from robot_runtime.durable_files import make_folder, unfinished, write_whole
 from server.platform.settings import DataFolder
 
 Kind = Literal["backup", "before", "replaced"]
@@ -25,9 +25,8 @@ def copy_database(database: Path, path: Path) -> None:
     The source is only read: whoever writes it goes on meanwhile. Raises sqlite3.DatabaseError, OSError; then
     there is no copy.
     """
-    part = path.with_name(path.name + PART)
-    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600))
-    try:
+    with unfinished(path) as part:
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600))
         with closing(open_database(database, "ro")) as source, closing(sqlite3.connect(part)) as copy:
             copy.execute("PRAGMA synchronous = OFF")
             # In one step: one that is written to between two of them would be begun again, for ever.
@@ -37,12 +36,6 @@ def copy_database(database: Path, path: Path) -> None:
             (found,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
             if found != "ok":
                 raise sqlite3.DatabaseError(f"it is damaged ({found})")
-        sync(part)
-        part.replace(path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
-    sync(path.parent)
 
 
 def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connection:

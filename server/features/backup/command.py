@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from robot_runtime.durable_files import sync, write_whole
+from robot_runtime.durable_files import put_in_place, sync, write_whole
 from server.platform.command_line import FILE, with_settings
 from server.platform.database_copies import (
     CHECKSUM,
@@ -80,8 +80,7 @@ def put_back(folder: DataFolder, file: Path) -> str:
     try:
         copy_database(file, fresh)
         aside = _put_aside(folder) if folder.database.exists() else None
-        fresh.replace(folder.database)
-        sync(folder.path)
+        put_in_place(fresh, folder.database)
         thin_out(folder, "replaced")
     except (sqlite3.DatabaseError, OSError) as problem:
         fresh.unlink(missing_ok=True)

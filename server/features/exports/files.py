@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, cast
 
-from robot_runtime.durable_files import sync
+from robot_runtime import durable_files
 
 BUFFER_BYTES = 1 << 18
 
@@ -46,8 +46,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
 def put_in_place(part: Path, path: Path) -> None:
     """Give a finished file its name, for good. Raises FileFailed."""
     try:
-        part.replace(path)
-        sync(path.parent)
+        durable_files.put_in_place(part, path)
     except OSError as problem:
         raise FileFailed(explain(problem, path)) from problem
 
