@@ -13,8 +13,8 @@ from pathlib import Path
 from robot_runtime.clock import SteadyClock
 from robot_runtime.simulation.water.hil import HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
-from robot_runtime.simulation.water.process import WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 

@@ -24,3 +24,13 @@ EVERYWHERE: dict[int | str, dict[str, Any]] = {
     }
 }
 """What any operation may answer."""
+
+SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
+"""Of what is asked of the runtime."""
+COMMAND = {
+    **answers(
+        _409="The runtime refuses", _422="The request is not valid", _423="Control is with somebody else"
+    ),
+    **SILENT,
+}
+"""Of commands to the robot."""

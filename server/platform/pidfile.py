@@ -9,10 +9,23 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from server.processes.process import started_at
-
 TERM_SECONDS = 3.0
 LOOK_SECONDS = 0.02
+
+
+def started_at(pid: int) -> int | None:
+    """The start time of a process (clock ticks since the computer started, proc(5)); None where it has ended.
+
+    PIDs are reused; PID and start time together are unique.
+    """
+    try:
+        status = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    # Behind the program's name in brackets, which may hold brackets itself.
+    fields = status.rpartition(")")[2].split()
+    state, start = fields[0], fields[19]
+    return None if state in "ZX" else int(start)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,10 @@ import select
 import subprocess
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from pathlib import Path
 from signal import SIGKILL, Signals
 from typing import IO
+
+from server.platform.pidfile import started_at
 
 READ_BYTES = 65_536
 KILL_SECONDS = 1.0
@@ -164,21 +165,6 @@ class Watched:
     def _signal_group(self, number: Signals) -> None:
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(self._pid, number)
-
-
-def started_at(pid: int) -> int | None:
-    """When a process was started (clock ticks since the computer was), as proc(5) tells; None: it has ended.
-
-    Numbers of processes are given again; number and time together are not.
-    """
-    try:
-        status = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return None
-    # Behind the program's name in brackets, which may hold brackets itself.
-    fields = status.rpartition(")")[2].split()
-    state, start = fields[0], fields[19]
-    return None if state in "ZX" else int(start)
 
 
 def describe_status(status: int | None) -> str:

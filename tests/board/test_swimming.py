@@ -14,8 +14,8 @@ from robot_runtime.contract.packets import Beacon, Depth, Imu, Motor, Navigation
 from robot_runtime.simulation.boards.emulator_process import STILL_WATER, BoardError, EmulatorClient
 from robot_runtime.simulation.water.faults import SimulatedFault
 from robot_runtime.simulation.water.parameters import SimulationParameters
-from robot_runtime.simulation.water.process import WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.board.host import TICK, Robot, all_of, last, start
 from tests.board.rig import ROOT, build, wait_for

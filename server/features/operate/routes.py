@@ -10,20 +10,12 @@ from server.features.parameters.changes import Changes
 from server.health.alarms import Alarms
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
-from server.http.problems import answers
+from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.disk_space import check_room
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge
-
-SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
-COMMAND = {
-    **answers(
-        _409="The runtime refuses", _422="The request is not valid", _423="Control is with somebody else"
-    ),
-    **SILENT,
-}
 
 router = APIRouter(prefix="/api/robot", tags=["robot"])
 

@@ -6,13 +6,12 @@ from fastapi import APIRouter, HTTPException, Path
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from server.features.operate.routes import COMMAND, SILENT
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import ProfileError, Profiles, file_name, read_file, write_file
 from server.features.parameters.routes import ask_parameters
 from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Restored
 from server.http.dependencies import Provided
-from server.http.problems import answers
+from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX

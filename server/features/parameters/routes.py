@@ -6,11 +6,10 @@ from fastapi import APIRouter
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.documents import Parameters
-from server.features.operate.routes import COMMAND, SILENT
 from server.features.parameters.changes import Changes
 from server.features.parameters.schemas import Change, NewValues, Restored, Undo
 from server.http.dependencies import Provided
-from server.http.problems import answers
+from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.stream.bridge import Bridge

@@ -6,13 +6,9 @@ from typing import Annotated
 from fastapi import APIRouter, HTTPException, Query
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel, ConfigDict
-from starlette.responses import Response, StreamingResponse
+from starlette.responses import Response
 
 from robot_runtime.clock import Clock
-from server.features.exports.description import file_name
-from server.features.exports.schemas import Wanted
-from server.features.exports.selection import Source
-from server.features.exports.tables import stream_tables
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import STORING, UNKNOWN, Identifier, OpenRecording
 from server.features.sessions.recorder import Recorder, RecordingRefused
@@ -30,7 +26,6 @@ from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.sign_in.policy import Need, needs
 from server.platform.settings import Settings
-from server.platform.store import Store
 from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/sessions", tags=["sessions"])
@@ -183,18 +178,3 @@ def get_thumbnail(
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
     raise HTTPException(404, f"Session {recording.row.id} has no picture from {time:g} s on.")
-
-
-@router.get(
-    "/{session}/csv",
-    summary="Download a session",
-    operation_id="downloadSession",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=StreamingResponse,
-    responses={200: {"content": {"application/zip": {}}, "description": "A zip file"}, **UNKNOWN},
-)
-def get_csv(store: Provided[Store], catalogue: Provided[Catalogue], session: Identifier) -> StreamingResponse:
-    """One CSV file for each topic, with units in its header, and `session.json` with everything else."""
-    source = Source(store, catalogue.row(session), Wanted(format="csv"))
-    headers = {"content-disposition": f'attachment; filename="{file_name(source, ".zip")}"'}
-    return StreamingResponse(stream_tables(store, source), media_type="application/zip", headers=headers)

@@ -5,7 +5,6 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 
-from server.features.operate.routes import COMMAND
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.lab import TuningLab
 from server.features.tuning.schemas import (
@@ -18,7 +17,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.dependencies import Provided
-from server.http.problems import answers
+from server.http.problems import COMMAND, answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
 

@@ -6,7 +6,6 @@ from fastapi import APIRouter, HTTPException
 from fastapi.responses import PlainTextResponse
 
 from robot_runtime.contract.limits import ConfigError
-from server.features.operate.routes import COMMAND, SILENT
 from server.features.parameters.changes import Changes
 from server.features.vision.schemas import (
     PickedColour,
@@ -18,7 +17,7 @@ from server.features.vision.schemas import (
 )
 from server.features.vision.toml_document import check, read_document, write_document
 from server.http.dependencies import Provided
-from server.http.problems import answers
+from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.stream.bridge import Bridge

@@ -19,8 +19,8 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents
 from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.errors import NoAnswer, Refused
-from robot_runtime.simulation.water.process import PERIOD, WaterProcess
 from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.simulation.water_process import PERIOD, WaterProcess
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
 
