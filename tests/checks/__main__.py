@@ -5,9 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.checks.links import find_dead_links
+from tests.checks.rooms import find_room_problems
 
 ROOT = Path(__file__).parents[2]
-CHECKS: tuple[Callable[[Path], list[str]], ...] = (find_dead_links,)
+CHECKS: tuple[Callable[[Path], list[str]], ...] = (find_dead_links, find_room_problems)
 
 
 def main() -> int:
