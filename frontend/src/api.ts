@@ -127,7 +127,7 @@ export const api = {
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
   makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
   controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
-  changeLoop: (name: string, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
+  changeLoop: (name: LoopName, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
   setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
   steering: (by: Course) => order('PUT', '/robot/steering', { by }),
   card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
@@ -217,6 +217,5 @@ export const api = {
   stopTuning: () => order('POST', '/tuning/stop'),
   renameTuning: (id: TuningRun['id'], name: string) => command('PATCH', `/tuning/runs/${id}`, { name }),
   deleteTuning: (id: TuningRun['id']) => command('DELETE', `/tuning/runs/${id}`),
-  loop: (name: LoopName, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
   thesisTables: () => request<ThesisTable[]>('GET', '/comm-tests/tables'),
 };
