@@ -19,8 +19,8 @@ from server.features.comparison.comparisons import Comparisons
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.layouts.library import Layouts
-from server.features.lease.arbiter import Desk
-from server.features.lease.sync import Telling
+from server.features.lease.arbiter import ControlArbiter
+from server.features.lease.sync import LeaseSync
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
 from server.features.scenarios.live_run import Live
@@ -69,8 +69,8 @@ class Assembly:
         self.changes = Changes(self.store, self.bridge)
         self.profiles = Profiles(self.store)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
-        self.telling = Telling(self.bridge.tell_lease)
-        self.desk = Desk(
+        self.lease_sync = LeaseSync(self.bridge.tell_lease)
+        self.arbiter = ControlArbiter(
             self.clock,
             self._tell_control,
             self.bridge.drive,
@@ -158,8 +158,8 @@ class Assembly:
                     self.jobs.run(),
                     self.hub.watch(),
                     self.tidying.run(),
-                    self.desk.run(),
-                    self.telling.run(),
+                    self.arbiter.run(),
+                    self.lease_sync.run(),
                     self.inspection.run(),
                     self.tuning.run(),
                     self._tell_health(),
@@ -199,7 +199,7 @@ class Assembly:
             self.watch.see(block)
             self.tuning.see(block)
             if block.topic.name == "state":
-                self.telling.see_run(self.bridge.run)
+                self.lease_sync.see_run(self.bridge.run)
                 if self.settings.sessions.record_at_arming:
                     self.arming.see(block)
 
@@ -226,11 +226,11 @@ class Assembly:
         self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
 
     def _dismiss(self, device: int, reason: str) -> None:
-        self.desk.dismiss(device)
+        self.arbiter.dismiss(device)
         self.hub.dismiss(device, reason)
 
     def _tell_control(self, message: dict[str, Any]) -> None:
-        self.telling.see_epoch(message["epoch"])
+        self.lease_sync.see_epoch(message["epoch"])
         self.hub.tell(message)
 
     def _tell_alarms(self) -> None:

@@ -7,12 +7,12 @@ const SAFE = 'GET';
 const UNAUTHORISED = 401;
 
 /** what names the live socket of this page as the one that asks; null while there is none */
-let seat: string | null = null;
+let clientKey: string | null = null;
 let signedOut: (why: string) => void = () => undefined;
 
-/** Name this seat's key with every call that changes something; null names none. */
-export function sitOn(key: string | null): void {
-  seat = key;
+/** Send this key of the page with every call that changes something; null sends none. */
+export function nameClient(key: string | null): void {
+  clientKey = key;
 }
 
 /** Have this called wherever the server says that nobody is signed in here. */
@@ -23,7 +23,7 @@ export function onSignedOut(call: (why: string) => void): void {
 /** A form of another site cannot set headers: the first shows that this page asks. */
 function headers(method: string): Record<string, string> {
   if (method === SAFE) return {};
-  return { 'X-Mucat': 'page', ...(seat === null ? {} : { 'X-Mucat-Seat': seat }) };
+  return { 'X-Mucat': 'page', ...(clientKey === null ? {} : { 'X-Mucat-Client': clientKey }) };
 }
 
 function refused(status: number, text: string): { problem: string } {

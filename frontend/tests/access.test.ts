@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Access } from '../src/access/access.svelte';
 import { browserName, codeIn } from '../src/access/code';
 import { api } from '../src/api';
-import { sitOn } from '../src/http';
+import { nameClient } from '../src/http';
 
 interface Sent {
   readonly address: string;
@@ -27,7 +27,7 @@ beforeEach(() => {
 });
 
 afterEach(() => {
-  sitOn(null);
+  nameClient(null);
   vi.useRealTimers();
   vi.unstubAllGlobals();
 });
@@ -108,13 +108,13 @@ describe('signing in', () => {
 });
 
 describe('what every call carries', () => {
-  it('shows that the page asks, and from which seat, wherever it changes something', async () => {
+  it('shows that the page asks, and from which client, wherever it changes something', async () => {
     answers['GET /api/storage'] = json({});
     answers['DELETE /api/exports/1'] = () => new Response(null, { status: 204 });
-    sitOn('secret');
+    nameClient('secret');
     await api.storage();
     await api.deleteExport('1');
-    expect(sent.map(({ headers }) => headers)).toEqual([{}, { 'X-Mucat': 'page', 'X-Mucat-Seat': 'secret' }]);
+    expect(sent.map(({ headers }) => headers)).toEqual([{}, { 'X-Mucat': 'page', 'X-Mucat-Client': 'secret' }]);
   });
 });
 

@@ -6,15 +6,12 @@ let asked: string[];
 let seen: boolean;
 let control: Control;
 
-const OPERATOR: You = { name: 'me', role: 'operator', seat: 1 };
-const other = { seat: 2, name: 'Safari on iPad' };
+const OPERATOR: You = { name: 'me', role: 'operator', client: 1 };
+const other = { client: 2, name: 'Safari on iPad' };
 const message = (said: Partial<ControlMessage> = {}): ControlMessage => ({
   op: 'control',
   epoch: 1,
   holder: null,
-  request: null,
-  refused: null,
-  seats: [],
   ...said,
 });
 
@@ -25,7 +22,7 @@ beforeEach(() => {
     asked.push(name);
     return Promise.resolve(null);
   };
-  const calls = { take: call('take'), release: call('release'), refuse: call('refuse'), handOver: call('hand over') };
+  const calls = { take: call('take'), release: call('release'), takeOver: call('take over') };
   control = new Control(calls, () => seen);
 });
 
@@ -56,20 +53,37 @@ describe('a page and the control', () => {
 
   it('takes over from another page of this browser, as after a reload', () => {
     control.greet(OPERATOR);
-    control.hear(message({ holder: { seat: 9, name: 'me' } }));
+    control.hear(message({ holder: { client: 9, name: 'me' } }));
     control.hear(message());
     expect(asked).toEqual(['take']);
   });
 
   it('does not take back what was given up, not even over another connection', async () => {
     control.greet(OPERATOR);
-    control.hear(message({ holder: { seat: 1, name: 'me' } }));
+    control.hear(message({ holder: { client: 1, name: 'me' } }));
     await control.release();
     control.hear(message());
     control.leave();
     control.greet(OPERATOR);
     control.hear(message());
     expect(asked).toEqual(['release']);
+  });
+
+  it('takes control over only where it is told to, and says when somebody took it from here', async () => {
+    control.greet(OPERATOR);
+    control.hear(message({ holder: other }));
+    expect(asked).toEqual([]);
+    await control.takeOver();
+    expect(asked).toEqual(['take over']);
+    control.hear(message({ holder: { client: 1, name: 'me' } }));
+    expect(control.lostTo).toBeNull();
+    control.hear(message({ holder: other }));
+    expect(control.lostTo).toBe('Safari on iPad');
+    control.forgetLoss();
+    expect(control.lostTo).toBeNull();
+    control.hear(message({ holder: { client: 1, name: 'me' } }));
+    control.hear(message());
+    expect(control.lostTo).toBeNull();
   });
 
   it('leaves it to others where it is a viewer’s', () => {
@@ -86,7 +100,7 @@ describe('a page and the control', () => {
     expect(control.barred).toContain('Safari on iPad');
     control.hear(message());
     expect(control.barred).toContain('take it');
-    control.hear(message({ holder: { seat: 1, name: 'me' } }));
+    control.hear(message({ holder: { client: 1, name: 'me' } }));
     expect(control.barred).toBeNull();
     control.leave();
     expect(control.barred).not.toBeNull();

@@ -30,7 +30,7 @@ class ServerEnd {
   greet(hello: object = {}) {
     this.readyState = ServerEnd.OPEN;
     this.onopen?.();
-    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', you: YOU, seat_key: 'key', ...hello });
+    this.tell({ op: 'hello', definitions: DEFINITIONS_HASH, robot: 't', steady: 100, utc: 1e9, page_version: 'a', you: YOU, client_key: 'key', ...hello });
   }
 
   tell(message: object) {
@@ -42,7 +42,7 @@ class ServerEnd {
   }
 }
 
-const YOU = { name: 'Firefox on Linux', role: 'operator', seat: 7 };
+const YOU = { name: 'Firefox on Linux', role: 'operator', client: 7 };
 const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve()) };
 const server = () => ServerEnd.opened.at(-1) ?? new ServerEnd();
 let live: Live;
@@ -193,9 +193,9 @@ describe('Live', () => {
   });
 });
 
-describe('a page that has a seat', () => {
+describe('a page at the control lease', () => {
   const control = (holder: number | null) =>
-    ({ op: 'control', epoch: 3, holder: holder === null ? null : { seat: holder, name: 'x' }, request: null, refused: null, seats: [] }) as const;
+    ({ op: 'control', epoch: 3, holder: holder === null ? null : { client: holder, name: 'x' } }) as const;
   const calls: { address: string; headers: Record<string, string> }[] = [];
   const drives = () => server().sent.map((text) => JSON.parse(text) as { op: string; axes: number[]; lease: number }).filter(({ op }) => op === 'drive');
 
@@ -207,12 +207,12 @@ describe('a page that has a seat', () => {
     });
   });
 
-  it('takes free control once, by its seat', () => {
+  it('takes free control once, by its key', () => {
     server().greet();
     expect(access.know).toHaveBeenCalledWith(YOU);
     server().tell(control(null));
     server().tell(control(null));
-    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat': 'page', 'X-Mucat-Seat': 'key' } }]);
+    expect(calls).toEqual([{ address: '/api/control/take', headers: { 'X-Mucat': 'page', 'X-Mucat-Client': 'key' } }]);
     expect(live.barred).not.toBeNull();
     server().tell(control(7));
     expect(live.barred).toBeNull();

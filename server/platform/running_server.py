@@ -39,7 +39,6 @@ def ask(
     path: str,
     body: Mapping[str, Any] | None = None,
     seconds: float = ASK_SECONDS,
-    headers: Mapping[str, str] | None = None,
 ) -> Any:
     """What the server answers to a request below /api; None where it has nothing to say.
 
@@ -48,7 +47,7 @@ def ask(
     data = b"" if body is None and method == "POST" else None
     if body is not None:
         data = json.dumps(body).encode()
-    return _send(folder, method, path, data, {"content-type": "application/json", **(headers or {})}, seconds)
+    return _send(folder, method, path, data, {"content-type": "application/json"}, seconds)
 
 
 def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:

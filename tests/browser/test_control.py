@@ -1,4 +1,4 @@
-"""Who has control: taken, asked for, kept, given, and passed on by itself to who has asked."""
+"""Who has control: taken, taken over, released."""
 
 import re
 
@@ -8,7 +8,6 @@ from tests.browser.people import somebody
 from tests.stack import Stack
 
 MINE = re.compile("^Control: this page$")
-PASSES_MS = 12_000
 
 
 def control(page: Page) -> Locator:
@@ -16,50 +15,31 @@ def control(page: Page) -> Locator:
     return page.get_by_role("button", name=re.compile("^Control:"))
 
 
-def ask(page: Page) -> None:
-    """Ask for the control that somebody else has."""
-    control(page).click()
-    page.get_by_role("button", name="Ask for control").click()
-    page.keyboard.press("Escape")
-
-
 def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack: Stack) -> None:
     expect(control(page)).to_have_accessible_name(MINE)
-    request = page.get_by_role("region", name="Request for control")
     with somebody(browser, stack, "operator") as other:
         expect(control(other)).not_to_have_accessible_name(MINE)
         expect(other.get_by_role("button", name="Hold to arm")).to_be_disabled()
 
-        ask(other)
-        expect(request).to_be_visible()
-        page.get_by_role("button", name="STOP").click()
-        request.get_by_role("button", name="Keep").click()
-        expect(other.get_by_role("status").filter(has_text="Control stays with")).to_be_visible()
-        expect(control(page)).to_have_accessible_name(MINE)
-
-        control(page).click()
-        page.get_by_role("button", name="Give it up").click()
-        expect(control(other)).to_have_accessible_name("Control: nobody")
+        # Taking it over is confirmed, and the page that loses it says so.
         control(other).click()
-        other.get_by_role("button", name="Take control").click()
-        expect(control(other)).to_have_accessible_name(MINE)
-
-        page.get_by_role("button", name="Ask for control").click()
-        other.get_by_role("button", name="Hand over", exact=True).click()
+        other.get_by_role("button", name="Take over").click()
+        other.get_by_role("button", name="Cancel").click()
         expect(control(page)).to_have_accessible_name(MINE)
-        expect(page.get_by_text("handed control over to").last).to_be_attached()
-
-        # Nobody has asked.
-        page.get_by_role("button", name=re.compile("^Hand over to .*, page")).click()
+        other.get_by_role("button", name="Take over").click()
+        other.get_by_role("button", name="Take over now").click()
         expect(control(other)).to_have_accessible_name(MINE)
-        page.keyboard.press("Escape")
-        control(other).click()
-        other.get_by_role("button", name=re.compile("^Hand over to .*, page")).click()
-        expect(control(page)).to_have_accessible_name(MINE)
-        other.keyboard.press("Escape")
-
-        ask(other)
-        expect(request).to_be_visible()
-        expect(control(other)).to_have_accessible_name(MINE, timeout=PASSES_MS)
-        expect(request).to_be_hidden()
+        lost = page.get_by_role("alert").filter(has_text="took control over from this page")
+        expect(lost).to_be_visible()
         expect(page.get_by_role("button", name="Hold to arm")).to_be_disabled()
+        page.get_by_role("button", name="STOP").click()
+        lost.get_by_role("button", name="Close").click()
+        expect(lost).to_have_count(0)
+        expect(page.get_by_text("took over control from").last).to_be_attached()
+
+        other.get_by_role("button", name="Release control").click()
+        expect(control(page)).to_have_accessible_name("Control: nobody")
+        control(page).click()
+        page.get_by_role("button", name="Take control").click()
+        expect(control(page)).to_have_accessible_name(MINE)
+        expect(control(other)).not_to_have_accessible_name(MINE)

@@ -64,10 +64,7 @@ class Surface:
 
     def take_control(self) -> None:
         """Have what only the control's holder may ask let through."""
-        control = f"{self.url}/api/control"
-        if self.session.post(f"{control}/take").status_code != 200:
-            self.session.headers["x-mucat-seat"] = self.session.post(f"{control}/seat").json()["key"]
-            self.session.post(f"{control}/take").raise_for_status()
+        self.session.post(f"{self.url}/api/control/take?over=true").raise_for_status()
 
     def connect(self) -> ClientConnection:
         """A WebSocket to /api/live."""

@@ -41,12 +41,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("DELETE", "/api/access/devices/{device}"): "operator",
     ("POST", "/api/access/tokens"): "operator",
     ("GET", "/api/control"): "viewer",
-    ("POST", "/api/control/seat"): "operator",
     ("POST", "/api/control/take"): "operator",
-    ("POST", "/api/control/renew"): "operator",
     ("POST", "/api/control/release"): "operator",
-    ("POST", "/api/control/refuse"): "control",
-    ("POST", "/api/control/hand-over"): "control",
     ("GET", "/api/health"): "viewer",
     ("GET", "/api/robot"): "viewer",
     ("POST", "/api/robot/stop"): "viewer",
@@ -318,7 +314,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
                     house.people[who] = await house.enter(who)
             right = house.places("right", "right")
             async with house.socket(house.people["control"], right) as live:
-                house.people["control"].headers["x-mucat-seat"] = (await live.hello())["seat_key"]
+                house.people["control"].headers["x-mucat-client"] = (await live.hello())["client_key"]
                 yield house
 
 
@@ -397,15 +393,13 @@ async def say_everything(house: House, who: Who, socket: LiveSocket) -> None:
     before = len(house.runtime.asked)
     assert await socket.say({"op": "stop"}) == []
     await until(lambda: ("stop", {}) in house.runtime.asked[before:], "the STOP")
-    desk = house.assembly.desk
+    arbiter = house.assembly.arbiter
     if who == "control":
-        seat = desk.seats.get(hello["you"]["seat"])
-        assert seat is not None
-        for one in desk.seats:
-            desk.release(one)
-        desk.take(seat)
-    passed = desk.driving.counts.passed
-    drive = {"op": "drive", "lease": desk.lease.epoch, "sequence": 1, "axes": [0.0] * 6}
+        client = arbiter.clients.get(hello["you"]["client"])
+        assert client is not None
+        arbiter.take(client, over=True)
+    passed = arbiter.driving.counts.passed
+    drive = {"op": "drive", "lease": arbiter.lease.epoch, "sequence": 1, "axes": [0.0] * 6}
     errors = await socket.say(drive | {"taken": house.assembly.clock.now()})
     assert (errors != []) is (ROLES[who] < LEAST["operator"])
-    assert desk.driving.counts.passed - passed == (who == "control")
+    assert arbiter.driving.counts.passed - passed == (who == "control")

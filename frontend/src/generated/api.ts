@@ -401,51 +401,11 @@ export interface paths {
         };
         /**
          * Who has control
-         * @description And who asks for it, and what has come of the driving commands.
+         * @description The client in control, and the counts of stick commands.
          */
         get: operations["getControl"];
         put?: never;
         post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/control/hand-over": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Give control to somebody
-         * @description At once, also where somebody else has asked for it.
-         */
-        post: operations["handOverControl"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/control/refuse": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Keep control
-         * @description Whoever was refused may ask again after 10 s.
-         */
-        post: operations["refuseControl"];
         delete?: never;
         options?: never;
         head?: never;
@@ -462,50 +422,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Give control back
-         * @description Or ask for it no longer. Whoever has asked for it has it at once.
+         * Release control
+         * @description Nobody has it then. Nothing changes if this client did not have it.
          */
         post: operations["releaseControl"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/control/renew": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Keep a program's seat
-         * @description Any request that needs control or a seat does that too.
-         */
-        post: operations["renewSeat"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/control/seat": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * A seat for a program
-         * @description Its key goes into the header X-Mucat-Seat of what follows; 10 s without such a request end it.
-         */
-        post: operations["openSeat"];
         delete?: never;
         options?: never;
         head?: never;
@@ -522,8 +442,11 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Take control, or ask for it
-         * @description Free control is taken at once. Where it is held, the holder has 10 s to refuse; then it passes.
+         * Take control
+         * @description Take free control, or with `over` take it over from another client: its stick commands no longer count.
+         *
+         *     A page has control until it releases it or its live socket closes. The programs of one token share it,
+         *     until none of them has made a request that needs control for 10 s.
          */
         post: operations["takeControl"];
         delete?: never;
@@ -1927,21 +1850,6 @@ export interface components {
             number: number;
         };
         /**
-         * Asking
-         * @description Who asks for control; granted at `until` unless the holder refuses.
-         */
-        Asking: {
-            /** Name */
-            name: string;
-            /** Seat */
-            seat: number;
-            /**
-             * Until
-             * @description s, steady clock
-             */
-            until: number;
-        };
-        /**
          * Card
          * @description The card before the simulated camera; null takes it away.
          */
@@ -2196,7 +2104,7 @@ export interface components {
         };
         /**
          * Control
-         * @description The same, and what has come of the driving commands.
+         * @description The same, and the counts of stick commands.
          */
         Control: {
             driven: components["schemas"]["Driven"];
@@ -2206,17 +2114,10 @@ export interface components {
              */
             epoch: number;
             holder: components["schemas"]["Holder"] | null;
-            refused: components["schemas"]["RefusedSeat"] | null;
-            request: components["schemas"]["Asking"] | null;
-            /**
-             * Seats
-             * @description all that there are, the oldest first
-             */
-            seats: components["schemas"]["Seated"][];
         };
         /**
          * ControlState
-         * @description Who has control and who asks for it, as on the live socket.
+         * @description Who has control, as on the live socket.
          */
         ControlState: {
             /**
@@ -2225,13 +2126,6 @@ export interface components {
              */
             epoch: number;
             holder: components["schemas"]["Holder"] | null;
-            refused: components["schemas"]["RefusedSeat"] | null;
-            request: components["schemas"]["Asking"] | null;
-            /**
-             * Seats
-             * @description all that there are, the oldest first
-             */
-            seats: components["schemas"]["Seated"][];
         };
         /**
          * Controller
@@ -2375,7 +2269,7 @@ export interface components {
             from_the_future: number;
             /**
              * Not In Control
-             * @description from a seat without control
+             * @description from a client without control
              * @default 0
              */
             not_in_control: number;
@@ -2535,14 +2429,6 @@ export interface components {
             value: number;
         };
         /**
-         * HandOver
-         * @description To which seat.
-         */
-        HandOver: {
-            /** Seat */
-            seat: number;
-        };
-        /**
          * Health
          * @description Everything together: "failed" where a part has failed, else "starting" where one starts, else "ok".
          */
@@ -2564,13 +2450,13 @@ export interface components {
         };
         /**
          * Holder
-         * @description Who has control.
+         * @description The client in control.
          */
         Holder: {
+            /** Client */
+            client: number;
             /** Name */
             name: string;
-            /** Seat */
-            seat: number;
         };
         /**
          * Hole
@@ -3369,19 +3255,6 @@ export interface components {
             name: string;
         };
         /**
-         * RefusedSeat
-         * @description Whose request was refused last; that seat may ask again after `until`.
-         */
-        RefusedSeat: {
-            /** Seat */
-            seat: number;
-            /**
-             * Until
-             * @description s, steady clock
-             */
-            until: number;
-        };
-        /**
          * RelayStart
          * @description A relay in the place of a loop's controller.
          */
@@ -3698,41 +3571,6 @@ export interface components {
             text: string;
             /** Title */
             title: string;
-        };
-        /**
-         * SeatGiven
-         * @description A program's seat. `key` is told only here; it goes into the header X-Mucat-Seat.
-         */
-        SeatGiven: {
-            /** Key */
-            key: string;
-            /**
-             * Lasts
-             * @description s after its last use
-             */
-            lasts: number;
-            /** Seat */
-            seat: number;
-        };
-        /**
-         * Seated
-         * @description One page or program that is there; those of operators may have control.
-         */
-        Seated: {
-            /**
-             * Kind
-             * @enum {string}
-             */
-            kind: "browser" | "program" | "shell";
-            /** Name */
-            name: string;
-            /**
-             * Role
-             * @enum {string}
-             */
-            role: "viewer" | "operator";
-            /** Seat */
-            seat: number;
         };
         /**
          * Session
@@ -5752,104 +5590,6 @@ export interface operations {
             };
         };
     };
-    handOverControl: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["HandOver"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ControlState"];
-                };
-            };
-            /** @description There is no such seat, or it is a viewer's */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    refuseControl: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ControlState"];
-                };
-            };
-            /** @description Nobody asks for it */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
     releaseControl: {
         parameters: {
             query?: never;
@@ -5868,83 +5608,7 @@ export interface operations {
                     "application/json": components["schemas"]["ControlState"];
                 };
             };
-            /** @description The request names no seat */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    renewSeat: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ControlState"];
-                };
-            };
-            /** @description The request names no seat */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    openSeat: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            201: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SeatGiven"];
-                };
-            };
-            /** @description Too many programs of this device have one */
+            /** @description The request names no open page */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -5966,7 +5630,9 @@ export interface operations {
     };
     takeControl: {
         parameters: {
-            query?: never;
+            query?: {
+                over?: boolean;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -5982,7 +5648,7 @@ export interface operations {
                     "application/json": components["schemas"]["ControlState"];
                 };
             };
-            /** @description The request names no seat; somebody else has asked; it was refused a moment ago */
+            /** @description The request names no open page; somebody else has control */
             409: {
                 headers: {
                     [name: string]: unknown;

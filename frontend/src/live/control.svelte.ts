@@ -13,6 +13,8 @@ export class Control {
   now = $state.raw<ControlMessage | null>(null);
   /** what went wrong with the last thing that was asked */
   problem = $state('');
+  /** who took control over from this page, until it is closed or this page has control again */
+  lostTo = $state<string | null>(null);
   #eager = true;
   #released = false;
 
@@ -24,17 +26,7 @@ export class Control {
 
   /** whether this page has the control */
   get mine(): boolean {
-    return this.you !== null && this.now?.holder?.seat === this.you.seat;
-  }
-
-  /** whether this page has asked for the control and waits */
-  get asked(): boolean {
-    return this.you !== null && this.now?.request?.seat === this.you.seat;
-  }
-
-  /** whether this page has just been refused */
-  get refused(): boolean {
-    return this.you !== null && this.now?.refused?.seat === this.you.seat;
+    return this.you !== null && this.now?.holder?.client === this.you.client;
   }
 
   /** Why this page cannot command the robot, in words; null where it can. STOP always can. */
@@ -43,7 +35,7 @@ export class Control {
     if (this.you.role === 'viewer') return 'Viewers may watch and STOP.';
     if (this.mine) return null;
     if (this.now.holder === null) return 'Nobody has control: take it first.';
-    return `Control is with ${this.now.holder.name}: ask for it first.`;
+    return `Control is with ${this.now.holder.name}: take it over first.`;
   }
 
   greet(you: You): void {
@@ -52,13 +44,15 @@ export class Control {
   }
 
   hear(message: ControlMessage): void {
+    if (this.mine && message.holder !== null && message.holder.client !== this.you?.client) this.lostTo = message.holder.name;
     this.now = message;
+    if (this.mine) this.lostTo = null;
     // What this browser has held by another page comes free when that is closed: after a reload, for one.
     if (message.holder !== null && message.holder.name !== this.you?.name) this.#eager = false;
     this.consider();
   }
 
-  /** The connection is gone, and the seat with it. */
+  /** The connection is gone, and control with it. */
   leave(): void {
     this.you = null;
     this.now = null;
@@ -71,10 +65,13 @@ export class Control {
     void this.take();
   };
 
-  /** Take control, or ask for it where somebody has it. */
+  /** Take control that is free. */
   readonly take = (): Promise<void> => this.#run(this.call.take());
-  readonly refuse = (): Promise<void> => this.#run(this.call.refuse());
-  readonly handOver = (seat: number): Promise<void> => this.#run(this.call.handOver(seat));
+  /** Take control from whoever has it. */
+  readonly takeOver = (): Promise<void> => this.#run(this.call.takeOver());
+  readonly forgetLoss = (): void => {
+    this.lostTo = null;
+  };
 
   readonly release = (): Promise<void> => {
     this.#released = true;
@@ -91,6 +88,5 @@ export class Control {
 export interface ControlCalls {
   take(): Promise<string | null>;
   release(): Promise<string | null>;
-  refuse(): Promise<string | null>;
-  handOver(seat: number): Promise<string | null>;
+  takeOver(): Promise<string | null>;
 }

@@ -4,7 +4,7 @@ import { Control } from './control.svelte';
 import { keeps } from '../drive/holds';
 import { Pilot } from '../drive/pilot.svelte';
 import { DEFINITIONS_HASH } from '../generated/topics';
-import { sitOn } from '../http';
+import { nameClient } from '../http';
 import { readBlocks, type Block } from './blocks';
 import { SteadyClock } from './clock';
 import { Live } from './live.svelte';
@@ -44,7 +44,7 @@ export class LiveFeed {
     });
     const stop = new Stop(() => this.#socket.send({ op: 'stop' }));
     this.#control = new Control(
-      { take: api.takeControl, release: api.releaseControl, refuse: api.refuseControl, handOver: api.handOver },
+      { take: api.takeControl, release: api.releaseControl, takeOver: api.takeControlOver },
       () => !document.hidden,
     );
     this.live = new Live(() => this.#steady.now(), stop, this.#control);
@@ -74,7 +74,7 @@ export class LiveFeed {
       window.removeEventListener('online', wake);
       document.removeEventListener('visibilitychange', consider);
       this.#socket.end();
-      sitOn(null);
+      nameClient(null);
     };
   }
 
@@ -115,7 +115,7 @@ export class LiveFeed {
     this.live.connection = 'lost';
     this.live.roundTrip = null;
     this.#control.leave();
-    sitOn(null);
+    nameClient(null);
     if (refused) void this.access.check(reason);
     if (reason !== '') this.live.farewell = reason;
   }
@@ -149,7 +149,7 @@ export class LiveFeed {
       this.#past.forget();
       live.clear();
     }
-    sitOn(hello.seat_key);
+    nameClient(hello.client_key);
     this.access.know(hello.you);
     this.#control.greet(hello.you);
     this.#steady.observe(hello.steady);

@@ -3,14 +3,14 @@ import type { Cell, Part, Role, ScenarioState, Session, TuningState } from '../a
 import type { components } from '../generated/api';
 import type { Alarm } from '../generated/topics';
 
-/** Who a page is to the robot. A seat is what can have the control; it lasts as long as the live socket. */
+/** Who a page is to the robot. `client` is its number at the control lease, for as long as the live socket is open. */
 export interface You {
   readonly name: string;
   readonly role: Role;
-  readonly seat: number;
+  readonly client: number;
 }
 
-/** `epoch` grows whenever control goes to another seat: what was meant for an earlier one is dropped. */
+/** `epoch` grows whenever control goes to another client: what was meant for an earlier one is dropped. */
 export type ControlMessage = { readonly op: 'control' } & Readonly<components['schemas']['ControlState']>;
 
 export interface Hello {
@@ -24,7 +24,7 @@ export interface Hello {
   page_version: string;
   you: You;
   /** shows that a command comes from this page */
-  seat_key: string;
+  client_key: string;
 }
 
 /** The communication test that runs. */

@@ -5,19 +5,19 @@ from typing import Annotated
 from fastapi import Depends, HTTPException
 from starlette.requests import HTTPConnection
 
-from server.features.lease.arbiter import Desk
-from server.features.lease.clients import Seat
+from server.features.lease.arbiter import ControlArbiter
+from server.features.lease.clients import ControlClient
 from server.http.dependencies import find_service
 from server.http.sign_in.authorization import refusal
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.http.sign_in.policy import Need, need_of
 
-HEADER = "x-mucat-seat"
+HEADER = "x-mucat-client"
 
 
 async def admit(connection: HTTPConnection) -> None:
     """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
-    NotInControl where it needs the control, and another seat has it.
+    NotInControl where it needs the control, and another client has it.
 
     The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
     """
@@ -31,29 +31,28 @@ async def admit(connection: HTTPConnection) -> None:
 
 
 def require_control(connection: HTTPConnection) -> None:
-    """Raises NotInControl where it comes from another seat than the one that has control."""
-    find_service(connection, Desk).require(_find_seat(connection))
+    """Raises NotInControl if it comes from another client than the one in control."""
+    find_service(connection, ControlArbiter).require(_find_client(connection))
 
 
-async def require_seat(connection: HTTPConnection) -> Seat:
-    """The seat that this request names. Raises HTTPException (409)."""
-    seat = _find_seat(connection)
-    if seat is None:
+async def require_client(connection: HTTPConnection) -> ControlClient:
+    """The client that this request comes from; a program needs none before. Raises HTTPException (409)."""
+    client, identity = _find_client(connection), connection.scope[IDENTITY]
+    if client is None and HEADER not in connection.headers and identity.kind != "browser":
+        client = find_service(connection, ControlArbiter).open_program(identity)
+    if client is None:
         raise HTTPException(
             409,
-            "This request names no seat that there is. A page has one while its live socket is open; a "
-            "program gets one with POST /api/control/seat, which it loses after 10 s without a request.",
+            "This request names no open page. A page has its key from `hello` while its live socket is open.",
         )
-    return seat
+    return client
 
 
-OwnSeat = Annotated[Seat, Depends(require_seat)]
-"""A route's parameter that is the seat of whoever asks."""
+OwnClient = Annotated[ControlClient, Depends(require_client)]
+"""A route's parameter that is the control client of whoever asks."""
 
 
-def _find_seat(connection: HTTPConnection) -> Seat | None:
-    key = connection.headers.get(HEADER)
-    if key is None:
-        return None
+def _find_client(connection: HTTPConnection) -> ControlClient | None:
+    """The page whose key this request names, or the programs of who asks; a program's lasts on by that."""
     identity: Identity = connection.scope[IDENTITY]
-    return find_service(connection, Desk).seats.use(identity, key)
+    return find_service(connection, ControlArbiter).clients.find(identity, connection.headers.get(HEADER))

@@ -1,7 +1,7 @@
-"""The desk at which the robot is driven: its seats, who has the control, and what the driver sends.
+"""The control of the robot: who has it, taking and releasing it, and what its holder's sticks send.
 
-Everybody hears of each change through `tell`, and `note` has it in a sentence, for the record. Roles count
-here too: a viewer's seat never has the control.
+A client takes control that is free, or takes it over from another one on purpose. With each change the
+robot's sticks are neutral (`robot_runtime.control.pilot`). Viewers never have control.
 """
 
 import asyncio
@@ -11,26 +11,24 @@ from typing import Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import Refused
-from server.features.lease.clients import Seat, Seats
+from server.features.lease.clients import ControlClient, ControlClients
 from server.features.lease.driving import Drive, Driving
-from server.features.lease.lease import Lease, NotInControl, What
-from server.features.lease.schemas import Asking, ControlState, Holder, RefusedSeat, Seated
+from server.features.lease.lease import Change, Lease, NotInControl
+from server.features.lease.schemas import ControlState, Holder
 from server.http.sign_in.identity import Identity
 
-WORDS: dict[What, str] = {
-    "taken": "{seat} took control.",
-    "asked": "{seat} asked {holder} for control.",
-    "withdrawn": "{seat} asks for control no longer.",
-    "refused": "{holder} kept control, for which {seat} had asked.",
-    "handed": "{holder} handed control over to {seat}.",
-    "passed": "Control passed from {holder} to {seat}, who had asked for it.",
-    "released": "{holder} gave control back. Nobody has it now.",
+TEXTS: dict[Change, str] = {
+    "taken": "{client} took control.",
+    "taken over": "{client} took over control from {holder}.",
+    "released": "{holder} released control. Nobody has it now.",
     "left": "{holder} left, and nobody has control now.",
 }
 
 
-class Desk:
-    """`tell` gets `{op: "control", ...}`, `publish` the bytes of a driving command."""
+class ControlArbiter:
+    """`tell` gets `{op: "control", ...}` at each change, `publish` the bytes of a stick command, and `note` a
+    sentence about each change for the record.
+    """
 
     def __init__(
         self,
@@ -39,138 +37,108 @@ class Desk:
         publish: Callable[[bytes], None],
         note: Callable[[str], None],
     ) -> None:
-        self.seats = Seats(clock)
+        self.clients = ControlClients(clock)
         # The steady clock never runs back while the computer is up, and nobody changes the holder a thousand
         # times a second: so the first epoch of a restarted server is above all those of the last one.
-        self.lease = Lease(clock, int(clock.now() * 1000), self._note)
+        self.lease = Lease(int(clock.now() * 1000), self._note)
         self.driving = Driving(clock, publish)
         self._clock = clock
         self._tell = tell
         self._write = note
-        self._news = asyncio.Event()
+        self._wake = asyncio.Event()
 
     @contextmanager
-    def page(self, identity: Identity) -> Iterator[Seat]:
-        """A page's seat, which ends with its socket."""
-        seat = self.seats.open_page(identity)
+    def page(self, identity: Identity) -> Iterator[ControlClient]:
+        """The client of a page, which ends with its socket."""
+        client = self.clients.open_page(identity)
         self.announce()
         try:
-            yield seat
+            yield client
         finally:
-            self._close(seat)
+            self._close(client)
             self.announce()
 
-    def seat_program(self, identity: Identity) -> Seat:
-        """A program's seat. Raises Refused where its device has too many."""
-        seat = self.seats.open_program(identity)
-        self._news.set()
-        return seat
+    def open_program(self, identity: Identity) -> ControlClient:
+        """The client of this identity's programs."""
+        self.expire()
+        client = self.clients.open_program(identity)
+        self._wake.set()
+        return client
 
-    def take(self, seat: Seat) -> None:
-        """Have control, or ask for it. Raises Refused."""
-        if seat.identity.role != "operator":
+    def take(self, client: ControlClient, *, over: bool = False) -> None:
+        """Give control to a client; `over` takes it from another one. Raises Refused."""
+        if client.identity.role != "operator":
             raise Refused("Only operators can have control. An operator can make you one on the People page.")
-        with self._changing():
-            self.lease.take(seat.number)
+        self.expire()
+        holder = self._name(self.lease.holder)
+        if holder is not None and self.lease.holder != client.number and not over:
+            raise Refused(f"Control is with {holder}. Agree with them, then take it over.")
+        self.lease.take(client.number)
+        self.announce()
 
-    def release(self, seat: Seat) -> None:
-        """Give control back, or ask for it no longer."""
-        with self._changing():
-            self.lease.release(seat.number)
+    def release(self, client: ControlClient) -> None:
+        """Free control if this client has it."""
+        self.lease.release(client.number)
+        self.announce()
 
-    def refuse(self, seat: Seat) -> None:
-        """Keep control against who asks for it. Raises NotInControl, Refused."""
-        with self._changing():
-            self.lease.refuse(seat.number)
-
-    def hand_over(self, seat: Seat, to: int) -> None:
-        """Give control to another operator's seat. Raises NotInControl, Refused."""
-        with self._changing():
-            other = self.seats.get(to)
-            if other is None:
-                raise Refused("That page or program is gone. Choose another.")
-            if other.identity.role != "operator":
-                raise Refused(f"{other.identity.name} is a viewer, and only operators can have control.")
-            self.lease.hand_over(seat.number, to)
-
-    def require(self, seat: Seat | None) -> None:
-        """Raises NotInControl, in words for a person, where this seat has no control."""
-        self.settle()
+    def require(self, client: ControlClient | None) -> None:
+        """Raises NotInControl, in words for a person, if this client has no control."""
+        self.expire()
         holder = self._name(self.lease.holder)
         if holder is None:
             raise NotInControl("Nobody has control. Take control first.")
-        if seat is None or seat.number != self.lease.holder:
-            raise NotInControl(f"Control is with {holder}; ask for it.")
+        if client is None or client.number != self.lease.holder:
+            raise NotInControl(f"Control is with {holder}. Agree with them, then take it over.")
 
-    def drive(self, seat: Seat, command: Drive) -> None:
-        """Pass it on, or drop and count it."""
-        self.settle()
-        self.driving.take(command, self.lease.epoch if seat.number == self.lease.holder else None)
+    def drive(self, client: ControlClient, command: Drive) -> None:
+        """Pass a stick command on, or drop and count it."""
+        self.expire()
+        self.driving.take(command, self.lease.epoch if client.number == self.lease.holder else None)
 
     def dismiss(self, device: int) -> None:
-        """A device is signed out, or has another role: its seats are no more. It may come back for others."""
-        for seat in self.seats.of(device):
-            self._close(seat)
+        """Close the clients of a device that is signed out or has another role. It may open others."""
+        for client in self.clients.of(device):
+            self._close(client)
         self.announce()
 
     def state(self) -> ControlState:
-        """Who has control, who asks for it, and who was refused last."""
-        self.settle()
-        holder, request, refused = self.lease.holder, self.lease.request, self.lease.refused
+        """The epoch, and the client in control."""
+        self.expire()
+        holder = self.lease.holder
         name = self._name(holder)
-        asking = None if request is None else self._name(request.seat)
         return ControlState(
             epoch=self.lease.epoch,
-            holder=None if holder is None or name is None else Holder(seat=holder, name=name),
-            request=None
-            if request is None or asking is None
-            else Asking(seat=request.seat, name=asking, until=request.until),
-            refused=None if refused is None else RefusedSeat(seat=refused.seat, until=refused.until),
-            seats=[_seated(seat) for seat in self.seats],
+            holder=None if holder is None or name is None else Holder(client=holder, name=name),
         )
 
-    def settle(self) -> None:
-        """Let come about what time has brought."""
-        for seat in self.seats.over():
-            self._close(seat)
-        self.lease.settle()
+    def expire(self) -> None:
+        """Close the clients of programs that have been silent for too long."""
+        for client in self.clients.expired():
+            self._close(client)
 
     def announce(self) -> None:
-        """Tell everybody, and whoever looks at the time."""
+        """Tell all pages who has control."""
         self._tell({"op": "control", **self.state().model_dump()})
-        self._news.set()
+        self._wake.set()
 
     async def run(self) -> None:
-        """Let come about, for ever and on time, what only time brings."""
+        """Timer task: expire clients when they are due."""
         while True:
             self.announce()
-            self._news.clear()
-            moments = [one for one in (self.lease.next_moment(), self.seats.next_moment()) if one is not None]
-            left = max(0.0, min(moments) - self._clock.now()) if moments else None
+            self._wake.clear()
+            due = self.clients.next_expiry()
             with suppress(TimeoutError):
-                async with asyncio.timeout(left):
-                    await self._news.wait()
+                async with asyncio.timeout(None if due is None else max(0.0, due - self._clock.now())):
+                    await self._wake.wait()
 
-    @contextmanager
-    def _changing(self) -> Iterator[None]:
-        self.settle()
-        try:
-            yield
-        finally:
-            self.announce()
+    def _close(self, client: ControlClient) -> None:
+        self.lease.forget(client.number)
+        self.clients.close(client.number)
 
-    def _close(self, seat: Seat) -> None:
-        self.lease.forget(seat.number)
-        self.seats.close(seat.number)
-
-    def _note(self, what: What, seat: int | None, holder: int | None) -> None:
-        self._write(WORDS[what].format(seat=f"“{self._name(seat)}”", holder=f"“{self._name(holder)}”"))
+    def _note(self, change: Change, client: int | None, holder: int | None) -> None:
+        names = {"client": f"“{self._name(client)}”", "holder": f"“{self._name(holder)}”"}
+        self._write(TEXTS[change].format(**names))
 
     def _name(self, number: int | None) -> str | None:
-        seat = None if number is None else self.seats.get(number)
-        return None if seat is None else seat.identity.name
-
-
-def _seated(seat: Seat) -> Seated:
-    who = seat.identity
-    return Seated(seat=seat.number, name=who.name, role=who.role, kind=who.kind)
+        client = None if number is None else self.clients.get(number)
+        return None if client is None else client.identity.name

@@ -1,22 +1,20 @@
-"""Seats: the pages and programs that could have the control. Whoever has paired may have several."""
+"""The clients of the control lease: pages and programs. A browser may have several pages open."""
 
 import secrets
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
 from server.http.sign_in.identity import Identity
 
 PROGRAM_SECONDS = 10.0
-"""A program's seat lasts so long after its last use."""
-PROGRAMS_MAX = 20
-"""Seats that the programs of one device may have at a time."""
+"""A program's client lasts so long after its last request that needs control."""
 
 
 @dataclass(slots=True)
-class Seat:
-    """One page or program; `key` is its secret, `until` when it ends (s), None for a page's."""
+class ControlClient:
+    """One page, or the programs of one token. `key` is a page's secret, "" for programs; `until` is when a
+    program's client ends (s), None for a page.
+    """
 
     number: int
     identity: Identity
@@ -24,69 +22,65 @@ class Seat:
     until: float | None
 
 
-class Seats:
-    """Those that there are, by number; no number is ever given again."""
+class ControlClients:
+    """The open clients, by number; no number is used twice."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
-        self._seats: dict[int, Seat] = {}
+        self._clients: dict[int, ControlClient] = {}
         self._last = 0
 
-    def __iter__(self) -> Iterator[Seat]:
-        return iter([*self._seats.values()])
+    def open_page(self, identity: Identity) -> ControlClient:
+        """A client for a page, until it is closed."""
+        return self._open(identity, secrets.token_urlsafe(24), None)
 
-    def open_page(self, identity: Identity) -> Seat:
-        """For a page, until it is closed."""
-        return self._open(identity, None)
+    def open_program(self, identity: Identity) -> ControlClient:
+        """The client of this identity's programs, opened where there is none."""
+        found = self.find(identity, None)
+        return found or self._open(identity, "", self._clock.now() + PROGRAM_SECONDS)
 
-    def open_program(self, identity: Identity) -> Seat:
-        """For a program, as long as it is used. Raises Refused where the device has too many."""
-        now = self._clock.now()
-        others = [one for one in self.of(identity.device) if one.until is not None and one.until > now]
-        if len(others) >= PROGRAMS_MAX:
-            raise Refused(
-                f"{PROGRAMS_MAX} programs of {identity.name} have seats already. "
-                f"Wait until one has been silent for {PROGRAM_SECONDS:g} s."
-            )
-        return self._open(identity, now + PROGRAM_SECONDS)
-
-    def use(self, identity: Identity, key: str) -> Seat | None:
-        """The seat of this key, which now lasts on; None where this device has no such seat (any more)."""
-        found = None
-        for seat in self.of(identity.device):
-            # Every key is looked at, whichever it is.
-            if secrets.compare_digest(seat.key.encode(), key.encode()):
-                found = seat
-        now = self._clock.now()
-        if found is None or (found.until is not None and found.until <= now):
+    def find(self, identity: Identity, key: str | None) -> ControlClient | None:
+        """The page with this key, or without a key the identity's programs, which last on by that."""
+        if key is None:
+            now = self._clock.now()
+            for client in self.of(identity.device):
+                if client.until is not None and client.until > now:
+                    client.until = now + PROGRAM_SECONDS
+                    return client
             return None
-        if found.until is not None:
-            found.until = now + PROGRAM_SECONDS
+        found = None
+        for client in self.of(identity.device):
+            # Every key is compared, so that the time says nothing.
+            if client.key and secrets.compare_digest(client.key.encode(), key.encode()):
+                found = client
         return found
 
-    def get(self, number: int) -> Seat | None:
-        """The seat of this number."""
-        return self._seats.get(number)
+    def get(self, number: int) -> ControlClient | None:
+        """The client of this number."""
+        return self._clients.get(number)
 
-    def of(self, device: int) -> list[Seat]:
-        """Those of one device."""
-        return [seat for seat in self._seats.values() if seat.identity.device == device]
+    def of(self, device: int) -> list[ControlClient]:
+        """The clients of one device."""
+        return [client for client in self._clients.values() if client.identity.device == device]
 
     def close(self, number: int) -> None:
-        """It is no more, if it was."""
-        self._seats.pop(number, None)
+        """Remove a client, if it is there."""
+        self._clients.pop(number, None)
 
-    def over(self) -> list[Seat]:
-        """Programs' seats that have not been used for too long."""
+    def expired(self) -> list[ControlClient]:
+        """Clients of programs that have been silent for too long."""
         now = self._clock.now()
-        return [seat for seat in self if seat.until is not None and seat.until <= now]
+        return [client for client in self._programs() if client.until is not None and client.until <= now]
 
-    def next_moment(self) -> float | None:
-        """s; when the next seat will be over, where it is not used before."""
-        return min((seat.until for seat in self if seat.until is not None), default=None)
+    def next_expiry(self) -> float | None:
+        """s; when the next client expires if it is not used before."""
+        return min((client.until for client in self._programs() if client.until is not None), default=None)
 
-    def _open(self, identity: Identity, until: float | None) -> Seat:
+    def _programs(self) -> list[ControlClient]:
+        return [client for client in self._clients.values() if client.until is not None]
+
+    def _open(self, identity: Identity, key: str, until: float | None) -> ControlClient:
         self._last += 1
-        seat = Seat(self._last, identity, secrets.token_urlsafe(24), until)
-        self._seats[seat.number] = seat
-        return seat
+        client = ControlClient(self._last, identity, key, until)
+        self._clients[client.number] = client
+        return client

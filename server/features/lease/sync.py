@@ -1,4 +1,4 @@
-"""Tells the runtime which epoch of the control counts, so that it too drops what earlier drivers sent."""
+"""Tells the runtime the epoch of the control lease, so that it too drops what earlier holders sent."""
 
 import asyncio
 import logging
@@ -12,8 +12,8 @@ log = logging.getLogger(__name__)
 TRY_AGAIN_SECONDS = 0.5
 
 
-class Telling:
-    """Asks with `ask(epoch)`, at each change, and once of every run of the runtime, until it has answered."""
+class LeaseSync:
+    """Calls `ask(epoch)` at each change, and once for every run of the runtime, until it has answered."""
 
     def __init__(self, ask: Callable[[int], Awaitable[None]]) -> None:
         self._ask = ask
@@ -21,15 +21,15 @@ class Telling:
         self._news = asyncio.Event()
 
     def see_run(self, run: str) -> None:
-        """This run of the runtime speaks now."""
+        """Note the run of the runtime that is heard now."""
         self._want(run, self._wanted[1])
 
     def see_epoch(self, epoch: int) -> None:
-        """This is the epoch now."""
+        """Note the epoch in force."""
         self._want(self._wanted[0], epoch)
 
     async def run(self) -> None:
-        """Tell, for ever."""
+        """Background task: tell each new epoch."""
         while True:
             await self._news.wait()
             self._news.clear()

@@ -17,8 +17,8 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.transport.zenoh_transport import Refused
-from server.features.lease.arbiter import Desk
-from server.features.lease.clients import Seat
+from server.features.lease.arbiter import ControlArbiter
+from server.features.lease.clients import ControlClient
 from server.features.lease.driving import Drive
 from server.http.dependencies import Provided
 from server.http.page import Page
@@ -49,11 +49,11 @@ class Nonsense(ValueError):  # noqa: N818 - it says what happened
 class _Conversation:
     """What one page says, and what is done about it."""
 
-    def __init__(self, socket: WebSocket, seat: Seat, hub: Hub, desk: Desk, bridge: Bridge) -> None:
+    def __init__(self, socket: WebSocket, owner: ControlClient, hub: Hub, arbiter: ControlArbiter, bridge: Bridge) -> None:
         self._socket = socket
-        self._seat = seat
+        self._owner = owner
         self._hub = hub
-        self._desk = desk
+        self._arbiter = arbiter
         self._bridge = bridge
         self._stopping: asyncio.Task[None] | None = None
         self._stop_again = False
@@ -80,7 +80,7 @@ class _Conversation:
         op = message.get("op")
         if not isinstance(op, str) or op not in MESSAGES:
             raise Nonsense(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
-        reason = may_say(self._seat.identity, op)
+        reason = may_say(self._owner.identity, op)
         if reason is not None:
             client.answer({"op": "error", "text": reason})
             return
@@ -95,7 +95,7 @@ class _Conversation:
             case "watch":
                 self._hub.show(client, _topics(message.get("pictures")))
             case "drive":
-                self._desk.drive(self._seat, _drive(message))
+                self._arbiter.drive(self._owner, _drive(message))
 
     def _stop(self, client: Client) -> None:
         # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
@@ -114,21 +114,21 @@ class _Conversation:
             await self._send_stop(client)
 
 
-Greeting = Callable[[Seat], dict[str, Any]]
-"""Makes the first message to a page that has this seat."""
+Greeting = Callable[[ControlClient], dict[str, Any]]
+"""Makes the first message to a page."""
 
 
 async def greet(settings: Provided[Settings], clock: Provided[Clock], page: Provided[Page]) -> Greeting:
     """The greeting of this server."""
-    return lambda seat: {
+    return lambda owner: {
         "op": "hello",
         "definitions": f"{DEFINITIONS_HASH:08x}",
         "robot": settings.robot,
         "steady": clock.now(),
         "utc": time(),
         "page_version": page.version,
-        "you": {"name": seat.identity.name, "role": seat.identity.role, "seat": seat.number},
-        "seat_key": seat.key,
+        "you": {"name": owner.identity.name, "role": owner.identity.role, "client": owner.number},
+        "client_key": owner.key,
     }
 
 
@@ -138,7 +138,7 @@ async def live(
     caller: Caller,
     access: Provided[Access],
     hub: Provided[Hub],
-    desk: Provided[Desk],
+    arbiter: Provided[ControlArbiter],
     bridge: Provided[Bridge],
     greeting: Annotated[Greeting, Depends(greet)],
 ) -> None:
@@ -153,9 +153,9 @@ async def live(
         # It may have been revoked while the socket opened; from here on the hub knows it.
         if not access.still(caller):
             raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
-        with desk.page(caller) as seat:
-            listen = _Conversation(socket, seat, hub, desk, bridge).listen
-            await hub.serve(send, greeting(seat), listen, caller.device)
+        with arbiter.page(caller) as owner:
+            listen = _Conversation(socket, owner, hub, arbiter, bridge).listen
+            await hub.serve(send, greeting(owner), listen, caller.device)
     except WebSocketDisconnect:
         return
     except Evicted as reason:

@@ -11,7 +11,7 @@ import click
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import Refused
-from server.features.lease.command import in_control
+from server.features.lease.command import in_control, renew_control
 from server.features.scenarios.runs import Runs
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
 from server.features.scenarios.simulated_run import Simulated
@@ -71,9 +71,9 @@ def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
     if wanted.place == "simulated":
         number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
         return _follow(number, folder, lambda: None)
-    with in_control(folder, click.echo) as seat:
-        number = seat.ask("POST", "/scenarios/runs", wanted.model_dump())["run"]
-        return _follow(number, folder, seat.renew)
+    with in_control(folder):
+        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
+        return _follow(number, folder, lambda: renew_control(folder))
 
 
 def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:

@@ -1,28 +1,27 @@
-"""People at a desk, with a clock that a test pushes."""
+"""People who want control, with a clock that a test pushes."""
 
 import json
 from typing import Any
 
 from robot_runtime.clock import SimulatedClock
-from server.features.lease.arbiter import Desk
+from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.driving import Drive
 from server.http.sign_in.identity import Identity
 
 ANNA = Identity(1, "Anna", "operator", "browser")
 BEN = Identity(2, "Ben", "operator", "browser")
-CLEO = Identity(3, "Cleo", "operator", "browser")
 VERA = Identity(4, "Vera", "viewer", "browser")
 
 
 class Seen:
-    """A desk, everything that it has told, and everything that went out to the robot."""
+    """An arbiter, everything that it has told, and everything that went out to the robot."""
 
     def __init__(self) -> None:
         self.clock = SimulatedClock(1000.0)
         self.told: list[dict[str, Any]] = []
         self.driven: list[dict[str, Any]] = []
         self.noted: list[str] = []
-        self.desk = Desk(self.clock, self.told.append, self._drive, self.noted.append)
+        self.arbiter = ControlArbiter(self.clock, self.told.append, self._drive, self.noted.append)
 
     def _drive(self, data: bytes) -> None:
         self.driven.append(json.loads(data))
@@ -30,7 +29,7 @@ class Seen:
     def drive(self, **changes: Any) -> Drive:
         """A command that would pass, but for the changes."""
         whole = {
-            "lease": self.desk.lease.epoch,
+            "lease": self.arbiter.lease.epoch,
             "sequence": 1,
             "taken": self.clock.now(),
             "axes": [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],

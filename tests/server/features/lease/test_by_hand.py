@@ -40,7 +40,7 @@ class Driver:
         self._stack = stack
         self._socket = socket
         self._sequence = 0
-        self.key = {"X-Mucat-Seat": self._next("hello")["seat_key"]}
+        self.key = {"X-Mucat-Client": self._next("hello")["client_key"]}
         self.lease = self.order("POST", "/control/take").json()["epoch"]
 
     def order(self, method: str, path: str, body: Any = None) -> Any:

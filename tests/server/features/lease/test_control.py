@@ -23,23 +23,23 @@ seed = 7
 
 
 class Page:
-    """A page: its socket, and requests with its seat."""
+    """A page: its socket, and requests with its key."""
 
     def __init__(self, served: Served, socket: ClientConnection, hello: dict[str, Any]) -> None:
         self.served = served
         self.socket = socket
-        self.seat: int = hello["you"]["seat"]
-        self.key: str = hello["seat_key"]
+        self.client: int = hello["you"]["client"]
+        self.key: str = hello["client_key"]
 
     async def ask(self, path: str, body: Any = None) -> httpx.Response:
-        headers = {"X-Mucat-Seat": self.key}
+        headers = {"X-Mucat-Client": self.key}
         return await self.served.api.post(path, json=body, headers=headers)
 
     async def told(self, holder: int | None) -> dict[str, Any]:
-        """What it is told of the control, once this seat has it."""
+        """What it is told of the control, once this client has it."""
         while True:
             message = await next_text(self.socket, "control")
-            if (message["holder"] or {"seat": None})["seat"] == holder:
+            if (message["holder"] or {"client": None})["client"] == holder:
                 return message
 
     async def drive(self, **changes: Any) -> None:
@@ -48,7 +48,7 @@ class Page:
     def command(self, **changes: Any) -> dict[str, Any]:
         whole = {
             "op": "drive",
-            "lease": self.served.assembly.desk.lease.epoch,
+            "lease": self.served.assembly.arbiter.lease.epoch,
             "sequence": 1,
             "taken": self.served.assembly.clock.now(),
             "axes": [0, 0, 1, 0, 0, 0],
@@ -70,14 +70,14 @@ def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> No
     async def scenario(served: Served) -> None:
         session = (await served.api.post("/sessions", json={"name": "x", "note": ""})).json()["id"]
         async with open_page(served) as anna:
-            (await served.api.post("/control/hand-over", json={"seat": anna.seat})).raise_for_status()
+            (await anna.ask("/control/take?over=true")).raise_for_status()
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
         assembly = served.assembly
         recording = Recording(assembly.store, assembly.catalogue.row(session))
         texts = [one["text"] for one in recording.documents("notice")]
         shell = "“the shell of this computer”"
         assert texts[-2:] == [
-            f"{shell} handed control over to {shell}.",
+            f"{shell} took over control from {shell}.",
             f"{shell} left, and nobody has control now.",
         ]
 
@@ -88,37 +88,37 @@ def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(s
     async def scenario(served: Served) -> None:
         await free(served)
         async with open_page(served) as anna, open_page(served) as ben:
-            assert anna.seat != ben.seat
-            assert (await anna.told(None))["request"] is None
-            assert (await anna.ask("/control/take")).json()["holder"]["seat"] == anna.seat
-            first = (await ben.told(anna.seat))["epoch"]
-            asked = (await ben.ask("/control/take")).json()
-            assert (asked["holder"]["seat"], asked["request"]["seat"]) == (anna.seat, ben.seat)
-            assert 9 < asked["request"]["until"] - served.assembly.clock.now() <= 10
-            assert (await anna.ask("/control/refuse")).json()["refused"]["seat"] == ben.seat
-            again = await ben.ask("/control/take")
-            assert (again.status_code, "refused" in again.json()["detail"]) == (409, True)
-            given = (await anna.ask("/control/hand-over", {"seat": ben.seat})).json()
-            assert (await anna.told(ben.seat))["epoch"] == given["epoch"] == first + 1
-            assert (await served.api.get("/control")).json()["holder"]["seat"] == ben.seat
+            assert anna.client != ben.client
+            await anna.told(None)
+            assert (await anna.ask("/control/take")).json()["holder"]["client"] == anna.client
+            first = (await ben.told(anna.client))["epoch"]
+            refused = await ben.ask("/control/take")
+            assert (refused.status_code, "take it over" in refused.json()["detail"]) == (409, True)
+            taken = (await ben.ask("/control/take?over=true")).json()
+            assert (await anna.told(ben.client))["epoch"] == taken["epoch"] == first + 1
+            assert (await served.api.get("/control")).json()["holder"]["client"] == ben.client
             await until(lambda: served.runtime.epochs[-1:] == [first + 1], "the runtime to be told")
+            assert (await anna.ask("/robot/arm")).status_code == 423
+            # Of one that has no control nothing is freed.
+            assert (await anna.ask("/control/release")).json()["holder"]["client"] == ben.client
             assert (await ben.ask("/control/release")).json()["holder"] is None
             assert (await ben.told(None))["epoch"] == first + 2
 
     play(settings, scenario)
 
 
-def test_with_the_socket_goes_the_seat_and_control_goes_to_who_has_asked(settings: Settings) -> None:
+def test_with_the_socket_goes_the_page_s_control(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await free(served)
         async with open_page(served) as ben:
             async with open_page(served) as anna:
                 await anna.ask("/control/take")
-                await ben.ask("/control/take")
+                await ben.told(anna.client)
                 # Not even a farewell: the computer went out of reach.
                 anna.socket.transport.abort()
-                await ben.told(ben.seat)
-            assert (await anna.ask("/control/take")).status_code == 409
+                await ben.told(None)
+            for over in (False, True):
+                assert (await anna.ask(f"/control/take?over={over}")).status_code == 409
             refused = await anna.ask("/robot/arm")
             assert (refused.status_code, served.runtime.asked) == (423, [])
 
@@ -127,7 +127,7 @@ def test_with_the_socket_goes_the_seat_and_control_goes_to_who_has_asked(setting
 
 def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        bare = {"X-Mucat-Seat": ""}
+        bare = {"X-Mucat-Client": ""}
         robot = [
             ("POST", "/robot/arm", None),
             ("PUT", "/robot/controller", {"name": "pid"}),
@@ -137,17 +137,18 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
             ("PUT", "/simulator", {"here": False}),
             ("POST", "/scenarios/runs", {"text": SCENARIO, "place": "live"}),
             ("POST", "/comm-tests/runs", {"text": "[]", "place": "robot"}),
-            ("POST", "/control/refuse", None),
-            ("POST", "/control/hand-over", {"seat": 1}),
         ]
-        name = served.assembly.desk.state().holder
+        name = served.assembly.arbiter.state().holder
         assert name is not None
         async with open_page(served) as page:
-            for key in (bare, {"X-Mucat-Seat": page.key}):
+            for key in (bare, {"X-Mucat-Client": page.key}):
                 for method, path, body in robot:
                     answer = await served.api.request(method, path, json=body, headers=key)
                     assert answer.status_code == 423, path
-                    assert answer.json()["detail"] == f"Control is with {name.name}; ask for it."
+                    assert (
+                        answer.json()["detail"]
+                        == f"Control is with {name.name}. Agree with them, then take it over."
+                    )
             assert served.runtime.asked == []
             assert (await page.ask("/robot/stop")).status_code == 204
         assert (await served.api.post("/robot/stop", headers=bare)).status_code == 204
@@ -159,17 +160,18 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
     play(settings, scenario)
 
 
-def test_a_program_that_is_silent_loses_its_seat(settings: Settings) -> None:
+def test_a_program_that_is_silent_loses_control(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
-            desk = served.assembly.desk
-            seat = desk.seats.get(desk.lease.holder or 0)
-            assert seat is not None
+            arbiter = served.assembly.arbiter
+            client = arbiter.clients.get(arbiter.lease.holder or 0)
+            assert client is not None
             # As if it had been silent for nearly all of its time.
-            seat.until = served.assembly.clock.now() + 0.05
-            desk.announce()
+            client.until = served.assembly.clock.now() + 0.05
+            arbiter.announce()
             await page.told(None)
-            assert (await served.api.post("/control/renew")).status_code == 409
+            assert (await served.api.post("/robot/arm")).status_code == 423
+            assert (await served.api.post("/control/take")).status_code == 200
 
     play(settings, scenario)
 
@@ -183,7 +185,7 @@ def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings
             await anna.drive(sequence=1)
             await anna.drive(sequence=2, taken=served.assembly.clock.now() - 0.4)
             await ben.drive(sequence=3)
-            await anna.drive(sequence=4, lease=served.assembly.desk.lease.epoch - 1)
+            await anna.drive(sequence=4, lease=served.assembly.arbiter.lease.epoch - 1)
             await anna.drive(sequence=1)
             await anna.drive(sequence=5)
             await until(lambda: len(served.runtime.driven) == 2, "two commands")
@@ -200,7 +202,7 @@ def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings
 
 def test_a_runtime_that_was_restarted_is_told_the_epoch_again(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        epoch = served.assembly.desk.lease.epoch
+        epoch = served.assembly.arbiter.lease.epoch
         await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")
         before = len(served.runtime.epochs)
         served.runtime.publish(state_block(0))

@@ -9,10 +9,10 @@ from tests.server.features.lease.people import ANNA, BEN, Seen
 
 def test_the_driver_s_sticks_reach_the_robot() -> None:
     seen = Seen()
-    with seen.desk.page(ANNA) as anna:
-        seen.desk.take(anna)
-        seen.desk.drive(anna, seen.drive(sequence=0))
-        seen.desk.drive(anna, seen.drive(sequence=5, axes=[-1, 1, 0, 0.5, 0, 0]))
+    with seen.arbiter.page(ANNA) as anna:
+        seen.arbiter.take(anna)
+        seen.arbiter.drive(anna, seen.drive(sequence=0))
+        seen.arbiter.drive(anna, seen.drive(sequence=5, axes=[-1, 1, 0, 0.5, 0, 0]))
         assert seen.driven == [
             {"lease": 1_000_001, "sequence": 0, "taken": 1000.0, "axes": [0, 0, 1, 0, 0, 0]},
             {"lease": 1_000_001, "sequence": 5, "taken": 1000.0, "axes": [-1, 1, 0, 0.5, 0, 0]},
@@ -32,29 +32,29 @@ def test_the_driver_s_sticks_reach_the_robot() -> None:
 )
 def test_what_is_not_the_driver_s_newest_is_dropped_and_counted(changes: Any, reason: str) -> None:
     seen = Seen()
-    with seen.desk.page(ANNA) as anna:
-        seen.desk.take(anna)
-        seen.desk.drive(anna, seen.drive(sequence=8))
-        seen.desk.drive(anna, seen.drive(**{"sequence": 9} | changes))
+    with seen.arbiter.page(ANNA) as anna:
+        seen.arbiter.take(anna)
+        seen.arbiter.drive(anna, seen.drive(sequence=8))
+        seen.arbiter.drive(anna, seen.drive(**{"sequence": 9} | changes))
         assert len(seen.driven) == 1
-        counts = seen.desk.driving.counts.model_dump()
+        counts = seen.arbiter.driving.counts.model_dump()
         assert {name: count for name, count in counts.items() if count} == {"passed": 1, reason: 1}
         # What was dropped has no part in what counts as newer.
-        seen.desk.drive(anna, seen.drive(sequence=9))
+        seen.arbiter.drive(anna, seen.drive(sequence=9))
         assert len(seen.driven) == 2
 
 
 def test_only_who_has_control_drives_and_begins_with_any_number() -> None:
     seen = Seen()
-    with seen.desk.page(ANNA) as anna, seen.desk.page(BEN) as ben:
-        seen.desk.drive(anna, seen.drive())
-        seen.desk.take(anna)
-        seen.desk.drive(ben, seen.drive())
-        assert (seen.driven, seen.desk.driving.counts.not_in_control) == ([], 2)
-        seen.desk.drive(anna, seen.drive(sequence=900))
-        seen.desk.hand_over(anna, ben.number)
-        seen.desk.drive(anna, seen.drive(sequence=901))
-        seen.desk.drive(ben, seen.drive(sequence=0))
+    with seen.arbiter.page(ANNA) as anna, seen.arbiter.page(BEN) as ben:
+        seen.arbiter.drive(anna, seen.drive())
+        seen.arbiter.take(anna)
+        seen.arbiter.drive(ben, seen.drive())
+        assert (seen.driven, seen.arbiter.driving.counts.not_in_control) == ([], 2)
+        seen.arbiter.drive(anna, seen.drive(sequence=900))
+        seen.arbiter.take(ben, over=True)
+        seen.arbiter.drive(anna, seen.drive(sequence=901))
+        seen.arbiter.drive(ben, seen.drive(sequence=0))
         assert [one["sequence"] for one in seen.driven] == [900, 0]
 
 

@@ -2,9 +2,9 @@ import asyncio
 
 import pytest
 
-import server.features.lease.sync as telling_module
+import server.features.lease.sync as sync_module
 from robot_runtime.errors import Refused
-from server.features.lease.sync import Telling
+from server.features.lease.sync import LeaseSync
 from server.stream.bridge import RuntimeSilent
 from tests.server.waiting import until
 
@@ -12,7 +12,7 @@ from tests.server.waiting import until
 def test_the_runtime_is_told_each_epoch_and_each_run_until_it_has_answered(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(telling_module, "TRY_AGAIN_SECONDS", 0.001)
+    monkeypatch.setattr(sync_module, "TRY_AGAIN_SECONDS", 0.001)
     asked: list[int] = []
     problems: list[Exception] = [RuntimeSilent("not there", False), RuntimeSilent("not there", True)]
 
@@ -22,18 +22,18 @@ def test_the_runtime_is_told_each_epoch_and_each_run_until_it_has_answered(
             raise problems.pop()
 
     async def run() -> None:
-        telling = Telling(ask)
-        task = asyncio.create_task(telling.run())
-        telling.see_epoch(5)
+        sync = LeaseSync(ask)
+        task = asyncio.create_task(sync.run())
+        sync.see_epoch(5)
         await until(lambda: asked == [5, 5, 5], "an answer")
-        telling.see_epoch(5)
-        telling.see_run("a")
+        sync.see_epoch(5)
+        sync.see_run("a")
         await until(lambda: asked == [5, 5, 5, 5], "the new run to be told")
         problems.append(Refused("That epoch is over."))
-        telling.see_epoch(6)
+        sync.see_epoch(6)
         await until(lambda: asked[4:] == [6], "the change")
-        telling.see_run("a")
-        telling.see_epoch(7)
+        sync.see_run("a")
+        sync.see_epoch(7)
         await until(lambda: asked[4:] == [6, 7], "the next change")
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)
