@@ -49,7 +49,9 @@ class Nonsense(ValueError):  # noqa: N818 - it says what happened
 class _Conversation:
     """What one page says, and what is done about it."""
 
-    def __init__(self, socket: WebSocket, owner: ControlClient, hub: Hub, arbiter: ControlArbiter, bridge: Bridge) -> None:
+    def __init__(
+        self, socket: WebSocket, owner: ControlClient, hub: Hub, arbiter: ControlArbiter, bridge: Bridge
+    ) -> None:
         self._socket = socket
         self._owner = owner
         self._hub = hub

@@ -1,4 +1,4 @@
-"""Any sequence of what people, programs and time can do to the control lease, against what must always hold."""
+"""Any sequence of what people, programs and time can do to the control lease, and what must always hold."""
 
 from contextlib import AbstractContextManager
 
