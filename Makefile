@@ -44,6 +44,7 @@ check: setup-test ## style, types, imports, and whether generated files are curr
 	$(PYTHON) -m robot_runtime.generate --check
 	$(PYTHON) -m tests.checks
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate:check)
+	$(PYTHON) -m server.openapi --reference --check
 	cd frontend && npm run --silent check
 	clang-format --dry-run -Werror $$(git ls-files 'firmware/*.h' 'firmware/*.c' 'firmware/*.cpp' 'firmware/*.ino' ':!*.gen.h')
 
@@ -59,6 +60,7 @@ interface: setup ## ask every operation what its description lets one think of (
 generate: .venv/.ready frontend/node_modules/.ready ## write the generated files from their definitions
 	$(PYTHON) -m robot_runtime.generate
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
+	$(PYTHON) -m server.openapi --reference
 
 bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)

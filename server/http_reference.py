@@ -1,0 +1,149 @@
+"""docs/reference/http.md: every operation of the HTTP interface and its types, from the OpenAPI document."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, cast
+
+from robot_runtime.generate.markdown import page, table
+
+Schema = Mapping[str, Any]
+
+SOURCE = "the server's OpenAPI document"
+INTRODUCTION = """\
+The page uses nothing else: a program can do what the page does. A program sends a token, see
+[Access](../run/access.md#browsers-programs-the-shell). The running server has this description as OpenAPI at
+`/api/openapi.json`. The live stream is a WebSocket at `/api/live`: [The live socket](live-socket.md).
+
+Times are in s, lengths in m and angles in rad, unless a field says otherwise.
+
+| needs | the caller |
+| --- | --- |
+| nothing | anybody who reaches the server |
+| viewer | is signed in |
+| operator | is signed in as an operator |
+| control | is an operator who has control of the robot |
+
+## Errors
+
+An error is `{"detail": "..."}`: what happened, why, what to do.
+
+| status | reason |
+| --- | --- |
+| 401 | not signed in |
+| 403 | signed in, but not allowed; or a foreign Host or Origin |
+| 404 | no such thing |
+| 409 | refused at present |
+| 413 | a body of more than 64 KiB, or without its length; imports may be larger |
+| 422 | not valid |
+| 423 | only for the page or program that has control |
+| 429 | too many wrong pairing codes |
+| 503 | a part that is needed does not run |
+| 504 | the runtime did not answer within 2 s |
+| 507 | the disk is too full |
+"""
+
+
+def http_page(document: Schema, needs: Mapping[str, str]) -> str:
+    """The whole text of http.md; `needs` says what the caller of each operation must have, by its id."""
+    operations = [
+        (f"{method.upper()} {path}", operation)
+        for path, methods in document["paths"].items()
+        for method, operation in methods.items()
+    ]
+    parts = [INTRODUCTION]
+    for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
+        rows = [_row(name, one, needs) for name, one in operations if tag in one["tags"]]
+        parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
+        parts += [table(("operation", "needs", "request", "answer", "meaning"), rows)]
+    parts.append("## Types\n")
+    for name, schema in document["components"]["schemas"].items():
+        parts += [f"### {name}\n", *_type(schema)]
+    return page("HTTP", SOURCE, *parts)
+
+
+def _row(name: str, operation: Schema, needs: Mapping[str, str]) -> tuple[str, ...]:
+    meaning = " ".join(filter(None, (operation["summary"] + ".", operation.get("description", ""))))
+    return (
+        f"`{name}`",
+        needs[operation["operationId"]],
+        ", ".join(_request(operation)),
+        ", ".join(_answers(operation)),
+        " ".join(meaning.split()),
+    )
+
+
+def _request(operation: Schema) -> Iterator[str]:
+    for one in operation.get("parameters", ()):
+        if one["in"] == "query":
+            yield f"`?{one['name']}`" + (" (required)" if one.get("required") else "")
+    for content in operation.get("requestBody", {}).get("content", {}).items():
+        yield _content(*content)
+
+
+def _answers(operation: Schema) -> Iterator[str]:
+    """Those of success; refusals are the same everywhere."""
+    for status, response in operation["responses"].items():
+        if status.startswith("2"):
+            contents = [_content(*one) for one in response.get("content", {}).items()]
+            yield " ".join((status, *contents))
+
+
+def _content(media_type: str, content: Schema) -> str:
+    return (
+        _words(content["schema"])
+        if "schema" in content and media_type == "application/json"
+        else f"`{media_type}`"
+    )
+
+
+def _type(schema: Schema) -> Iterator[str]:
+    if description := schema.get("description"):
+        yield " ".join(description.split()) + "\n"
+    required = schema.get("required", ())
+    rows = [
+        (
+            f"`{name}`" + ("" if name in required else " (optional)"),
+            _words(one),
+            " ".join(one.get("description", "").split()),
+        )
+        for name, one in schema.get("properties", {}).items()
+    ]
+    yield table(("field", "type", "meaning"), rows) if rows else _words(schema) + "\n"
+
+
+def _words(schema: Schema) -> str:
+    """A schema in a few words; types of their own are links."""
+    if reference := schema.get("$ref"):
+        name = cast("str", reference).rpartition("/")[2]
+        return f"[{name}](#{name.lower()})"
+    for key in ("anyOf", "oneOf"):
+        if choices := schema.get(key):
+            return " or ".join(dict.fromkeys(map(_words, choices)))
+    if values := schema.get("enum"):
+        return ", ".join(f"`{value}`" for value in values)
+    if "const" in schema:
+        return f"`{schema['const']}`"
+    match schema.get("type"):
+        case "array":
+            return f"list of {_words(schema['items'])}" if "items" in schema else "list"
+        case "object":
+            values = schema.get("additionalProperties")
+            return f"object of {_words(values)}" if isinstance(values, dict) and values else "object"
+        case "integer" | "number" as kind:
+            return " ".join(
+                filter(None, ("whole number" if kind == "integer" else "number", _limits(schema)))
+            )
+        case "string":
+            return {"date-time": "UTC time (ISO 8601)"}.get(schema.get("format", ""), "text")
+        case "boolean":
+            return "true or false"
+        case "null":
+            return "null"
+    return "any"
+
+
+def _limits(schema: Schema) -> str:
+    low = schema.get("minimum", schema.get("exclusiveMinimum"))
+    high = schema.get("maximum", schema.get("exclusiveMaximum"))
+    if low is None or high is None:
+        return f"from {low:g}" if low is not None else f"up to {high:g}" if high is not None else ""
+    return f"{low:g} to {high:g}"

@@ -1,0 +1,65 @@
+import sys
+from pathlib import Path
+
+import pytest
+
+from server import openapi
+from server.http_reference import http_page
+
+DOCUMENT = {
+    "paths": {
+        "/api/things": {
+            "post": {
+                "operationId": "makeThing",
+                "tags": ["things"],
+                "summary": "Make a thing",
+                "parameters": [{"in": "query", "name": "name", "required": True}],
+                "requestBody": {
+                    "content": {"application/json": {"schema": {"$ref": "#/components/schemas/Thing"}}}
+                },
+                "responses": {
+                    "201": {"content": {"application/json": {"schema": {"type": "null"}}}},
+                    "4XX": {},
+                },
+            }
+        }
+    },
+    "components": {
+        "schemas": {
+            "Thing": {
+                "description": "One thing.",
+                "required": ["size"],
+                "properties": {
+                    "size": {"type": "number", "minimum": 0, "maximum": 10, "description": "m"},
+                    "kind": {"anyOf": [{"enum": ["a", "b"]}, {"type": "null"}]},
+                },
+            }
+        }
+    },
+}
+
+
+def test_an_operation_and_its_types_are_described() -> None:
+    page = http_page(DOCUMENT, {"makeThing": "operator"})
+    assert "## Things\n" in page
+    assert (
+        "| `POST /api/things` | operator | `?name` (required), [Thing](#thing) | 201 null | Make a thing. |"
+        in page
+    )
+    assert "| `size` | number 0 to 10 | m |" in page
+    assert "| `kind` (optional) | `a`, `b` or null |  |" in page
+
+
+def test_the_check_fails_where_an_operation_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reference = tmp_path / "http.md"
+    monkeypatch.setattr(openapi, "REFERENCE", reference)
+    monkeypatch.setattr(sys, "argv", ["openapi", "--reference"])
+    assert openapi.main() == 0
+    monkeypatch.setattr(sys, "argv", ["openapi", "--reference", "--check"])
+    assert openapi.main() == 0
+    lines = reference.read_text().splitlines(keepends=True)
+    reference.write_text("".join(line for line in lines if "`POST /api/robot/stop`" not in line))
+    assert openapi.main() == 1
+    assert "http.md is not current" in capsys.readouterr().out
