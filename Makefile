@@ -65,13 +65,13 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
 	$(PYTHON) -m bench $(ONLY)
 
-figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/use, from a run of its scenario
+figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/pictures, from a run of its scenario
 	@rm -rf build/figures
 	.venv/bin/mucat scenario run figure_14 --data build/figures
 	$(PYTHON) -m bench.figures 1 --data build/figures
 
-screenshots: setup-test ## every page at both sizes and in both themes, for docs/use/start.md
-	$(PYTHON) -m tests.browser.screenshots docs/screenshots
+screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
+	$(PYTHON) -m tests.browser.screenshots build/screenshots
 
 control: setup-test host-firmware ## remake the table of docs/develop/proofs/control.md: each depth controller on each craft
 	$(PYTHON) -m bench.control

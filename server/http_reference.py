@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from robot_runtime.generate.markdown import page, table
+from server.http.sign_in.policy import DECLARED
 
 Schema = Mapping[str, Any]
 
@@ -42,8 +43,8 @@ An error is `{"detail": "..."}`: what happened, why, what to do.
 """
 
 
-def http_page(document: Schema, needs: Mapping[str, str]) -> str:
-    """The whole text of http.md; `needs` says what the caller of each operation must have, by its id."""
+def http_page(document: Schema) -> str:
+    """The whole text of http.md."""
     operations = [
         (f"{method.upper()} {path}", operation)
         for path, methods in document["paths"].items()
@@ -51,7 +52,7 @@ def http_page(document: Schema, needs: Mapping[str, str]) -> str:
     ]
     parts = [INTRODUCTION]
     for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
-        rows = [_row(name, one, needs) for name, one in operations if tag in one["tags"]]
+        rows = [_row(name, one) for name, one in operations if tag in one["tags"]]
         parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
         parts += [table(("operation", "needs", "request", "answer", "meaning"), rows)]
     parts.append("## Types\n")
@@ -60,11 +61,11 @@ def http_page(document: Schema, needs: Mapping[str, str]) -> str:
     return page("HTTP", SOURCE, *parts)
 
 
-def _row(name: str, operation: Schema, needs: Mapping[str, str]) -> tuple[str, ...]:
+def _row(name: str, operation: Schema) -> tuple[str, ...]:
     meaning = " ".join(filter(None, (operation["summary"] + ".", operation.get("description", ""))))
     return (
         f"`{name}`",
-        needs[operation["operationId"]],
+        operation[DECLARED],
         ", ".join(_request(operation)),
         ", ".join(_answers(operation)),
         " ".join(meaning.split()),

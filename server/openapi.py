@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 from server.app import create_app
-from server.http.sign_in.policy import OPERATIONS
 from server.http_reference import http_page
 from server.platform.settings import DataFolder, Settings
 
@@ -26,10 +25,7 @@ def main() -> int:
     app = create_app(Settings(data=DataFolder(Path("data")), config=Path("robot.toml")))
     document = app.openapi()
     if options.reference:
-        return _write_reference(
-            http_page(document, {name: need.name.lower() for name, need in OPERATIONS.items()}),
-            only_check=options.check,
-        )
+        return _write_reference(http_page(document), only_check=options.check)
     json.dump(document, sys.stdout, indent=2, sort_keys=True, ensure_ascii=False)
     sys.stdout.write("\n")
     return 0

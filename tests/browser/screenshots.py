@@ -1,6 +1,6 @@
 """`python -m tests.browser.screenshots FOLDER`: every page, both sizes, both themes, of a robot at work.
 
-For docs/use/start.md: look at them before they are committed.
+docs/pictures has a few of them: copy one there only when what it shows has changed.
 """
 
 import re

@@ -1,0 +1,27 @@
+from pathlib import Path
+
+from tests.checks.pictures import PICTURES_MAX, find_needless_pictures
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_every_picture_is_shown_and_they_are_few() -> None:
+    assert find_needless_pictures(ROOT) == []
+
+
+def test_a_picture_that_no_page_shows_is_found(tmp_path: Path) -> None:
+    (tmp_path / "README.md").write_text("![one](docs/shown.jpg)")
+    (tmp_path / "docs").mkdir()
+    for name in ("shown.jpg", "forgotten.png"):
+        (tmp_path / "docs" / name).touch()
+    assert find_needless_pictures(tmp_path) == ["docs/forgotten.png is shown on no page"]
+
+
+def test_too_many_pictures_are_told(tmp_path: Path) -> None:
+    names = [f"{number}.jpg" for number in range(PICTURES_MAX + 1)]
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "README.md").write_text("".join(f"![{name}](docs/{name})" for name in names))
+    for name in names:
+        (tmp_path / "docs" / name).touch()
+    (problem,) = find_needless_pictures(tmp_path)
+    assert problem.startswith("docs/ has 13 pictures")
