@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from server.app import create_app
-from server.http_reference import http_page
+from server.http.reference import http_page
 from server.platform.settings import DataFolder, Settings
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference/http.md"

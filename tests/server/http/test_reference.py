@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from server import openapi
-from server.http_reference import http_page
+from server.http.reference import http_page
 
 DOCUMENT = {
     "paths": {
