@@ -10,7 +10,7 @@ from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.experiment_request import read_experiment
 from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.core import Core
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 CHANGING = ("controller", "loop", "parameters", "set_points", "steering")
 """What would change under an experiment what it measures."""
@@ -19,7 +19,7 @@ Command = Callable[[Mapping[str, Any]], Mapping[str, Any] | None]
 
 
 class Commands:
-    """Every command to one robot; `do` has what each name does with its arguments, or raises Refused."""
+    """Every command to one robot; `do` has what each name does with its arguments, or raises RefusedError."""
 
     def __init__(self, robot: Core) -> None:
         self._robot = robot
@@ -77,7 +77,9 @@ class Commands:
         values, expected = question.get("values"), question.get("expected", {})
         partly = question.get("partly", False)
         if not isinstance(values, dict) or not isinstance(expected, dict) or not isinstance(partly, bool):
-            raise Refused("values and expected must be values by parameters' names, partly true or false")
+            raise RefusedError(
+                "values and expected must be values by parameters' names, partly true or false"
+            )
         left_out = self._robot.parameters.apply(values, expected, partly=partly)
         return {"left_out": left_out}
 
@@ -100,7 +102,7 @@ class Commands:
     def _lease(self, question: Mapping[str, Any]) -> None:
         epoch = question.get("epoch")
         if type(epoch) is not int:
-            raise Refused(f"epoch is {epoch!r}; it must be a whole number")
+            raise RefusedError(f"epoch is {epoch!r}; it must be a whole number")
         self._robot.supervisor.pilot.change_lease(epoch)
 
     def _controller(self, question: Mapping[str, Any]) -> None:
@@ -109,9 +111,9 @@ class Commands:
     def _loop(self, question: Mapping[str, Any]) -> None:
         name, on = _text(question, "name"), question.get("on")
         if on is not None and not isinstance(on, bool):
-            raise Refused(f"on is {on!r}; it must be true or false")
+            raise RefusedError(f"on is {on!r}; it must be true or false")
         if on and name == "depth" and (reasons := self._robot.supervisor.watch.depth_refusals()):
-            raise Refused(" ".join(reasons))
+            raise RefusedError(" ".join(reasons))
         self._robot.control.set_loop(
             name,
             on=on,
@@ -141,13 +143,13 @@ class Commands:
     def _experiment(self, question: Mapping[str, Any]) -> None:
         mode = self._robot.supervisor.mode
         if mode != "automatic":
-            raise Refused(f"The robot is {mode}. An experiment needs it armed, in automatic.")
+            raise RefusedError(f"The robot is {mode}. An experiment needs it armed, in automatic.")
         control, clock = self._robot.control, self._robot.clock
         number, loop, experiment = read_experiment(question, control.loops, clock)
         if loop is control.heading and control.steering == "beacons":
-            raise Refused("The heading follows the beacons. Choose the course “stay” first.")
+            raise RefusedError("The heading follows the beacons. Choose the course “stay” first.")
         if loop.measured is None:
-            raise Refused(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+            raise RefusedError(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
         self._robot.experiments.begin(number, loop, experiment)
 
     def _end_experiment(self, _: Mapping[str, Any]) -> None:
@@ -155,10 +157,13 @@ class Commands:
 
 
 def read_arming(question: Mapping[str, Any]) -> tuple[Mode, float]:
-    """How the robot is to be armed, and for how many s it may go on without the server. Raises Refused."""
+    """How the robot is to be armed, and for how many s it may go on without the server.
+
+    Raises RefusedError.
+    """
     alone = _number(question, "alone", 0.0)
     if not 0 <= alone <= ALONE_MAX:
-        raise Refused(f"alone is {alone:g} s; it must lie between 0 and {ALONE_MAX:g}")
+        raise RefusedError(f"alone is {alone:g} s; it must lie between 0 and {ALONE_MAX:g}")
     return _mode(question) if "mode" in question else "automatic", alone
 
 
@@ -166,21 +171,21 @@ def _mode(question: Mapping[str, Any]) -> Mode:
     modes: dict[Any, Mode] = {"automatic": "automatic", "manual": "manual"}
     mode = _text(question, "mode")
     if mode not in modes:
-        raise Refused(f"mode is {mode!r}; it must be automatic or manual")
+        raise RefusedError(f"mode is {mode!r}; it must be automatic or manual")
     return modes[mode]
 
 
 def _gains(question: Mapping[str, Any]) -> dict[str, Any]:
     gains = question.get("gains") or {}
     if not isinstance(gains, dict):
-        raise Refused("gains must be numbers by name")
+        raise RefusedError("gains must be numbers by name")
     return gains
 
 
 def _text(question: Mapping[str, Any], name: str) -> str:
     value = question.get(name)
     if not isinstance(value, str):
-        raise Refused(f"{name} is missing or no text")
+        raise RefusedError(f"{name} is missing or no text")
     return value
 
 
@@ -189,5 +194,5 @@ def _number(question: Mapping[str, Any], name: str, default: float) -> float:
     if value is None:
         return default
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise Refused(f"{name} is {value!r}; it must be a number")
+        raise RefusedError(f"{name} is {value!r}; it must be a number")
     return float(value)

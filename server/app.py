@@ -7,42 +7,42 @@ from fastapi import Depends, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server import VERSION
 from server.container import Assembly
 from server.features.backup import routes as backup
-from server.features.backup.download import CopyFailed
+from server.features.backup.download import DatabaseCopyError
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
 from server.features.comparison.schemas import NoSessionError
 from server.features.exports import routes as exports
 from server.features.layouts import routes as layouts
-from server.features.layouts.library import UnknownLayout
+from server.features.layouts.library import UnknownLayoutError
 from server.features.lease import routes as control
 from server.features.lease.admission import admit
-from server.features.lease.lease import NotInControl
+from server.features.lease.lease import NotInControlError
 from server.features.live import routes as live
 from server.features.operate import link_routes as link
 from server.features.operate import routes as robot
 from server.features.operate import scene_routes as scene
 from server.features.panels import routes as panels
-from server.features.panels.scripts import UnknownPanel
+from server.features.panels.scripts import UnknownPanelError
 from server.features.parameters import profile_routes as profiles
 from server.features.parameters import routes as parameters
-from server.features.parameters.profiles import UnknownProfile
+from server.features.parameters.profiles import UnknownProfileError
 from server.features.people import routes as access
 from server.features.scenarios import routes as scenarios
 from server.features.sessions import bookmark_routes as marks
 from server.features.sessions import replay_routes as replay
 from server.features.sessions import routes as sessions
 from server.features.sessions import storage_routes as storage
-from server.features.sessions.bookmarks import UnknownMark
-from server.features.sessions.presence import NotNow, UnknownSession
-from server.features.sessions.recorder import RecordingRefused
+from server.features.sessions.bookmarks import UnknownBookmarkError
+from server.features.sessions.presence import SessionStateError, UnknownSessionError
+from server.features.sessions.recorder import RecordingRefusedError
 from server.features.sessions.recording import RecordingError
 from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
-from server.features.tuning.runs import UnknownRun
+from server.features.tuning.runs import UnknownTuningRunError
 from server.features.vision import routes as vision
 from server.health import routes as health
 from server.http.help_pages import HelpPages, make_help_router
@@ -50,13 +50,13 @@ from server.http.page import Page, make_router
 from server.http.problems import EVERYWHERE
 from server.http.security import Guard
 from server.http.sign_in.access import Access
-from server.http.sign_in.devices import UnknownDevice
+from server.http.sign_in.devices import UnknownDeviceError
 from server.http.sign_in.gate import Gate
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
 from server.platform.store import StoreError
 from server.processes.supervisor import Command
-from server.stream.bridge import RuntimeSilent
+from server.stream.bridge import RuntimeSilentError
 
 
 def create_app(
@@ -96,20 +96,20 @@ def create_app(
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(400, _unreadable_body)
-    app.add_exception_handler(Refused, _refused)
-    app.add_exception_handler(RecordingRefused, _refused)
-    app.add_exception_handler(NotNow, _refused)
-    app.add_exception_handler(NotInControl, _not_in_control)
-    app.add_exception_handler(UnknownSession, _absent)
-    app.add_exception_handler(UnknownMark, _absent)
-    app.add_exception_handler(UnknownDevice, _absent)
-    app.add_exception_handler(UnknownLayout, _absent)
-    app.add_exception_handler(UnknownPanel, _absent)
-    app.add_exception_handler(UnknownProfile, _absent)
-    app.add_exception_handler(UnknownRun, _absent)
-    app.add_exception_handler(RuntimeSilent, _silent)
+    app.add_exception_handler(RefusedError, _refused)
+    app.add_exception_handler(RecordingRefusedError, _refused)
+    app.add_exception_handler(SessionStateError, _refused)
+    app.add_exception_handler(NotInControlError, _not_in_control)
+    app.add_exception_handler(UnknownSessionError, _absent)
+    app.add_exception_handler(UnknownBookmarkError, _absent)
+    app.add_exception_handler(UnknownDeviceError, _absent)
+    app.add_exception_handler(UnknownLayoutError, _absent)
+    app.add_exception_handler(UnknownPanelError, _absent)
+    app.add_exception_handler(UnknownProfileError, _absent)
+    app.add_exception_handler(UnknownTuningRunError, _absent)
+    app.add_exception_handler(RuntimeSilentError, _silent)
     app.add_exception_handler(StoreError, _not_stored)
-    app.add_exception_handler(CopyFailed, _no_room)
+    app.add_exception_handler(DatabaseCopyError, _no_room)
     app.add_exception_handler(NoSessionError, _absent)
     app.add_exception_handler(RecordingError, _unreadable)
     robots = (health, robot, vision, simulator, scene, link, live, control, parameters, profiles)
@@ -150,7 +150,7 @@ async def _absent(_: Request, problem: Exception) -> JSONResponse:
 
 
 async def _silent(_: Request, problem: Exception) -> JSONResponse:
-    assert isinstance(problem, RuntimeSilent)
+    assert isinstance(problem, RuntimeSilentError)
     return _tell(504 if problem.waited else 503, str(problem))
 
 

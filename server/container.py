@@ -9,7 +9,7 @@ from typing import Any
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.contract.topics import Block
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.backup.download import Downloads
 from server.features.comm_tests.board_reservation import Board, Handover
 from server.features.comm_tests.lab import Lab
@@ -29,7 +29,7 @@ from server.features.scenarios.simulated_run import Simulated
 from server.features.sessions.auto_recording import ArmingRecording
 from server.features.sessions.bookmarks import Markers
 from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.resume import Left, find_missing
 from server.features.sessions.retention import Tidying
 from server.features.sessions.session import new_row
@@ -46,7 +46,7 @@ from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
-from server.stream.bridge import SENT_BY, Bridge, RuntimeSilent
+from server.stream.bridge import SENT_BY, Bridge, RuntimeSilentError
 from server.stream.hub import Hub
 
 HEALTH_SECONDS = 1.0
@@ -243,7 +243,7 @@ class Assembly:
 
     async def _stop_without_water(self) -> None:
         # It may be back before the sensors have frozen for long enough, with a robot that is elsewhere.
-        with suppress(Refused, RuntimeSilent):
+        with suppress(RefusedError, RuntimeSilentError):
             await self.bridge.disarm()
 
     async def _tell_health(self) -> None:
@@ -261,5 +261,5 @@ class Assembly:
     async def _end_session(self) -> None:
         if self.recorder.session is not None:
             # Where even its end cannot be stored, the next start marks it as interrupted.
-            with suppress(StoreError, RecordingRefused):
+            with suppress(StoreError, RecordingRefusedError):
                 await self.recorder.stop(self.recorder.session.id)

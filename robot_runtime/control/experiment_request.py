@@ -14,7 +14,7 @@ from robot_runtime.control.experiment import (
     StepSettings,
 )
 from robot_runtime.control.loop import ControlLoop
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 SETTLE, DURATION = Range(0, 120), Range(2, 300)
 """s."""
@@ -26,16 +26,16 @@ HYSTERESIS_SHARE = 0.25
 def read_experiment(
     question: Mapping[str, Any], loops: Mapping[str, ControlLoop], clock: Clock
 ) -> tuple[int, ControlLoop, LoopExperiment]:
-    """Its number, its loop, and itself. Raises Refused with what is wrong."""
+    """Its number, its loop, and itself. Raises RefusedError with what is wrong."""
     number, name, kind = question.get("number"), question.get("loop"), question.get("kind")
     if type(number) is not int:
-        raise Refused(f"number is {number!r}; it must be a whole number")
+        raise RefusedError(f"number is {number!r}; it must be a whole number")
     loop = loops.get(str(name))
     if loop is None:
-        raise Refused(f"there is no loop {name!r}; there are {', '.join(loops)}")
+        raise RefusedError(f"there is no loop {name!r}; there are {', '.join(loops)}")
     make = {"step": _step, "relay": _relay}.get(str(kind))
     if make is None:
-        raise Refused(f"there is no experiment {kind!r}; there are step and relay")
+        raise RefusedError(f"there is no experiment {kind!r}; there are step and relay")
     return number, loop, make(question, loop.limits, clock)
 
 
@@ -51,7 +51,7 @@ def _step(question: Mapping[str, Any], loop: Range, clock: Clock) -> LoopExperim
         high=high,
     )
     if settings.start == settings.target:
-        raise Refused("start and target are the same; a step leads from one to the other")
+        raise RefusedError("start and target are the same; a step leads from one to the other")
     _require_within("start", settings.start, low, high)
     _require_within("target", settings.target, low, high)
     return StepExperiment(settings, clock)
@@ -61,7 +61,7 @@ def _relay(question: Mapping[str, Any], loop: Range, clock: Clock) -> LoopExperi
     low, high = _limits(question)
     cycles = _between(question, "cycles", CYCLES)
     if cycles != round(cycles):
-        raise Refused(f"cycles is {cycles:g}; it must be a whole number")
+        raise RefusedError(f"cycles is {cycles:g}; it must be a whole number")
     settings = RelaySettings(
         set_point=_between(question, "set_point", loop),
         amplitude=_between(question, "amplitude", AMPLITUDE),
@@ -78,24 +78,26 @@ def _relay(question: Mapping[str, Any], loop: Range, clock: Clock) -> LoopExperi
 def _limits(question: Mapping[str, Any]) -> tuple[float, float]:
     low, high = _number(question, "low"), _number(question, "high")
     if low >= high:
-        raise Refused(f"low is {low:g} and high {high:g}; the limits must be apart")
+        raise RefusedError(f"low is {low:g} and high {high:g}; the limits must be apart")
     return low, high
 
 
 def _require_within(name: str, value: float, low: float, high: float) -> None:
     if not low < value < high:
-        raise Refused(f"{name} is {value:g}; it must lie between the limits {low:g} and {high:g}")
+        raise RefusedError(f"{name} is {value:g}; it must lie between the limits {low:g} and {high:g}")
 
 
 def _between(question: Mapping[str, Any], name: str, limits: Range) -> float:
     value = _number(question, name)
     if not limits.minimum <= value <= limits.maximum:
-        raise Refused(f"{name} is {value:g}; it must lie between {limits.minimum:g} and {limits.maximum:g}")
+        raise RefusedError(
+            f"{name} is {value:g}; it must lie between {limits.minimum:g} and {limits.maximum:g}"
+        )
     return value
 
 
 def _number(question: Mapping[str, Any], name: str) -> float:
     value = question.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise Refused(f"{name} is {value!r}; it must be a number")
+        raise RefusedError(f"{name} is {value!r}; it must be a number")
     return float(value)

@@ -8,7 +8,7 @@ from robot_runtime.contract.documents import Experiment, Mode
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.experiment import LoopExperiment
 from robot_runtime.control.loop import ControlLoop
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 TELL_EVERY = 0.5
 """s."""
@@ -30,13 +30,15 @@ class Experiments:
         self._due = 0.0
 
     def require_none(self) -> None:
-        """Raises Refused while one runs: what it measures must not change meanwhile."""
+        """Raises RefusedError while one runs: what it measures must not change meanwhile."""
         running = self._running
         if running is not None:
-            raise Refused(f"An experiment runs on the {running[1].name}. Wait for its end, or stop it first.")
+            raise RefusedError(
+                f"An experiment runs on the {running[1].name}. Wait for its end, or stop it first."
+            )
 
     def begin(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
-        """Run it from the next tick on. Raises Refused while another runs."""
+        """Run it from the next tick on. Raises RefusedError while another runs."""
         with self._lock:
             self.require_none()
             self._running = number, loop, experiment

@@ -7,7 +7,7 @@ from typing import Literal
 from robot_runtime.contract.limits import SET_POINT, Range
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.controllers import CONTROLLERS, Controller
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 LoopName = Literal["depth", "heading", "pitch", "roll"]
 Axis = Literal["z", "yaw", "pitch", "roll"]
@@ -101,17 +101,19 @@ class ControlLoop:
             self.set_point = min(max(self.measured, self.limits.minimum), self.limits.maximum)
 
     def find(self, name: str) -> Controller:
-        """The controller of this name. Raises Refused where there is none."""
+        """The controller of this name. Raises RefusedError where there is none."""
         controller = self.controllers.get(name)
         if controller is None:
-            raise Refused(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")
+            raise RefusedError(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")
         return controller
 
     def check(self, set_point: float) -> None:
-        """Raises Refused where there may be no such set point."""
+        """Raises RefusedError where there may be no such set point."""
         low, high = self.limits.minimum, self.limits.maximum
         if not low <= set_point <= high:
-            raise Refused(f"a set point of {self._number(set_point)} is not between {self.words(low, high)}")
+            raise RefusedError(
+                f"a set point of {self._number(set_point)} is not between {self.words(low, high)}"
+            )
 
     def words(self, *values: float) -> str:
         """These values with their unit, for people."""

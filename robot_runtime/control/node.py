@@ -14,7 +14,7 @@ from robot_runtime.control.faults import BY_NAME, LOOK
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
 
 BEACON_STALE = 0.5
@@ -82,7 +82,10 @@ class ControlNode:
             loop.lent = None
 
     def choose(self, name: str, gains: Mapping[str, Any] | None = None) -> None:
-        """Take another depth controller, or other gains. Raises Refused where either is unknown or wrong."""
+        """Take another depth controller, or other gains.
+
+        Raises RefusedError where either is unknown or wrong.
+        """
         self.set_loop("depth", controller=name, gains=gains)
 
     def set_loop(
@@ -94,7 +97,8 @@ class ControlNode:
         controller: str | None = None,
         gains: Mapping[str, Any] | None = None,
     ) -> None:
-        """Change a loop; all of it, or nothing where that raises Refused. `gains` are the named controller's.
+        """Change a loop; all of it, or nothing where that raises RefusedError. `gains` are the named
+        controller's.
 
         A hold that is switched on in manual holds what is measured. The depth's set point is its hold's
         where it is held in manual, the default one otherwise.
@@ -105,7 +109,7 @@ class ControlNode:
             try:
                 chosen.check(gains or {})
             except ValueError as problem:
-                raise Refused(str(problem)) from problem
+                raise RefusedError(str(problem)) from problem
             if set_point is not None:
                 loop.check(set_point)
             if on:
@@ -140,18 +144,18 @@ class ControlNode:
             self._bus.publish_document("event", event)
 
     def set_points(self, default: float, detected: float) -> None:
-        """Set both wanted depths, m. Raises Refused where one is not between 0 and 10."""
+        """Set both wanted depths, m. Raises RefusedError where one is not between 0 and 10."""
         for depth in (default, detected):
             self.depth.check(depth)
         self.set_point_default, self.set_point_detected = default, detected
 
     def steer(self, by: str) -> None:
-        """Stay, or swim towards a light beacon. Raises Refused where there is no such steering."""
+        """Stay, or swim towards a light beacon. Raises RefusedError where there is no such steering."""
         for one in STEERINGS:
             if one == by:
                 self.steering = one
                 return
-        raise Refused(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
+        raise RefusedError(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self) -> None:
         """Decide, and send the command where the robot is steered. The caller holds `between_ticks`."""
@@ -221,14 +225,14 @@ class ControlNode:
 
     def _check_on(self, loop: ControlLoop) -> None:
         if loop is self.depth and self.mode != "manual":
-            raise Refused("The depth is always held in automatic. Its hold is for driving by hand.")
+            raise RefusedError("The depth is always held in automatic. Its hold is for driving by hand.")
         if self.mode == "manual" and loop.measured is None:
-            raise Refused(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+            raise RefusedError(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
 
     def _find(self, name: str) -> ControlLoop:
         loop = self.loops.get(name)
         if loop is None:
-            raise Refused(f"there is no loop {name!r}; there are {', '.join(self.loops)}")
+            raise RefusedError(f"there is no loop {name!r}; there are {', '.join(self.loops)}")
         return loop
 
     def _measure(self) -> float | None:

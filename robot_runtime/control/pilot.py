@@ -7,7 +7,7 @@ from typing import Any
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import Navigation
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 PILOT = "pilot"
 """The name under which the server sends it."""
@@ -42,9 +42,12 @@ class Pilot:
         self.taken, self._command = self._clock.now(), NEUTRAL
 
     def change_lease(self, epoch: int) -> None:
-        """From now on only this holder's input counts. Raises Refused where the epoch is an older one."""
+        """From now on only this holder's input counts.
+
+        Raises RefusedError where the epoch is an older one.
+        """
         if epoch < self.lease:
-            raise Refused(f"the lease {epoch} is older than {self.lease}, which counts")
+            raise RefusedError(f"the lease {epoch} is older than {self.lease}, which counts")
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 

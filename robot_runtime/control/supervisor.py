@@ -14,7 +14,7 @@ from robot_runtime.control.fin_check import FinCheck
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.control.transitions import ARMED, Trigger, follow
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.link.timing import airtime
 
 _ARM_TRIES = 10
@@ -125,7 +125,7 @@ class Supervisor:
     def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
         """Arm the board, and wait until it is.
 
-        Raises Refused with every reason where it may not be, or does not follow.
+        Raises RefusedError with every reason where it may not be, or does not follow.
         """
         with self._changed:
             arming = self.begin_arming(mode, alone)
@@ -133,10 +133,11 @@ class Supervisor:
                 self._changed.wait_for(lambda: arming.over or self.board_armed == arming.rested, ARM_WAIT)
                 self.go_on_arming()
             if arming.refusal:
-                raise Refused(arming.refusal)
+                raise RefusedError(arming.refusal)
 
     def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
-        """Ask the board to arm; `go_on_arming` does the rest. Raises Refused with every reason against it.
+        """Ask the board to arm; `go_on_arming` does the rest. Raises RefusedError with every reason against
+        it.
 
         `alone` are the s for which the robot may go on without the server.
         """
@@ -144,18 +145,18 @@ class Supervisor:
             if self.mode == mode != "test":
                 return Arming(None, tries=0, over=True)
             if self.armed:
-                raise Refused(f"The robot is armed, in {self.mode}. Change its mode, or STOP it first.")
+                raise RefusedError(f"The robot is armed, in {self.mode}. Change its mode, or STOP it first.")
             reasons = self.refusals()
             board = self._line.board
             if reasons or board is None:
-                raise Refused(" ".join(reasons))
+                raise RefusedError(" ".join(reasons))
             if self._arming is None:
                 self._arming = arming = Arming(board, self._arm_tries, mode, alone)
                 arming.rested = not self.board_armed
                 self._ask_to_arm(arming)
                 return arming
             if self._arming.mode != mode:
-                raise Refused(f"The robot is being armed for {self._arming.mode} just now.")
+                raise RefusedError(f"The robot is being armed for {self._arming.mode} just now.")
             return self._arming
 
     def go_on_arming(self) -> None:
@@ -176,14 +177,19 @@ class Supervisor:
                 self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
     def change_mode(self, mode: Mode) -> None:
-        """Hand over between pilot and controller while armed. Raises Refused with every reason against it."""
+        """Hand over between pilot and controller while armed.
+
+        Raises RefusedError with every reason against it.
+        """
         with self._changed:
             if self.mode == mode:
                 return
             if mode not in _CHANGE or follow(self.mode, _CHANGE[mode]) is None:
-                raise Refused(f"The robot is {self.mode}; only while it is armed can it change to {mode}.")
+                raise RefusedError(
+                    f"The robot is {self.mode}; only while it is armed can it change to {mode}."
+                )
             if mode == "automatic" and (reasons := self.watch.depth_refusals()):
-                raise Refused(" ".join(reasons))
+                raise RefusedError(" ".join(reasons))
             self.pilot.begin()
             self._go(_CHANGE[mode])
             text = "The pilot steers." if mode == "manual" else "The controller steers."

@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 from robot_runtime.contract.documents import ParameterValue, TunableParameter
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.parameters.entry import Entry
 
 Changed = dict[str, tuple[ParameterValue, ParameterValue]]
@@ -69,8 +69,8 @@ class Registry:
     ) -> dict[str, str]:
         """Set all of these, or where `partly` those that can be; why the others cannot, by name.
 
-        Where something else is in force than `expected`, nothing is. Raises Refused with every reason; then
-        none is set.
+        Where something else is in force than `expected`, nothing is. Raises RefusedError with every reason;
+        then none is set.
         """
         problems: dict[str, str] = {}
         checked: dict[str, ParameterValue] = {}
@@ -84,7 +84,7 @@ class Registry:
                 except ValueError as problem:
                     problems[name] = str(problem)
             if problems and not partly:
-                raise Refused("; ".join(problems.values()) + ". Nothing was changed.")
+                raise RefusedError("; ".join(problems.values()) + ". Nothing was changed.")
             for name, value in checked.items():
                 if value != self._entries[name].get():
                     self._entries[name].set(value)

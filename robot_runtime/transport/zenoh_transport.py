@@ -13,8 +13,8 @@ from typing import Any, Self
 
 import zenoh
 
-from robot_runtime.errors import NoAnswer as NoAnswer
-from robot_runtime.errors import Refused as Refused
+from robot_runtime.errors import NoAnswerError as NoAnswerError
+from robot_runtime.errors import RefusedError as RefusedError
 
 log = logging.getLogger(__name__)
 
@@ -89,19 +89,24 @@ class ZenohTransport:
         return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
 
     def ask(self, name: str, payload: Mapping[str, Any], timeout: float = 2.0) -> Answer:
-        """The answer to a question. Raises Refused with the reason, or NoAnswer after `timeout` seconds."""
+        """The answer to a question.
+
+        Raises RefusedError with the reason, or NoAnswerError after `timeout` seconds.
+        """
         data = json.dumps(payload, allow_nan=False).encode()
         for reply in self._session.get(self._prefix + name, payload=data, timeout=timeout):
             if reply.ok is None:
                 continue
             answer: Answer = json.loads(reply.ok.payload.to_bytes())
             if not answer.get("accepted"):
-                raise Refused(str(answer.get("reason", "refused without a reason")))
+                raise RefusedError(str(answer.get("reason", "refused without a reason")))
             return answer
-        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+        raise NoAnswerError(f"nobody answered {name} within {timeout:g} s")
 
     def answer(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
-        """Answer `name` with what the handler returns; what it raises as Refused or ValueError is told."""
+        """Answer `name` with what the handler returns; what it raises as RefusedError or ValueError is
+        told.
+        """
 
         def reply(query: zenoh.Query) -> None:
             with query:
@@ -116,8 +121,8 @@ class ZenohTransport:
                 return reply.ok.payload.to_bytes()
             # Zenoh puts its own errors, such as a timeout, into the same place.
             if reply.err is not None and reply.err.encoding == _REFUSAL:
-                raise Refused(reply.err.payload.to_string())
-        raise NoAnswer(f"nobody answered {name} within {timeout:g} s")
+                raise RefusedError(reply.err.payload.to_string())
+        raise NoAnswerError(f"nobody answered {name} within {timeout:g} s")
 
     def answer_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
         """Answer `name` with the bytes that the handler returns; what it raises is told as by `answer`."""
@@ -174,7 +179,7 @@ def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh
 
 
 def _reason(problem: Exception, query: zenoh.Query) -> str:
-    if isinstance(problem, Refused | ValueError | TypeError):
+    if isinstance(problem, RefusedError | ValueError | TypeError):
         return str(problem)
     log.error("answering %s failed", query.key_expr, exc_info=problem)
     return "an error inside the answering process; its log says more"

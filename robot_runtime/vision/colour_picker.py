@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from robot_runtime.contract.limits import Range
 from robot_runtime.contract.vision_settings import BYTE_MAX, HUE_MAX, ColourRange
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.vision.patches import find_colour
 from robot_runtime.vision.picture import Picture
 
@@ -52,7 +52,7 @@ class ColourProposal:
 def propose(picture: Picture, place: PickPoint) -> ColourProposal:
     """The range of what is around a place of a BGR picture (height, width, 3).
 
-    Raises Refused where there is no colour, or more than one.
+    Raises RefusedError where there is no colour, or more than one.
     """
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
     colour = range_of(_around(hsv, place))
@@ -60,12 +60,12 @@ def propose(picture: Picture, place: PickPoint) -> ColourProposal:
 
 
 def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
-    """The range that holds these HSV pixels (number, 3) but for the outermost. Raises Refused."""
+    """The range that holds these HSV pixels (number, 3) but for the outermost. Raises RefusedError."""
     coloured = pixels[(pixels[:, 1] >= SATURATION_LEAST) & (pixels[:, 2] >= VALUE_LEAST)]
     if len(coloured) < COLOURED_LEAST * len(pixels):
         saturation, value = np.median(pixels[:, 1:], axis=0)
         what = "too dark" if value < VALUE_LEAST else "grey"
-        raise Refused(
+        raise RefusedError(
             f"There is no colour at this place: it is {what} (saturation {saturation:.0f}, value {value:.0f} "
             f"of {BYTE_MAX}). Point at something coloured; nothing was changed."
         )
@@ -85,7 +85,7 @@ def _hues(hues: NDArray[np.uint8]) -> tuple[int, int]:
     beside = (hues - middle + HUES / 2) % HUES - HUES / 2
     low, high = np.percentile(beside, PERCENTILES)
     if high - low > HUE_SPREAD_MAX:
-        raise Refused(
+        raise RefusedError(
             f"There are several colours at this place: hues over {high - low:.0f} of {HUES}. Point at one of "
             "them, or take a smaller radius; nothing was changed."
         )

@@ -13,7 +13,7 @@ from robot_runtime.contract.card_colours import MARKER_CARD, PAINTS
 from robot_runtime.contract.documents import Detection, Event, Severity
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings, marker_name
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.rate_timer import RateTimer
@@ -109,14 +109,14 @@ class VisionNode:
         return str(self._camera) if self._camera else "starting"
 
     def show_card(self, colour: str | None) -> None:
-        """Show this card, or none. Raises Refused where that cannot be."""
+        """Show this card, or none. Raises RefusedError where that cannot be."""
         if self._config.camera not in ("card", "scene"):
-            raise Refused(
+            raise RefusedError(
                 f"the camera is {self._config.camera!r}; cards are shown to the cameras 'scene' and 'card' "
                 "alone: choose one in robot.toml, [vision] camera"
             )
         if colour is not None and colour not in self.cards:
-            raise Refused(f"there is no card of colour {colour!r}; there are {', '.join(self.cards)}")
+            raise RefusedError(f"there is no card of colour {colour!r}; there are {', '.join(self.cards)}")
         if colour is None:
             self.held = None
         else:
@@ -127,14 +127,14 @@ class VisionNode:
     def pick(self, question: dict[str, Any]) -> "ColourProposal":
         """The range of the colour at a place of the newest picture, after the white balance.
 
-        `question` is a `PickPoint` as a table. Changes nothing. Raises Refused, ConfigError.
+        `question` is a `PickPoint` as a table. Changes nothing. Raises RefusedError, ConfigError.
         """
         from robot_runtime.vision.pipeline import Detector, PickPoint, propose
 
         place = parse(PickPoint, question)
         frame = self._frame
         if frame is None:
-            raise Refused(f"There is no picture to pick a colour in. Camera: {self.text}.")
+            raise RefusedError(f"There is no picture to pick a colour in. Camera: {self.text}.")
         return propose(Detector(self._settings).balance(frame.picture), place)
 
     def start(self) -> None:

@@ -23,7 +23,7 @@ from robot_runtime.vision.file_camera import FileCamera
 from robot_runtime.vision.mask import draw_mask as draw_mask
 from robot_runtime.vision.pi_camera import PiCamera
 from robot_runtime.vision.picture import Picture
-from robot_runtime.vision.scene_camera import SceneCamera, SceneMissing
+from robot_runtime.vision.scene_camera import SceneCamera, SceneMissingError
 
 JPEG_QUALITY = 80
 THUMBNAIL_WIDTH = 160
@@ -51,7 +51,7 @@ def open_camera(
     if config.camera == "scene" and messages is not None:
         try:
             return SceneCamera(config.width, config.height, messages, card)
-        except SceneMissing as missing:
+        except SceneMissingError as missing:
             on_missing(str(missing))
     return CardCamera(config.width, config.height, clock, card)
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from robot_runtime.contract.scene_picture import read_picture, write_request
-from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 from robot_runtime.vision.cards import CameraCard
@@ -15,14 +15,14 @@ PATIENCE = 8.0
 """s for which it is not news that there is none: board, simulator and scene start after the runtime."""
 
 
-class SceneMissing(Exception):  # noqa: N818 - it says what happened
+class SceneMissingError(Exception):
     """Nothing can be rendered where the scene runs; the text says what is missing and how to get it."""
 
 
 class SceneCamera(Camera):
     """Asks for pictures of `width` × `height` pixels; `card` tells which card is shown, if any.
 
-    Raises CameraError where no scene answers, SceneMissing where it answers that it cannot render.
+    Raises CameraError where no scene answers, SceneMissingError where it answers that it cannot render.
     """
 
     def __init__(
@@ -37,14 +37,14 @@ class SceneCamera(Camera):
         self._card = card
         try:
             missing = messages.ask("scene/ready", {}, READY_TIMEOUT)["missing"]
-        except NoAnswer as problem:
+        except NoAnswerError as problem:
             raise CameraError(
                 "no scene answers; it belongs to a simulated robot, and starts with the server. A real robot "
                 "has another camera: name it in robot.toml, [vision] camera",
                 PATIENCE,
             ) from problem
         if missing is not None:
-            raise SceneMissing(str(missing))
+            raise SceneMissingError(str(missing))
 
     def read(self) -> CameraFrame:
         """What the camera sees where the robot was when the simulator last told. Raises CameraError."""
@@ -52,11 +52,11 @@ class SceneCamera(Camera):
         request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
         try:
             picture = read_picture(self._messages.ask_bytes("scene/picture", request, PICTURE_TIMEOUT))
-        except NoAnswer as problem:
+        except NoAnswerError as problem:
             raise CameraError(
                 "the scene does not answer any more; the System page tells more", PATIENCE
             ) from problem
-        except (Refused, ValueError) as problem:
+        except (RefusedError, ValueError) as problem:
             raise CameraError(f"the scene gives none: {problem}", PATIENCE) from problem
         return CameraFrame(picture.pixels, picture.time)
 

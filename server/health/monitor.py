@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.topics import TIME, Block
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from server import VERSION
 from server.platform.settings import Settings
@@ -83,10 +83,12 @@ class Watch:
         return document if isinstance(document, dict) else None
 
     def require_disarmed(self, why: str) -> None:
-        """Raises Refused, with this reason, where the robot is armed: heavy work waits until it rests."""
+        """Raises RefusedError, with this reason, where the robot is armed: heavy work waits until it
+        rests.
+        """
         state = self.state()
         if state is not None and state.get("armed"):
-            raise Refused(f"{why} It is refused while the robot is armed: press STOP first.")
+            raise RefusedError(f"{why} It is refused while the robot is armed: press STOP first.")
 
     def health(self) -> Health:
         """How everything does now."""

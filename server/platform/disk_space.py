@@ -2,7 +2,7 @@
 
 import shutil
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.platform.settings import DataFolder
 
 DIVE_BYTES = 20_000_000
@@ -10,10 +10,10 @@ DIVE_BYTES = 20_000_000
 
 
 def check_room(folder: DataFolder) -> None:
-    """Raises Refused where there is no room to record a dive."""
+    """Raises RefusedError where there is no room to record a dive."""
     free = shutil.disk_usage(folder.path).free
     if free < DIVE_BYTES:
-        raise Refused(
+        raise RefusedError(
             f"The disk is full: {free / 1e6:.0f} MB are free, and a dive that is recorded needs "
             f"{DIVE_BYTES / 1e6:.0f} MB. Remove sessions or exports."
         )

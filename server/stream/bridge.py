@@ -17,11 +17,11 @@ from typing import Any
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import BY_NAME, RECORDED, Block, read_blocks
 from robot_runtime.control.pilot import PILOT
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
-from robot_runtime.transport.zenoh_transport import NoAnswer, Subscription, ZenohTransport
+from robot_runtime.transport.zenoh_transport import NoAnswerError, Subscription, ZenohTransport
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import Source
 
@@ -52,7 +52,7 @@ QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """Where the processes answer for what they have kept."""
 
 
-class RuntimeSilent(Exception):  # noqa: N818 - it says what happened
+class RuntimeSilentError(Exception):
     """The runtime did not answer; `waited` says whether it was there to be asked at all."""
 
     def __init__(self, text: str, waited: bool) -> None:
@@ -132,13 +132,16 @@ class Bridge:
         self._messages.publish(PILOT, command)
 
     async def tell_lease(self, epoch: int) -> None:
-        """Have the runtime drop driving commands of earlier epochs. Raises Refused, or RuntimeSilent."""
+        """Have the runtime drop driving commands of earlier epochs.
+
+        Raises RefusedError, or RuntimeSilentError.
+        """
         try:
             await self._loop.run_in_executor(
                 self._leases, lambda: self._messages.ask("command/lease", {"epoch": epoch}, ANSWER_SECONDS)
             )
-        except NoAnswer as problem:
-            raise RuntimeSilent(str(problem), waited=False) from problem
+        except NoAnswerError as problem:
+            raise RuntimeSilentError(str(problem), waited=False) from problem
 
     def watch_pictures(self, wanted: frozenset[str]) -> None:
         """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
@@ -148,7 +151,7 @@ class Bridge:
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> None:
-        """Have the runtime do something. Raises Refused with its reason, or RuntimeSilent."""
+        """Have the runtime do something. Raises RefusedError with its reason, or RuntimeSilentError."""
         if name == "stop" and self.on_stop is not None:
             self.on_stop()
         await self._ask(f"command/{name}", payload, stop=name == "stop")
@@ -158,23 +161,23 @@ class Bridge:
         return await self._ask(f"command/{name}", payload, stop=False)
 
     async def disarm(self) -> None:
-        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilent."""
+        """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilentError."""
         await self._ask("command/stop", {}, stop=True)
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulator answers. Raises Refused with its reason, or RuntimeSilent."""
+        """What the simulator answers. Raises RefusedError with its reason, or RuntimeSilentError."""
         return await self._ask(f"simulator/{name}", payload, stop=False)
 
     async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
-        """What the runtime says to a question. Raises Refused with its reason, or RuntimeSilent."""
+        """What the runtime says to a question. Raises RefusedError with its reason, or RuntimeSilentError."""
         return await self._ask(f"query/{name}", question or {}, stop=False)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulated scene answers. Raises Refused with its reason, or RuntimeSilent."""
+        """What the simulated scene answers. Raises RefusedError with its reason, or RuntimeSilentError."""
         try:
             return await self._ask(f"scene/{name}", payload, stop=False)
-        except RuntimeSilent as problem:
-            raise RuntimeSilent(
+        except RuntimeSilentError as problem:
+            raise RuntimeSilentError(
                 "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
             ) from problem
 
@@ -189,9 +192,9 @@ class Bridge:
 
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
         if self.lent is not None and not stop:
-            raise Refused(self.lent)
+            raise RefusedError(self.lent)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
-            raise RuntimeSilent(
+            raise RuntimeSilentError(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False
             )
         self._asking += not stop
@@ -201,11 +204,11 @@ class Bridge:
                 self._stops if stop else self._commands,
                 lambda: self._messages.ask(name, payload, ANSWER_SECONDS),
             )
-        except NoAnswer as problem:
+        except NoAnswerError as problem:
             if stop and self.stopped:
                 return {}
             waited = self._loop.time() - started > 0.9 * ANSWER_SECONDS
-            raise RuntimeSilent(_silence(name, waited), waited) from problem
+            raise RuntimeSilentError(_silence(name, waited), waited) from problem
         finally:
             self._asking -= not stop
 
@@ -224,9 +227,9 @@ class Bridge:
         while self._loop.time() < end:
             try:
                 return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted, seconds)
-            except NoAnswer:
+            except NoAnswerError:
                 await asyncio.sleep(KEPT_PAUSE)
-            except (Refused, LayoutError) as problem:
+            except (RefusedError, LayoutError) as problem:
                 log.warning("what the %s has kept cannot be had: %s", name, problem)
                 break
         return None

@@ -39,7 +39,7 @@ Send = Callable[[bytes | str], Awaitable[None]]
 _NO_PICTURE = (0, b"")
 
 
-class Evicted(Exception):  # noqa: N818 - it says what happened
+class EvictedError(Exception):
     """A client cannot be served any longer; the text is the reason that it is told, `code` WebSocket's."""
 
     def __init__(self, reason: str, code: int = TRY_AGAIN_LATER) -> None:
@@ -53,7 +53,7 @@ class Client:
     def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
         self.device = device
         self.sending_since: float | None = None
-        self.dismissal: Evicted | None = None
+        self.dismissal: EvictedError | None = None
         self._hub = hub
         self._raw_send = send
         self._clock = clock
@@ -67,9 +67,9 @@ class Client:
         """Topics of pictures that it wants."""
 
     def answer(self, message: dict[str, Any]) -> None:
-        """Send this soon, in order. Raises Evicted where too many answers already wait to be read."""
+        """Send this soon, in order. Raises EvictedError where too many answers already wait to be read."""
         if len(self._answers) >= ANSWERS_MAX:
-            raise Evicted("Too many answers wait unread.")
+            raise EvictedError("Too many answers wait unread.")
         # In ASCII: what a client has said may hold halves of characters, which no other text can.
         self._answers.append(json.dumps(message))
         self._wake.set()
@@ -84,7 +84,7 @@ class Client:
         self._wake.set()
 
     async def run(self) -> None:
-        """Send the past, then the present, for ever. Raises Evicted where the client is too slow."""
+        """Send the past, then the present, for ever. Raises EvictedError where the client is too slow."""
         await self._send_history()
         while True:
             while self._behind:
@@ -104,7 +104,7 @@ class Client:
                 await self._send(b"".join(group))
             if self._hub.rows.first <= self._rows and self._hub.documents.first <= self._documents:
                 return
-        raise Evicted("The connection is slower than what the robot sends.")
+        raise EvictedError("The connection is slower than what the robot sends.")
 
     @property
     def _behind(self) -> bool:
@@ -131,7 +131,7 @@ class Client:
             await self._send(self._newest.pop(next(iter(self._newest))))
         elif self._documents < hub.documents.end:
             if self._documents < hub.documents.first:
-                raise Evicted(
+                raise EvictedError(
                     "The connection fell too far behind; the rest is in the recording, if there is one."
                 )
             self._documents += 1
@@ -225,16 +225,16 @@ class Hub:
         """End all connections of this device, and tell it why."""
         for client in self._clients:
             if client.device == device:
-                self._end(client, Evicted(reason, POLICY_VIOLATION))
+                self._end(client, EvictedError(reason, POLICY_VIOLATION))
 
     async def serve(
         self, send: Send, greeting: dict[str, Any], receive: Callable[[Client], Awaitable[None]], device: int
     ) -> None:
-        """Serve one socket of a device until `receive` returns. Raises Evicted with the reason where it must
-        go.
+        """Serve one socket of a device until `receive` returns. Raises EvictedError with the reason where it
+        must go.
         """
         if len(self._clients) >= CLIENTS_MAX:
-            raise Evicted(f"{CLIENTS_MAX} pages are open already; close one.")
+            raise EvictedError(f"{CLIENTS_MAX} pages are open already; close one.")
         client = Client(self, send, self._clock, device)
         client.answer(greeting)
         for kind, text in self._newest.items():
@@ -263,9 +263,9 @@ class Hub:
             limit = self._clock.now() - STALL_SECONDS
             for client in self._clients:
                 if client.sending_since is not None and client.sending_since < limit:
-                    self._end(client, Evicted(f"Nothing was read for {STALL_SECONDS:g} s."))
+                    self._end(client, EvictedError(f"Nothing was read for {STALL_SECONDS:g} s."))
 
-    def _end(self, client: Client, reason: Evicted) -> None:
+    def _end(self, client: Client, reason: EvictedError) -> None:
         client.dismissal = reason
         self._clients[client].cancel()
 

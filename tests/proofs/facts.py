@@ -19,12 +19,12 @@ FACTS = {
 }
 
 
-class Damaged(Exception):  # noqa: N818 - it says what happened
+class DamagedDataError(Exception):
     """SQLite finds the database damaged."""
 
 
 def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
-    """Every fact by its name; rows of samples as checksums. Raises Damaged.
+    """Every fact by its name; rows of samples as checksums. Raises DamagedDataError.
 
     After a cut SQLite must be able to write ("rw"), since it rolls back what was not finished.
     """
@@ -33,7 +33,7 @@ def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
         with closing(sqlite3.connect(f"{database.as_uri()}?mode={mode}", uri=True)) as connection:
             (health,) = connection.execute("PRAGMA integrity_check").fetchone()
             if health != "ok":
-                raise Damaged(health)
+                raise DamagedDataError(health)
             tables = {name for (name,) in connection.execute("SELECT name FROM sqlite_master")}
             for kind, query in FACTS.items():
                 if query.rpartition(" ")[2] not in tables:
@@ -42,7 +42,7 @@ def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
                     fact = zlib.crc32(value) if isinstance(value, bytes) else value
                     found[f"{kind}/{name}"] = fact
     except sqlite3.DatabaseError as problem:
-        raise Damaged(str(problem)) from problem
+        raise DamagedDataError(str(problem)) from problem
     return found
 
 

@@ -16,7 +16,7 @@ from robot_runtime.config import LinkConfig
 from robot_runtime.contract.documents import Mode
 from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.experiments.scenario.run import PRELUDE
 from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
@@ -312,7 +312,7 @@ def _inject(swim: Swim, row: Row, chance: random.Random, measured: Measured) -> 
         _judge(measured, row, "off", swim.powered - since, row.off)
         try:
             swim.supervisor.begin_arming(row.mode)
-        except Refused:
+        except RefusedError:
             pass
         else:
             measured.problems.append(f"{row.name}: it could be armed before anybody acknowledged")

@@ -18,7 +18,7 @@ from urllib.parse import quote, urlsplit
 
 import requests
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.builder import _macros
 from robot_runtime.experiments.comm_test.document import (
     NEEDED,
@@ -28,7 +28,7 @@ from robot_runtime.experiments.comm_test.document import (
     read_document,
 )
 from robot_runtime.experiments.scenario.document import ScenarioError
-from server.features.exports.archive_reader import ArchiveRefused, open_archive
+from server.features.exports.archive_reader import ArchiveError, open_archive
 from server.features.scenarios.library import keep_scenario
 from server.http.page import Page
 from server.http.serving import MESSAGE_BYTES_MAX
@@ -163,7 +163,7 @@ def run_number(field: Field) -> None:
 @entrance("scenario's file")
 def scenario_file(field: Field) -> None:
     """It is kept under a name of its own kind, or not at all."""
-    with suppress(ScenarioError, Refused):
+    with suppress(ScenarioError, RefusedError):
         keep_scenario(field.data.scenarios, scenario(field.words))
 
 
@@ -294,7 +294,7 @@ def archive(field: Field) -> None:
             zipped.writestr("session.json", "{}")
             zipped.writestr("checksums.json", "{}")
         file.flush()
-        with suppress(ArchiveRefused), open_archive(Path(file.name)):
+        with suppress(ArchiveError), open_archive(Path(file.name)):
             raise AssertionError(f"{name!r} was let in")
 
 

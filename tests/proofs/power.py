@@ -20,7 +20,7 @@ from typing import Any, get_args
 
 from tests.proofs import disk
 from tests.proofs.disk import Cut, Disk, Step
-from tests.proofs.facts import Damaged, holds, read_facts
+from tests.proofs.facts import DamagedDataError, holds, read_facts
 from tests.stack import ROOT
 
 MEMORY = "/dev/shm" if Path("/dev/shm").is_dir() else None
@@ -135,7 +135,7 @@ def _look(
     try:
         if database.exists():
             facts |= read_facts(database, "rw")
-    except Damaged as problem:
+    except DamagedDataError as problem:
         report.damaged[cut] += 1
         report.words.append(f"{cut}: {problem}")
         return

@@ -35,7 +35,7 @@ from robot_runtime.contract.packets import (
 from robot_runtime.contract.topics import Kind, read_blocks, read_rows
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.pilot import PILOT
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -292,7 +292,7 @@ def test_bad_commands_are_refused_with_the_reason(
     shared: Rig, name: str, question: dict[str, Any], why: str
 ) -> None:
     before = {**shared.listener.newest_state(), "time": 0}
-    with pytest.raises(Refused, match=why):
+    with pytest.raises(RefusedError, match=why):
         shared.ask(name, **question)
     seen = len(shared.listener.documents)
     shared.listener.wait(lambda: any(topic == "state" for topic, _ in shared.listener.documents[seen:]))
@@ -318,7 +318,7 @@ def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None
     first.ready()
     first.ask("vision_settings", **changed.table())
     assert first.messages.ask("query/vision", {})["settings"] == changed.table()
-    with pytest.raises(Refused, match="colour is 'yellow'; it must be one of buoy"):
+    with pytest.raises(RefusedError, match="colour is 'yellow'; it must be one of buoy"):
         first.ask("vision", colour="yellow")
     first.close()
 
@@ -362,12 +362,12 @@ def test_a_port_that_vanishes_disarms_and_its_return_does_not_arm(rig: Rig) -> N
     rig.arm()
     rig.board.close()
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
-    with pytest.raises(Refused, match="no connection"):
+    with pytest.raises(RefusedError, match="no connection"):
         rig.ask("arm")
     rig.board = Board(rig.board.path)
     rig.listener.wait(lambda: len(rig.listener.newest_state()["refusals"]) == 1)
     assert rig.listener.newest_state()["mode"] == "failsafe"
-    with pytest.raises(Refused, match="Acknowledge the alarms"):
+    with pytest.raises(RefusedError, match="Acknowledge the alarms"):
         rig.ask("arm")
     rig.ask("acknowledge")
     rig.ready()
@@ -468,7 +468,7 @@ def test_a_board_that_forgot_is_told_again_before_it_is_armed(rig: Rig) -> None:
     rig.listener.wait(lambda: not rig.listener.newest_state()["connected"])
     rig.board = Board(rig.board.path, deaf_to_parameters=True)
     rig.listener.wait(lambda: any("fins.amplitude" in why for why in rig.listener.newest_state()["refusals"]))
-    with pytest.raises(Refused, match="not confirmed"):
+    with pytest.raises(RefusedError, match="not confirmed"):
         rig.ask("arm")
     rig.board.deaf_to_parameters = False
     rig.ready()

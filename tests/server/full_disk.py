@@ -16,7 +16,7 @@ from typing import Any
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME, Block, row
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import Runs
 from server.features.scenarios.library import _shipped, keep_scenario
@@ -102,7 +102,7 @@ async def refusal(work: Callable[[], Awaitable[object]]) -> str:
     """In which words it is refused; "" where it is not."""
     try:
         await work()
-    except (StoreError, Refused, SetupError) as problem:
+    except (StoreError, RefusedError, SetupError) as problem:
         return str(problem)
     return ""
 

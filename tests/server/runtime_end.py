@@ -9,7 +9,7 @@ from typing import Any, Self
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.topics import Block, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -83,7 +83,7 @@ class RuntimeEnd:
     def _pick(self, question: dict[str, Any]) -> Mapping[str, Any]:
         self.picked.append(question)
         if self.refusal is not None:
-            raise Refused(self.refusal)
+            raise RefusedError(self.refusal)
         return {"colour": VisionSettings().table()["colours"]["red"], "share": 0.25}
 
     def _answer(self, name: str, gate: threading.Event) -> None:
@@ -91,7 +91,7 @@ class RuntimeEnd:
             self.asked.append((name, question))
             gate.wait(30)
             if self.refusal is not None and name != "stop":
-                raise Refused(self.refusal)
+                raise RefusedError(self.refusal)
             return self.answer
 
         self._messages.answer(f"command/{name}", handle)

@@ -13,7 +13,7 @@ from typing import Any
 import httpx
 from websockets.asyncio.client import ClientConnection, connect
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.app import create_app
 from server.container import Assembly
 from server.http.serving import make_server, open_socket
@@ -21,7 +21,7 @@ from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.processes.supervisor import Command
-from server.stream.bridge import RuntimeSilent
+from server.stream.bridge import RuntimeSilentError
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
 from tests.shell import ShellToken, shell_headers
@@ -59,7 +59,7 @@ class Served:
             while True:
                 try:
                     return await self.assembly.bridge.command("there", {})
-                except (RuntimeSilent, Refused):
+                except (RuntimeSilentError, RefusedError):
                     await asyncio.sleep(0.005)
 
     async def take_control(self) -> None:

@@ -231,7 +231,7 @@ def test_a_runtime_that_does_not_answer_is_told_in_the_end_and_stop_does_not_wai
         outcomes = await asyncio.gather(*slow, return_exceptions=True)
         gate.set()
         assert (stopped.status_code, early) == (204, [])
-        assert all(isinstance(one, bridge_module.RuntimeSilent) and one.waited for one in outcomes)
+        assert all(isinstance(one, bridge_module.RuntimeSilentError) and one.waited for one in outcomes)
 
     play(settings, scenario)
 

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from robot_runtime.commands import Commands
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.cameras import needs_camera
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Arm, Event, Line, Mark
@@ -178,7 +178,7 @@ class _RunLoop:
         now = self._stage.clock.now()
         try:
             self._do(event, now)
-        except (Refused, ValueError) as problem:
+        except (RefusedError, ValueError) as problem:
             self._refuse(event, str(problem))
         else:
             if not isinstance(event, Arm):

@@ -22,7 +22,7 @@ from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.scene_picture import Picture, Request, read_request, write_picture
 from robot_runtime.contract.topics import BY_NAME, Block, read_blocks, read_rows, row
-from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Targets
 from robot_runtime.simulation.scene.view import ObserverView
@@ -139,12 +139,15 @@ class SceneProcess:
         try:
             return write_picture(future.result(ANSWER_TIMEOUT))
         except TimeoutError:
-            raise Refused(f"the scene takes longer than {ANSWER_TIMEOUT:g} s for a picture") from None
+            raise RefusedError(f"the scene takes longer than {ANSWER_TIMEOUT:g} s for a picture") from None
 
     def _render(self, request: Request) -> Picture:
-        """The picture of the newest truth. Raises Refused where there is none, or nothing to render with."""
+        """The picture of the newest truth.
+
+        Raises RefusedError where there is none, or nothing to render with.
+        """
         if self._truth is None:
-            raise Refused("the simulator has not told yet where the robot is")
+            raise RefusedError("the simulator has not told yet where the robot is")
         time, truth = self._truth
         self._card = request.card
         pixels = self._ready_scene().render_camera(
@@ -164,7 +167,7 @@ class SceneProcess:
             period = OBSERVER_PERIOD
             try:
                 self._publish_observer(*self._truth)
-            except Refused as problem:
+            except RefusedError as problem:
                 log.warning("a bystander sees nothing: %s", problem)
         done = self._clock.now()
         # Where a picture takes long, no more than half of the time goes into those of the bystander's.
@@ -183,10 +186,10 @@ class SceneProcess:
         self._messages.publish("observer", block.data)
 
     def _ready_scene(self) -> "SceneRenderer":
-        """The scene with everything in it. Raises Refused where nothing can be rendered."""
+        """The scene with everything in it. Raises RefusedError where nothing can be rendered."""
         self._ask_surroundings()
         if self._problem is not None:
-            raise Refused(self._problem)
+            raise RefusedError(self._problem)
         with self._lock:
             contents = self._contents
         if self._scene is None:
@@ -208,7 +211,7 @@ class SceneProcess:
                 f"OpenGL does not start ({problem}); "
                 "“sudo apt install libegl1 libegl-mesa0 libgl1-mesa-dri” adds what renders on a CPU"
             )
-            raise Refused(self._problem) from problem
+            raise RefusedError(self._problem) from problem
 
     def _ask_surroundings(self) -> None:
         """Floor, walls and beacons are the simulator's; without an answer they stay as they are."""
@@ -221,7 +224,7 @@ class SceneProcess:
             basin = parse(Basin, answer["world"])
             beacons = tuple((north, east, down) for north, east, down in answer["beacons"]["positions"])
             check_beacons(beacons)
-        except (NoAnswer, Refused):
+        except (NoAnswerError, RefusedError):
             return
         except (ConfigError, KeyError, TypeError, ValueError) as problem:
             log.warning("the simulator's surroundings are not understood: %s", problem)

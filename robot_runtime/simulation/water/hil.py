@@ -16,7 +16,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import read_blocks, read_rows
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.sensors import Reading
@@ -140,7 +140,7 @@ def _sense(reading: Reading) -> Sense:
 def _no_bus_errors(change: Any) -> Any:
     def fault(question: Mapping[str, Any]) -> None:
         if question.get("kind") == "bus":
-            raise Refused(
+            raise RefusedError(
                 "a board in the loop has no buses to its sensors; choose another fault, or the emulated board"
             )
         change(question)

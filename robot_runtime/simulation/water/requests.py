@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any, cast
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.faults import Kind, SimulatedFault
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.simulator import Simulator
@@ -15,7 +15,7 @@ Change = Callable[[Question], Question | None]
 
 
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """What each question does. They raise Refused or ValueError, in words, and change nothing then.
+    """What each question does. They raise RefusedError or ValueError, in words, and change nothing then.
 
     `surroundings` changes nothing and is answered with the questions that would make everything as it is.
     """
@@ -73,7 +73,7 @@ def _expect(question: Question, names: Sequence[str] = (), more: Sequence[str] =
         takes = ", ".join(sorted(names)) or "nothing"
         if more:
             takes += f" and perhaps {', '.join(sorted(more))}"
-        raise Refused(f"this command takes {takes}, not {', '.join(sorted(given)) or 'nothing'}")
+        raise RefusedError(f"this command takes {takes}, not {', '.join(sorted(given)) or 'nothing'}")
 
 
 def _numbers(question: Question) -> dict[str, float]:
@@ -82,17 +82,17 @@ def _numbers(question: Question) -> dict[str, float]:
 
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise Refused(f"{name} must be a number, not {value!r}")
+        raise RefusedError(f"{name} must be a number, not {value!r}")
     try:
         return float(value)
     except OverflowError:
-        raise Refused(f"{name} is a number of {len(str(value))} digits; take a smaller one") from None
+        raise RefusedError(f"{name} is a number of {len(str(value))} digits; take a smaller one") from None
 
 
 def _whole(question: Question, name: str) -> int | None:
     value = question.get(name)
     if value is not None and type(value) is not int:
-        raise Refused(f"{name} must be a whole number, not {value!r}")
+        raise RefusedError(f"{name} must be a whole number, not {value!r}")
     return value
 
 
@@ -103,18 +103,18 @@ def _given(setting: Basin | Current | Waves | Trim | SimulatedFault) -> dict[str
 def _text(question: Question, name: str) -> str:
     value = question[name]
     if not isinstance(value, str):
-        raise Refused(f"{name} must be a text, not {value!r}")
+        raise RefusedError(f"{name} must be a text, not {value!r}")
     return value
 
 
 def _positions(value: object) -> tuple[Vector, ...]:
     if not isinstance(value, list):
-        raise Refused(f"positions must be a list of [north, east, down] in m, not {value!r}")
+        raise RefusedError(f"positions must be a list of [north, east, down] in m, not {value!r}")
     return tuple(_position(position) for position in value)
 
 
 def _position(value: object) -> Vector:
     if not isinstance(value, list) or len(value) != 3:
-        raise Refused(f"a position must be [north, east, down] in m, not {value!r}")
+        raise RefusedError(f"a position must be [north, east, down] in m, not {value!r}")
     north, east, down = (_number("each part of a position", part) for part in value)
     return north, east, down

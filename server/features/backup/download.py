@@ -14,7 +14,7 @@ from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 from robot_runtime.durable_files import PART, make_folder
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.platform.database_copies import copy_database, place
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.settings import DataFolder
@@ -24,7 +24,7 @@ STALLED_SECONDS = 60.0
 """For which a piece may wait for whoever downloads; then the download is broken off."""
 
 
-class CopyFailed(Exception):  # noqa: N818 - it says what happened
+class DatabaseCopyError(Exception):
     """There is no copy; the text says why, for a person."""
 
 
@@ -42,9 +42,9 @@ class Downloads:
             path.unlink(missing_ok=True)
 
     async def begin(self, request: Request) -> Response:
-        """An answer that sends the database as it is now. Raises Refused, CopyFailed."""
+        """An answer that sends the database as it is now. Raises RefusedError, DatabaseCopyError."""
         if self._busy:
-            raise Refused("A backup is being copied or downloaded already. Wait until it is done.")
+            raise RefusedError("A backup is being copied or downloaded already. Wait until it is done.")
         self._busy = True
         try:
             file = await asyncio.to_thread(self._copy)
@@ -62,7 +62,7 @@ class Downloads:
             make_folder(self._path.parent)
             free, size = shutil.disk_usage(self._path.parent).free, database.stat().st_size
             if free < size + DIVE_BYTES:
-                raise CopyFailed(
+                raise DatabaseCopyError(
                     f"There is no room for a copy: {free / 1e6:.0f} MB are free, and the database has "
                     f"{size / 1e6:.0f} MB. Remove sessions or exports; or copy it to another disk, with "
                     "`mucat backup FILE` on the robot's computer."
@@ -71,7 +71,9 @@ class Downloads:
             file = self._path.open("rb")
             self._path.unlink()
         except (OSError, sqlite3.Error) as problem:
-            raise CopyFailed(f"The database cannot be copied: {problem}. Look at the disk.") from problem
+            raise DatabaseCopyError(
+                f"The database cannot be copied: {problem}. Look at the disk."
+            ) from problem
         return file
 
 

@@ -13,14 +13,14 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 from robot_runtime.durable_files import sync, write_whole
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server.health.monitor import Watch
 from server.platform.settings import Settings
 from server.processes.logs import PartLog
 from server.processes.process import Process
 from server.processes.supervisor import Parts, Tell
-from server.stream.bridge import Bridge, RuntimeSilent
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 DISARM_SECONDS = 3.0
 """The runtime says its state at every change, and every second."""
@@ -57,13 +57,13 @@ class Board:
     async def lend(self, name: str) -> AsyncIterator[list[str]]:
         """While entered the board is the test's of this name; the value are the lab's arguments for it.
 
-        Raises Refused where the disk does not take the note that the firmware is away.
+        Raises RefusedError where the disk does not take the note that the firmware is away.
         """
         note = self._settings.data.firmware_away
         try:
             await asyncio.to_thread(_mark, note, name)
         except OSError as problem:
-            raise Refused(
+            raise RefusedError(
                 f"{note} cannot be written: {problem.strerror}. Without it nobody would bring the robot's "
                 "firmware back after a power cut. Free some space, or check the disk."
             ) from problem
@@ -140,11 +140,11 @@ class Handover:
     async def lend(self, name: str) -> AsyncIterator[list[str]]:
         """As `Board.lend`, but the robot is disarmed and its runtime ends before, and comes back afterwards.
 
-        Raises Refused where that is not possible.
+        Raises RefusedError where that is not possible.
         """
         reason = self._bridge.lent or self._occupied()
         if reason:
-            raise Refused(reason)
+            raise RefusedError(reason)
         why = (
             f"The robot's board is lent to the communication test “{name}”. To have it back, cancel the test."
         )
@@ -152,7 +152,7 @@ class Handover:
             await self._disarm()
             # A session may have been about to start when the board was asked for.
             if reason := self._occupied():
-                raise Refused(reason)
+                raise RefusedError(reason)
             async with self._without_runtime(why), self._board.lend(name) as arguments:
                 yield arguments
 
@@ -190,13 +190,13 @@ class Handover:
         asked = self._clock.now()
         try:
             await self._bridge.command("stop", {})
-        except RuntimeSilent as problem:
+        except RuntimeSilentError as problem:
             if not problem.waited:
                 return  # no runtime: a board that hears nothing disarms by itself within a second
-            raise Refused(f"The robot could not be disarmed before the test. {problem}") from problem
+            raise RefusedError(f"The robot could not be disarmed before the test. {problem}") from problem
         while self._may_be_armed(asked):
             if self._clock.now() - asked > DISARM_SECONDS:
-                raise Refused(
+                raise RefusedError(
                     f"The robot was not disarmed within {DISARM_SECONDS:g} s, so its board cannot run a "
                     "communication test. Look at the System page, and try again."
                 )

@@ -18,7 +18,7 @@ from signal import SIGKILL, SIGTERM
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, read_document
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests.runs import End, Runs
@@ -45,7 +45,7 @@ class LabError(Exception):
 Tell = Callable[[dict[str, Any]], None]
 Lend = Callable[[str], AbstractAsyncContextManager[list[str]]]
 """Called with the test's name; while it is entered the robot's board is the lab's, and its value are the
-lab's arguments for it. Raises Refused where the board cannot be had."""
+lab's arguments for it. Raises RefusedError where the board cannot be had."""
 
 
 @dataclass(slots=True)
@@ -101,11 +101,11 @@ class Lab:
     async def start(self, text: str, place: Place) -> int:
         """Run a document; returns the number of its first run as soon as that has begun.
 
-        Raises DocumentError, Refused where it cannot be run now, StoreError.
+        Raises DocumentError, RefusedError where it cannot be run now, StoreError.
         """
         tests = read_limited(text)
         if self.busy:
-            raise Refused("A communication test is running. Wait for its end, or cancel it.")
+            raise RefusedError("A communication test is running. Wait for its end, or cancel it.")
         began: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._cancelled = False
         self._task = asyncio.create_task(self._run(tests, text, place, began))
@@ -138,19 +138,21 @@ class Lab:
                     await self._perform(progress, text, arguments, began)
             else:
                 await self._perform(progress, text, [], began)
-        except (Refused, StoreError, LabError, OSError) as problem:
+        except (RefusedError, StoreError, LabError, OSError) as problem:
             log.warning("the communication test ended: %s", problem)
             if progress.run is not None:
                 # Where even that cannot be stored, the next start marks it as interrupted.
                 with suppress(StoreError):
                     await self.runs.end(progress.run, "failed", str(problem))
             if not began.done():
-                told = problem if isinstance(problem, Refused | StoreError) else Refused(str(problem))
+                told = (
+                    problem if isinstance(problem, RefusedError | StoreError) else RefusedError(str(problem))
+                )
                 began.set_exception(told)
         finally:
             self._tell({"op": "comm_test", "active": None, "cell": None})
             if not began.done():
-                began.set_exception(Refused("The communication test ended before it began."))
+                began.set_exception(RefusedError("The communication test ended before it began."))
 
     async def _perform(
         self, progress: Progress, text: str, arguments: list[str], began: asyncio.Future[int]
@@ -168,7 +170,7 @@ class Lab:
             document.write(text.encode())
             document.seek(0)
             if self._cancelled:
-                raise Refused("The communication test was cancelled before it began.")
+                raise RefusedError("The communication test was cancelled before it began.")
             self._process = PipedProcess(command, output.feed, document)
         ending = asyncio.create_task(self._wait_for(self._process, output))
         try:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.document import CommTest
 from server.features.comm_tests import tables
 from server.features.comm_tests.board_reservation import Board
@@ -38,7 +38,7 @@ async def _perform(text: str, tests: list[CommTest], place: Place, settings: Set
         loop.add_signal_handler(number, lab.cancel)
     try:
         first = await lab.start(text, place)
-    except Refused as problem:
+    except RefusedError as problem:
         raise SetupError(str(problem)) from problem
     await lab.wait()
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.transport.lifetime import end_with_parent
-from server.features.exports.archive_reader import ArchiveRefused, examine
-from server.features.exports.files import FileFailed, write_part
+from server.features.exports.archive_reader import ArchiveError, examine
+from server.features.exports.files import FileWriteError, write_part
 from server.features.exports.formats import check
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.sessions.recording import RecordingError
 from server.features.sessions.session import find_row
 from server.platform.store import Reader, StoreError
@@ -49,7 +49,7 @@ def main() -> int:
         else:
             examine(options.path, _Progress().tell)
             _tell({"examined": True})
-    except (ExportRefused, ArchiveRefused, FileFailed, RecordingError) as problem:
+    except (ExportRequestError, ArchiveError, FileWriteError, RecordingError) as problem:
         _tell({"problem": str(problem)})
         return 1
     except StoreError as problem:
@@ -62,7 +62,7 @@ def _write(database: Path, session: int, wanted: Wanted, path: Path) -> None:
     store = Reader(database)
     row = find_row(store, session)
     if row is None:
-        raise ExportRefused(f"There is no session {session} any more.")
+        raise ExportRequestError(f"There is no session {session} any more.")
     source = Source(store, row, wanted, _Progress().tell)
     written = write_part(path, lambda output: check(wanted).write(store, source, output))
     _tell(written._asdict())

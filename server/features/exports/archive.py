@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 
 from sqlmodel import SQLModel, col, select
 
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.zip_stream import Packing
 from server.platform.models import Gap, Marker, SessionTag
 from server.platform.store import Reader
@@ -27,9 +27,11 @@ SESSION, CHECKSUMS, CHUNKS = "session.json", "checksums.json", "chunks/"
 
 
 def write_archive(store: Reader, source: Source, output: BinaryIO) -> None:
-    """The archive of a whole session. Raises ExportRefused while it is being recorded, StoreError."""
+    """The archive of a whole session. Raises ExportRequestError while it is being recorded, StoreError."""
     if source.row.state == "recording":
-        raise ExportRefused("The session is still being recorded. Stop the recording, then make the archive.")
+        raise ExportRequestError(
+            "The session is still being recorded. Stop the recording, then make the archive."
+        )
     members = _Members(output)
     with members.member(SESSION) as write:
         write(json.dumps(_describe(store, source), indent=1, ensure_ascii=False).encode())

@@ -45,7 +45,7 @@ Count = Annotated[int, Field(ge=0, lt=1 << 62)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
-class ArchiveRefused(Exception):  # noqa: N818 - it says what happened
+class ArchiveError(Exception):
     """This is no archive that can be imported; the text says what is wrong with it."""
 
 
@@ -158,9 +158,7 @@ class Archive:
         self.topics = [name.removeprefix(CHUNKS) for name in self._names if name.startswith(CHUNKS)]
         strange = [name for name in self.topics if name not in self.content.session.topics]
         if strange:
-            raise ArchiveRefused(
-                f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know."
-            )
+            raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
 
     @property
     def described_topics(self) -> dict[str, Any]:
@@ -173,27 +171,27 @@ class Archive:
         with self._zipped.open(CHUNKS + topic) as file:
             while head := file.read(HEAD.size):
                 if len(head) < HEAD.size:
-                    raise ArchiveRefused(f"The chunks of {topic} are cut off after number {number}.")
+                    raise ArchiveError(f"The chunks of {topic} are cut off after number {number}.")
                 chunk_number, first_time, last_time, first, count, size, encoding = HEAD.unpack(head)
                 if size > CHUNK_BYTES_MAX or count == 0:
-                    raise ArchiveRefused(
+                    raise ArchiveError(
                         f"A chunk of {topic} says that it has {count} samples in {size} bytes."
                     )
                 if chunk_number <= number:
-                    raise ArchiveRefused(f"Chunk {chunk_number} of {topic} comes after number {number}.")
+                    raise ArchiveError(f"Chunk {chunk_number} of {topic} comes after number {number}.")
                 if not (isfinite(first_time) and isfinite(last_time)) or first < 0:
-                    raise ArchiveRefused(
+                    raise ArchiveError(
                         f"Chunk {chunk_number} of {topic} has a time or a number that is none."
                     )
                 number = chunk_number
                 data = file.read(size)
                 if len(data) < size:
-                    raise ArchiveRefused(f"Chunk {number} of {topic} is cut off.")
+                    raise ArchiveError(f"Chunk {number} of {topic} is cut off.")
                 name = encoding.rstrip(b"\0").decode("ascii", "replace")
                 yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
 
     def verify(self, tell: Callable[[float], None]) -> None:
-        """Look at everything: checksums, and every chunk's samples. Raises ArchiveRefused."""
+        """Look at everything: checksums, and every chunk's samples. Raises ArchiveError."""
         total = sum(info.file_size for info in self._zipped.infolist())
         done = 0
         for name in self._names:
@@ -204,9 +202,7 @@ class Archive:
                     done += len(piece)
                     tell(0.5 * done / total)
             if self.sums.get(name) != checksum.hexdigest():
-                raise ArchiveRefused(
-                    f"{name} is damaged: its checksum is not the one that {CHECKSUMS} tells."
-                )
+                raise ArchiveError(f"{name} is damaged: its checksum is not the one that {CHECKSUMS} tells.")
         for place, topic in enumerate(self.topics):
             for chunk in self.chunks(topic):
                 self._decode(chunk)
@@ -217,46 +213,44 @@ class Archive:
         names = [info.filename for info in infos]
         strange = [name for name in names if not MEMBER.fullmatch(name)]
         if strange:
-            raise ArchiveRefused(f"It holds {strange[0][:100]!r}, which no archive of a session does.")
+            raise ArchiveError(f"It holds {strange[0][:100]!r}, which no archive of a session does.")
         if len(set(names)) < len(names):
-            raise ArchiveRefused("It holds two members of the same name.")
+            raise ArchiveError("It holds two members of the same name.")
         if SESSION not in names or CHECKSUMS not in names:
-            raise ArchiveRefused(
-                f"It holds no {SESSION} or no {CHECKSUMS}, so it is no archive of a session."
-            )
+            raise ArchiveError(f"It holds no {SESSION} or no {CHECKSUMS}, so it is no archive of a session.")
         if any(info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1 for info in infos):
-            raise ArchiveRefused(
+            raise ArchiveError(
                 "Its members are packed or encrypted; those of an archive are stored as they are."
             )
         if sum(info.file_size for info in infos) > size:
-            raise ArchiveRefused("Its members are together larger than the file, which cannot be.")
+            raise ArchiveError("Its members are together larger than the file, which cannot be.")
         return [name for name in names if name != CHECKSUMS]
 
     def _read_json(self, name: str) -> Any:
         with self._zipped.open(name) as file:
             text = file.read(SESSION_BYTES_MAX + 1)
         if len(text) > SESSION_BYTES_MAX:
-            raise ArchiveRefused(f"{name} is longer than {SESSION_BYTES_MAX} bytes.")
+            raise ArchiveError(f"{name} is longer than {SESSION_BYTES_MAX} bytes.")
         try:
             return json.loads(text)
         except (ValueError, RecursionError) as problem:
-            raise ArchiveRefused(f"{name} is not JSON: {problem}") from problem
+            raise ArchiveError(f"{name} is not JSON: {problem}") from problem
 
     def _checksums(self) -> dict[str, str]:
         sums = self._read_json(CHECKSUMS)
         if not isinstance(sums, dict):
-            raise ArchiveRefused(f"{CHECKSUMS} is not an object.")
+            raise ArchiveError(f"{CHECKSUMS} is not an object.")
         return sums
 
     def _session(self) -> tuple[Archived, dict[str, Any]]:
         told = self._read_json(SESSION)
         if not isinstance(told, dict) or told.get("format") != FORMAT:
-            raise ArchiveRefused(
+            raise ArchiveError(
                 f"Its {SESSION} does not say that it is an archive; export the format archive."
             )
         version = told.get("version")
         if version != VERSION:
-            raise ArchiveRefused(
+            raise ArchiveError(
                 f"It is of format {version!r}, and this version of µ-CAT reads format {VERSION}. "
                 "Install the version of µ-CAT that wrote it, or a newer one."
             )
@@ -265,14 +259,14 @@ class Archive:
         except ValidationError as problem:
             first = problem.errors()[0]
             where = ".".join(str(place) for place in first["loc"])
-            raise ArchiveRefused(f"Its {SESSION} is not valid: {where}: {first['msg']}") from problem
+            raise ArchiveError(f"Its {SESSION} is not valid: {where}: {first['msg']}") from problem
 
     def _decode(self, chunk: ArchivedChunk) -> None:
         topic = self.content.session.topics[chunk.topic]
         where = f"Chunk {chunk.number} of {chunk.topic}"
         expected = ENCODINGS[topic.kind]
         if chunk.encoding != expected:
-            raise ArchiveRefused(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
+            raise ArchiveError(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
         if topic.kind == "picture":
             _look_at_pictures(chunk, where)
             return
@@ -280,45 +274,45 @@ class Archive:
         data = _unpack(chunk.data, limit, where)
         if topic.kind == "rows":
             if len(data) != limit:
-                raise ArchiveRefused(f"{where} has {len(data)} bytes, which are not {chunk.samples} samples.")
+                raise ArchiveError(f"{where} has {len(data)} bytes, which are not {chunk.samples} samples.")
             return
         try:
             documents = [json.loads(line) for line in data.splitlines()]
             times = [float(document["time"]) for document in documents]
         except (ValueError, TypeError, KeyError, RecursionError) as problem:
-            raise ArchiveRefused(f"{where} does not hold documents with a time: {problem}") from problem
+            raise ArchiveError(f"{where} does not hold documents with a time: {problem}") from problem
         if len(times) != chunk.samples or not all(map(isfinite, times)):
-            raise ArchiveRefused(f"{where} does not hold {chunk.samples} documents with a time.")
+            raise ArchiveError(f"{where} does not hold {chunk.samples} documents with a time.")
 
 
 def examine(path: Path, tell: Callable[[float], None] = lambda _: None) -> None:
-    """Look at a whole archive. Raises ArchiveRefused."""
+    """Look at a whole archive. Raises ArchiveError."""
     with open_archive(path) as archive:
         archive.verify(tell)
 
 
 @contextmanager
 def open_archive(path: Path) -> Iterator[Archive]:
-    """An archive to read from. Raises ArchiveRefused, also on what shows only while it is read."""
+    """An archive to read from. Raises ArchiveError, also on what shows only while it is read."""
     try:
         file: IO[bytes]
         with path.open("rb") as file, zipfile.ZipFile(file) as zipped:
             yield Archive(zipped, path.stat().st_size)
     except zipfile.BadZipFile as problem:
-        raise ArchiveRefused(
+        raise ArchiveError(
             f"It is no zip file, cut off or damaged ({problem}). Fetch it again, and compare its checksum."
         ) from problem
     except (NotImplementedError, EOFError, OSError, UnicodeError) as problem:
-        raise ArchiveRefused(f"It cannot be read: {problem}") from problem
+        raise ArchiveError(f"It cannot be read: {problem}") from problem
 
 
 def _look_at_pictures(chunk: ArchivedChunk, where: str) -> None:
     try:
         times = [time for time, _ in decode_pictures(chunk.data)]
     except ValueError as problem:
-        raise ArchiveRefused(f"{where} is damaged: {problem}") from problem
+        raise ArchiveError(f"{where} is damaged: {problem}") from problem
     if len(times) != chunk.samples or not all(map(isfinite, times)):
-        raise ArchiveRefused(f"{where} does not hold {chunk.samples} pictures with a time.")
+        raise ArchiveError(f"{where} does not hold {chunk.samples} pictures with a time.")
 
 
 def _unpack(data: bytes, limit: int, where: str) -> bytes:
@@ -326,7 +320,7 @@ def _unpack(data: bytes, limit: int, where: str) -> bytes:
     try:
         unpacked = unpacker.decompress(data, min(limit, len(data) * UNPACKED_RATIO_MAX) + 1)
     except zlib.error as problem:
-        raise ArchiveRefused(f"{where} is damaged: {problem}") from problem
+        raise ArchiveError(f"{where} is damaged: {problem}") from problem
     if len(unpacked) > limit or not unpacker.eof or unpacker.unused_data:
-        raise ArchiveRefused(f"{where} does not unpack to what it says that it holds.")
+        raise ArchiveError(f"{where} does not unpack to what it says that it holds.")
     return unpacked

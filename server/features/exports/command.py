@@ -32,10 +32,10 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
 
     from robot_runtime.durable_files import PART
     from server.features.exports.description import file_name
-    from server.features.exports.files import FileFailed, put_in_place, write_part
+    from server.features.exports.files import FileWriteError, put_in_place, write_part
     from server.features.exports.formats import check
     from server.features.exports.schemas import Wanted
-    from server.features.exports.selection import ExportRefused, Source
+    from server.features.exports.selection import ExportRequestError, Source
     from server.features.sessions.recording import RecordingError
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_reader
@@ -56,7 +56,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
             put_in_place(part, path)
     except ValidationError as problem:
         raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
-    except (ExportRefused, FileFailed, RecordingError) as problem:
+    except (ExportRequestError, FileWriteError, RecordingError) as problem:
         raise SetupError(str(problem)) from problem
     click.echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
@@ -81,9 +81,9 @@ def import_session(settings: Settings, file: Path) -> None:
 
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
-    from robot_runtime.errors import Refused
-    from server.features.exports.archive_reader import ArchiveRefused
-    from server.features.exports.files import FileFailed
+    from robot_runtime.errors import RefusedError
+    from server.features.exports.archive_reader import ArchiveError
+    from server.features.exports.files import FileWriteError
     from server.features.exports.imports import Imports
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_writer
@@ -98,7 +98,7 @@ def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
             row = find_row(store, number)
             assert row is not None
             return number, row.name
-    except (ArchiveRefused, Refused, FileFailed) as problem:
+    except (ArchiveError, RefusedError, FileWriteError) as problem:
         raise SetupError(str(problem)) from problem
 
 

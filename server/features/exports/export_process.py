@@ -12,7 +12,7 @@ WORDS_BYTES = 2_000
 """Of what is no JSON the end is kept: the last words of a process that fails."""
 
 
-class ChildFailed(Exception):  # noqa: N818 - it says what happened
+class ExportProcessError(Exception):
     """The work could not be done; the text says why."""
 
 
@@ -29,25 +29,25 @@ class Child:
         self._last: dict[str, Any] = {}
 
     async def run(self) -> dict[str, Any]:
-        """What it told last. Raises ChildFailed, with its own words where it had any."""
+        """What it told last. Raises ExportProcessError, with its own words where it had any."""
         try:
             self._process = PipedProcess(
                 [sys.executable, "-m", "server.features.exports", *self._arguments], self._hear
             )
         except OSError as problem:
-            raise ChildFailed(f"A process for it cannot be started: {problem.strerror}.") from problem
+            raise ExportProcessError(f"A process for it cannot be started: {problem.strerror}.") from problem
         try:
             status = await self._process.wait()
         finally:
             self._process.close()
         if self._cancelled:
-            raise ChildFailed("It was cancelled.")
+            raise ExportProcessError("It was cancelled.")
         if "problem" in self._last:
-            raise ChildFailed(str(self._last["problem"]))
+            raise ExportProcessError(str(self._last["problem"]))
         if status != 0:
             words = self._words.decode(errors="replace").strip()
             said = f" Its last words: {words.splitlines()[-1]}" if words else ""
-            raise ChildFailed(f"The process for it {describe_status(status)}.{said}")
+            raise ExportProcessError(f"The process for it {describe_status(status)}.{said}")
         return self._last
 
     def cancel(self) -> None:

@@ -19,14 +19,14 @@ class Written(NamedTuple):
     sha256: str
 
 
-class FileFailed(Exception):  # noqa: N818 - it says what happened
+class FileWriteError(Exception):
     """The file cannot be written; the text says why, and what to do."""
 
 
 def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
     """Write a file and have it on the disk. Where anything fails it is gone again.
 
-    Raises FileFailed, and whatever `write` does.
+    Raises FileWriteError, and whatever `write` does.
     """
     try:
         with path.open("wb", buffering=BUFFER_BYTES) as file:
@@ -36,7 +36,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
             os.fsync(file.fileno())
     except OSError as problem:
         path.unlink(missing_ok=True)
-        raise FileFailed(explain(problem, path)) from problem
+        raise FileWriteError(explain(problem, path)) from problem
     except BaseException:
         path.unlink(missing_ok=True)
         raise
@@ -44,11 +44,11 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
 
 
 def put_in_place(part: Path, path: Path) -> None:
-    """Give a finished file its name, for good. Raises FileFailed."""
+    """Give a finished file its name, for good. Raises FileWriteError."""
     try:
         durable_files.put_in_place(part, path)
     except OSError as problem:
-        raise FileFailed(explain(problem, path)) from problem
+        raise FileWriteError(explain(problem, path)) from problem
 
 
 def explain(problem: OSError, path: Path) -> str:

@@ -10,7 +10,7 @@ from server.features.exports.mcap_file import check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.report import write_session_report
 from server.features.exports.schemas import Format, Wanted
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.tables import write_tables
 from server.platform.store import Reader
 
@@ -24,7 +24,7 @@ class Kind(NamedTuple):
     ending: str
     media_type: str
     check: Callable[[], None] = lambda: None
-    """Raises ExportRefused where it cannot be written here."""
+    """Raises ExportRequestError where it cannot be written here."""
 
 
 ZIP = "application/zip"
@@ -42,14 +42,14 @@ WHOLE_ONLY = ("archive", "report")
 
 
 def check(wanted: Wanted) -> Kind:
-    """The format of what is wanted. Raises ExportRefused where choices do not go together."""
+    """The format of what is wanted. Raises ExportRequestError where choices do not go together."""
     if wanted.columns is not None and wanted.format != "csv-grid":
-        raise ExportRefused("Columns are chosen for csv-grid alone; the other formats take topics.")
+        raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")
     if wanted.topics is not None and wanted.format in ("csv-grid", *WHOLE_ONLY):
         choose = "columns" if wanted.format == "csv-grid" else "nothing: it holds the whole session"
-        raise ExportRefused(f"For {wanted.format} choose {choose}, not topics.")
+        raise ExportRequestError(f"For {wanted.format} choose {choose}, not topics.")
     if wanted.format in WHOLE_ONLY and (wanted.start is not None or wanted.end is not None):
-        raise ExportRefused(f"The {wanted.format} holds the whole session; leave start and end out.")
+        raise ExportRequestError(f"The {wanted.format} holds the whole session; leave start and end out.")
     kind = KINDS[wanted.format]
     kind.check()
     return kind

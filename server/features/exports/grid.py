@@ -6,7 +6,7 @@ from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.tables import csv_text
 from server.features.exports.zip_stream import Packing
 from server.features.sessions.chunks import row_layout
@@ -37,14 +37,14 @@ session.json holds everything else about the session.
 def write_grid(store: Reader, source: Source, output: BinaryIO) -> None:
     """A zip file of `grid.csv`, `README.txt` and `session.json`.
 
-    Raises ExportRefused on columns that are not there or too many lines, StoreError, RecordingError.
+    Raises ExportRequestError on columns that are not there or too many lines, StoreError, RecordingError.
     """
     chosen = _choose(source)
     period = source.wanted.period
     first, last = _range(source)
     count = floor((last - first) / period + 1e-9) + 1
     if count > LINES_MAX:
-        raise ExportRefused(
+        raise ExportRequestError(
             f"This would be {count} lines; the most are {LINES_MAX}. Choose a longer period or shorter range."
         )
     limits = {topic: GAPS * _usual_gap(source, topic) for topic in chosen}
@@ -73,16 +73,16 @@ def _choose(source: Source) -> dict[str, dict[str, str]]:
     }
     if source.wanted.columns is None:
         if not there:
-            raise ExportRefused("No topic has numbers in this range; there is no table to make.")
+            raise ExportRequestError("No topic has numbers in this range; there is no table to make.")
         return there
     chosen: dict[str, dict[str, str]] = {}
     for wanted in source.wanted.columns:
         topic, _, column = wanted.partition(".")
         if topic in source.topics and topic not in there:
-            raise ExportRefused(f"{topic} has no numbers in this range; leave {wanted} out.")
+            raise ExportRequestError(f"{topic} has no numbers in this range; leave {wanted} out.")
         if column not in there.get(topic, {}):
             known = ", ".join(f"{topic}.{one}" for one in there.get(topic, {})) or ", ".join(there)
-            raise ExportRefused(f"There is no column {wanted}; there are {known}.")
+            raise ExportRequestError(f"There is no column {wanted}; there are {known}.")
         chosen.setdefault(topic, {})[column] = there[topic][column]
     return chosen
 
@@ -93,7 +93,7 @@ def _range(source: Source) -> tuple[float, float]:
     first = 0.0 if wanted.start is None else wanted.start
     last = source.row.duration if wanted.end is None else wanted.end
     if last < first:
-        raise ExportRefused("The range lies outside of the session. Choose another.")
+        raise ExportRequestError("The range lies outside of the session. Choose another.")
     return first, last
 
 

@@ -18,10 +18,10 @@ from sqlalchemy import Connection, Update, insert, update
 from sqlmodel import SQLModel, col, select
 
 from robot_runtime.durable_files import PART
-from robot_runtime.errors import Refused
-from server.features.exports.archive_reader import Archive, ArchiveRefused, open_archive
-from server.features.exports.export_process import Child, ChildFailed
-from server.features.exports.files import FileFailed, explain
+from robot_runtime.errors import RefusedError
+from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
+from server.features.exports.export_process import Child, ExportProcessError
+from server.features.exports.files import FileWriteError, explain
 from server.features.sessions.session import IMPORTING, REMOVING
 from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.platform.settings import DataFolder
@@ -59,10 +59,11 @@ class Imports:
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
         """Import the archive that comes in pieces, of `size` bytes where that is known: its new number.
 
-        Raises Refused where that cannot be now, ArchiveRefused, FileFailed where the disk fails, StoreError.
+        Raises RefusedError where that cannot be now, ArchiveError, FileWriteError where the disk fails,
+        StoreError.
         """
         if self._busy.locked():
-            raise Refused("Another archive is being imported. Wait for its end.")
+            raise RefusedError("Another archive is being imported. Wait for its end.")
         async with self._busy:
             self._check_room(COPIES * (size or 0))
             path = self._folder / (token_hex(8) + PART)
@@ -81,7 +82,7 @@ class Imports:
     def _check_room(self, size: int) -> None:
         free = shutil.disk_usage(self._data).free
         if free < size + SPARE_BYTES:
-            raise FileFailed(
+            raise FileWriteError(
                 f"The disk that holds {self._data} has {free / 1e6:.0f} MB free; this needs "
                 f"{(size + SPARE_BYTES) / 1e6:.0f} MB. Free some space, and try again."
             )
@@ -99,13 +100,13 @@ class Imports:
                         self._check_room(file.tell())
                 await asyncio.to_thread(file.write, bytes(waiting))
         except OSError as problem:
-            raise FileFailed(explain(problem, path)) from problem
+            raise FileWriteError(explain(problem, path)) from problem
 
     async def _take(self, path: Path) -> int:
         try:
             await Child(["examine", str(path)], lambda _: None).run()
-        except ChildFailed as problem:
-            raise ArchiveRefused(f"The archive cannot be imported. {problem}") from problem
+        except ExportProcessError as problem:
+            raise ArchiveError(f"The archive cannot be imported. {problem}") from problem
         with open_archive(path) as archive:
             self._refuse_known(archive)
             values = _session_values(archive)
@@ -124,9 +125,9 @@ class Imports:
         if row is None:
             return
         if row.state == REMOVING:
-            raise Refused("This session was here and is being removed. Try again in a few minutes.")
+            raise RefusedError("This session was here and is being removed. Try again in a few minutes.")
         binned = " It is in the bin; restore it there." if row.deleted is not None else ""
-        raise Refused(f"This session is here already, as number {row.id}: “{row.name}”.{binned}")
+        raise RefusedError(f"This session is here already, as number {row.id}: “{row.name}”.{binned}")
 
     async def _fill(self, number: int, archive: Archive) -> None:
         content = archive.content

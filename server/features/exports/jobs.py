@@ -14,10 +14,10 @@ from secrets import token_hex
 from pydantic import ValidationError
 
 from robot_runtime.durable_files import PART, make_folder, write_whole
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.exports.description import file_name
-from server.features.exports.export_process import Child, ChildFailed
-from server.features.exports.files import FileFailed, explain, put_in_place
+from server.features.exports.export_process import Child, ExportProcessError
+from server.features.exports.files import FileWriteError, explain, put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import Job, NewExport, Wanted
 from server.features.exports.selection import Source
@@ -71,9 +71,12 @@ class Jobs:
         return self._folder / job.id
 
     def add(self, row: SessionRow, wanted: NewExport) -> Job:
-        """Have a file made. Raises ExportRefused where it cannot be, Refused where too many are kept."""
+        """Have a file made.
+
+        Raises ExportRequestError where it cannot be, RefusedError where too many are kept.
+        """
         if len(self._jobs) >= JOBS_MAX:
-            raise Refused(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
+            raise RefusedError(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
         plain = Wanted.model_validate(wanted.model_dump(exclude={"session"}))
         kind = check(plain)
         source = Source(self._store, row, plain)
@@ -92,13 +95,13 @@ class Jobs:
         return job
 
     def remove(self, job: Job) -> None:
-        """Cancel a job, or delete its file. Raises Refused where that fails."""
+        """Cancel a job, or delete its file. Raises RefusedError where that fails."""
         if self._running is not None and self._running[0] == job.id:
             self._running[1].cancel()
         try:
             self._unlink(job)
         except OSError as problem:
-            raise Refused(f"It cannot be deleted. {explain(problem, self.path(job))}") from problem
+            raise RefusedError(f"It cannot be deleted. {explain(problem, self.path(job))}") from problem
         del self._jobs[job.id]
 
     async def run(self) -> None:
@@ -137,7 +140,7 @@ class Jobs:
                 self._jobs[job] = done
             else:
                 self._unlink(done)
-        except (ChildFailed, FileFailed) as problem:
+        except (ExportProcessError, FileWriteError) as problem:
             self._change(job, state="failed", problem=str(problem))
         finally:
             self._running = None
@@ -148,7 +151,7 @@ class Jobs:
         try:
             write_whole(described, done.model_dump_json().encode())
         except OSError as problem:
-            raise FileFailed(explain(problem, described)) from problem
+            raise FileWriteError(explain(problem, described)) from problem
         put_in_place(part, self.path(done))
 
     def _unlink(self, job: Job) -> None:
@@ -174,7 +177,7 @@ class Jobs:
         ]:
             try:
                 self.remove(job)
-            except Refused as problem:
+            except RefusedError as problem:
                 log.warning("%s", problem)
 
     def _description(self, job: Job) -> Path:

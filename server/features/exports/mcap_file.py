@@ -15,7 +15,7 @@ from sqlmodel import col, select
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, level, stamp
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.values import Rows
 from server.platform.models import Marker
 from server.platform.store import Reader
@@ -37,11 +37,11 @@ said in the log, None where nothing is."""
 
 
 def check_mcap() -> None:
-    """Raises ExportRefused where MCAP cannot be written here."""
+    """Raises ExportRequestError where MCAP cannot be written here."""
     try:
         import mcap.writer  # noqa: F401
     except ImportError as problem:
-        raise ExportRefused(
+        raise ExportRequestError(
             "MCAP needs the package mcap, which is not installed. Install it where µ-CAT is installed, with "
             "`pip install --no-deps mcap`, or choose another format."
         ) from problem
@@ -50,7 +50,7 @@ def check_mcap() -> None:
 def write_mcap(store: Reader, source: Source, output: BinaryIO) -> None:
     """A channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
 
-    Raises ExportRefused, StoreError, RecordingError.
+    Raises ExportRequestError, StoreError, RecordingError.
     """
     check_mcap()
     from mcap.writer import CompressionType, Writer

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.values import Rows
 from server.features.exports.zip_stream import Packing
 from server.platform.store import Reader
@@ -16,11 +16,11 @@ GROUP_ROWS = 50_000
 
 
 def check_parquet() -> None:
-    """Raises ExportRefused where Parquet cannot be written here."""
+    """Raises ExportRequestError where Parquet cannot be written here."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError as problem:
-        raise ExportRefused(
+        raise ExportRequestError(
             "Parquet needs the package pyarrow, which is not installed. Install it where µ-CAT is installed, "
             "with `pip install mucat[parquet]`, or choose another format."
         ) from problem
@@ -30,7 +30,7 @@ def write_parquet(store: Reader, source: Source, output: BinaryIO) -> None:
     """A zip file of `session.json` and a Parquet file for each topic.
 
     Columns are `time` (s since the session's start), `utc` and the fields in SI units; what is no number in
-    documents is text, lists and objects as JSON. Raises ExportRefused, StoreError, RecordingError.
+    documents is text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
     """
     check_parquet()
     packing = Packing(output, packed=False)

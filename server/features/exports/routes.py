@@ -6,14 +6,14 @@ from fastapi import APIRouter, HTTPException, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, StreamingResponse
 
-from server.features.exports.archive_reader import ArchiveRefused
+from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.description import file_name
-from server.features.exports.files import FileFailed
+from server.features.exports.files import FileWriteError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import Job, NewExport, Wanted
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.tables import stream_tables
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import UNKNOWN as UNKNOWN_SESSION
@@ -60,7 +60,7 @@ async def start_export(store: Provided[Store], jobs: Provided[Jobs], wanted: New
         )
     try:
         return jobs.add(row, wanted)
-    except ExportRefused as problem:
+    except ExportRequestError as problem:
         raise HTTPException(422, str(problem)) from problem
 
 
@@ -142,9 +142,9 @@ async def import_session(
     length = request.headers.get("content-length")
     try:
         number = await imports.receive(request.stream(), int(length) if length else None)
-    except ArchiveRefused as problem:
+    except ArchiveError as problem:
         raise HTTPException(422, str(problem)) from problem
-    except FileFailed as problem:
+    except FileWriteError as problem:
         raise HTTPException(507, str(problem)) from problem
     row = await run_in_threadpool(find_row, store, number)
     assert row is not None

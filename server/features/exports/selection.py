@@ -17,14 +17,14 @@ Tell = Callable[[float], None]
 """Called with the share that is done, from 0 to 1."""
 
 
-class ExportRefused(Exception):  # noqa: N818 - it says what happened
+class ExportRequestError(Exception):
     """The session cannot be exported like this; the text says why, and what to do."""
 
 
 class Source(Recording):
     """The chosen part of a session. `start` and `end` are on the session's steady clock (s).
 
-    Raises ExportRefused on a topic that the session does not have, or a range that is none.
+    Raises ExportRequestError on a topic that the session does not have, or a range that is none.
     """
 
     def __init__(self, store: Reader, row: SessionRow, wanted: Wanted, tell: Tell = lambda _: None) -> None:
@@ -33,11 +33,11 @@ class Source(Recording):
         self.start = -inf if wanted.start is None else row.started_steady + wanted.start
         self.end = inf if wanted.end is None else row.started_steady + wanted.end
         if self.start >= self.end:
-            raise ExportRefused("The range ends before it starts. Choose an end after the start.")
+            raise ExportRequestError("The range ends before it starts. Choose an end after the start.")
         there = self.counts(self.start, self.end)
         unknown = [name for name in wanted.topics or () if name not in self.topics]
         if unknown:
-            raise ExportRefused(
+            raise ExportRequestError(
                 f"This session has no topic {', '.join(unknown)}; it has {', '.join(self.topics)}."
             )
         self.names = [

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from sqlalchemy import Connection, delete, func, insert, update
 from sqlmodel import col, select
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
 from server.platform.models import LayoutRow
 from server.platform.store import Store
@@ -18,7 +18,7 @@ from server.platform.store import Store
 LAYOUTS_MOST = 200
 
 
-class UnknownLayout(LookupError):  # noqa: N818 - it says what happened
+class UnknownLayoutError(LookupError):
     """There is no such layout."""
 
 
@@ -50,17 +50,17 @@ class Layouts:
         return [KeptLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
 
     def get(self, layout: int) -> WholeLayout:
-        """One of them. Raises UnknownLayout."""
+        """One of them. Raises UnknownLayoutError."""
         with self._store.read() as database:
             row = database.get(LayoutRow, layout)
             if row is None:
-                raise UnknownLayout(f"There is no layout {layout}. Somebody may have deleted it.")
+                raise UnknownLayoutError(f"There is no layout {layout}. Somebody may have deleted it.")
             return WholeLayout(
                 id=layout, name=row.name, saved=_utc(row.saved), document=json.loads(row.document)
             )
 
     async def save(self, name: str, document: LayoutDocument) -> KeptLayout:
-        """Keep it under its name, over one of that name. Raises Refused where there are too many."""
+        """Keep it under its name, over one of that name. Raises RefusedError where there are too many."""
         text, now = document.model_dump_json(exclude_none=True), time.time()
 
         def write(connection: Connection) -> int:
@@ -71,7 +71,7 @@ class Layouts:
                 return int(found)
             kept = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
             if kept >= LAYOUTS_MOST:
-                raise Refused(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
+                raise RefusedError(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
             row = {"name": name, "document": text, "saved": now}
             key = connection.execute(insert(LayoutRow).values(row)).inserted_primary_key
             assert key is not None
@@ -80,11 +80,11 @@ class Layouts:
         return KeptLayout(id=await self._store.write(write), name=name, saved=_utc(now))
 
     async def delete(self, layout: int) -> None:
-        """Delete one for good. Raises UnknownLayout."""
+        """Delete one for good. Raises UnknownLayoutError."""
 
         def write(connection: Connection) -> None:
             if connection.execute(delete(LayoutRow).where(col(LayoutRow.id) == layout)).rowcount == 0:
-                raise UnknownLayout(f"There is no layout {layout}. Somebody may have deleted it.")
+                raise UnknownLayoutError(f"There is no layout {layout}. Somebody may have deleted it.")
 
         await self._store.write(write)
 

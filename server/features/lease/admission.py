@@ -17,7 +17,7 @@ HEADER = "x-mucat-client"
 
 async def admit(connection: HTTPConnection) -> None:
     """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
-    NotInControl where it needs the control, and another client has it.
+    NotInControlError where it needs the control, and another client has it.
 
     The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
     """
@@ -31,7 +31,7 @@ async def admit(connection: HTTPConnection) -> None:
 
 
 def require_control(connection: HTTPConnection) -> None:
-    """Raises NotInControl if it comes from another client than the one in control."""
+    """Raises NotInControlError if it comes from another client than the one in control."""
     find_service(connection, ControlArbiter).require(_find_client(connection))
 
 

@@ -10,10 +10,10 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.lease.clients import ControlClient, ControlClients
 from server.features.lease.driving import Drive, Driving
-from server.features.lease.lease import Change, Lease, NotInControl
+from server.features.lease.lease import Change, Lease, NotInControlError
 from server.features.lease.schemas import ControlState, Holder
 from server.http.sign_in.identity import Identity
 
@@ -66,13 +66,15 @@ class ControlArbiter:
         return client
 
     def take(self, client: ControlClient, *, over: bool = False) -> None:
-        """Give control to a client; `over` takes it from another one. Raises Refused."""
+        """Give control to a client; `over` takes it from another one. Raises RefusedError."""
         if client.identity.role != "operator":
-            raise Refused("Only operators can have control. An operator can make you one on the People page.")
+            raise RefusedError(
+                "Only operators can have control. An operator can make you one on the People page."
+            )
         self.expire()
         holder = self._name(self.lease.holder)
         if holder is not None and self.lease.holder != client.number and not over:
-            raise Refused(f"Control is with {holder}. Agree with them, then take it over.")
+            raise RefusedError(f"Control is with {holder}. Agree with them, then take it over.")
         self.lease.take(client.number)
         self.announce()
 
@@ -82,13 +84,13 @@ class ControlArbiter:
         self.announce()
 
     def require(self, client: ControlClient | None) -> None:
-        """Raises NotInControl, in words for a person, if this client has no control."""
+        """Raises NotInControlError, in words for a person, if this client has no control."""
         self.expire()
         holder = self._name(self.lease.holder)
         if holder is None:
-            raise NotInControl("Nobody has control. Take control first.")
+            raise NotInControlError("Nobody has control. Take control first.")
         if client is None or client.number != self.lease.holder:
-            raise NotInControl(f"Control is with {holder}. Agree with them, then take it over.")
+            raise NotInControlError(f"Control is with {holder}. Agree with them, then take it over.")
 
     def drive(self, client: ControlClient, command: Drive) -> None:
         """Pass a stick command on, or drop and count it."""

@@ -8,7 +8,7 @@ Changed = Callable[[Change, int | None, int | None], None]
 """Called with the change, the client that has control now (None: nobody), and the one that had it before."""
 
 
-class NotInControl(Exception):  # noqa: N818 - it says what happened
+class NotInControlError(Exception):
     """Only the client in control may do this; the text says which one is, and what to do."""
 
 

@@ -4,8 +4,8 @@ import asyncio
 import logging
 from collections.abc import Awaitable, Callable
 
-from robot_runtime.errors import Refused
-from server.stream.bridge import RuntimeSilent
+from robot_runtime.errors import RefusedError
+from server.stream.bridge import RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
@@ -35,10 +35,10 @@ class LeaseSync:
             self._news.clear()
             try:
                 await self._ask(self._wanted[1])
-            except RuntimeSilent:
+            except RuntimeSilentError:
                 await asyncio.sleep(TRY_AGAIN_SECONDS)
                 self._news.set()
-            except Refused as problem:
+            except RefusedError as problem:
                 log.error("the runtime does not take the control's epoch: %s", problem)
 
     def _want(self, run: str, epoch: int) -> None:

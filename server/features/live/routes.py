@@ -16,7 +16,7 @@ from pydantic import StringConstraints, ValidationError
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.contract.topics import TOPICS, Kind
-from robot_runtime.transport.zenoh_transport import Refused
+from robot_runtime.transport.zenoh_transport import RefusedError
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import Drive
@@ -27,8 +27,8 @@ from server.http.sign_in.authorization import may_say
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import MESSAGES, Need, needs
 from server.platform.settings import Settings
-from server.stream.bridge import Bridge, RuntimeSilent
-from server.stream.hub import POLICY_VIOLATION, Client, Evicted, Hub
+from server.stream.bridge import Bridge, RuntimeSilentError
+from server.stream.hub import POLICY_VIOLATION, Client, EvictedError, Hub
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""
@@ -42,7 +42,7 @@ _ROWS = "|".join(topic.name for topic in TOPICS if topic.kind is Kind.ROWS)
 RowTopic = Annotated[str, StringConstraints(pattern=f"^({_ROWS})$")]
 
 
-class Nonsense(ValueError):  # noqa: N818 - it says what happened
+class InvalidMessageError(ValueError):
     """A message from the page that is not understood; the text says why."""
 
 
@@ -61,7 +61,7 @@ class _Conversation:
         self._stop_again = False
 
     async def listen(self, client: Client) -> None:
-        """Take in messages until the page leaves. Raises Evicted where it talks nothing but nonsense."""
+        """Take in messages until the page leaves. Raises EvictedError where it talks nothing but nonsense."""
         nonsense = 0
         while True:
             try:
@@ -70,10 +70,10 @@ class _Conversation:
                     return
                 self._obey(client, _read(message.get("text")))
                 nonsense = 0
-            except Nonsense as problem:
+            except InvalidMessageError as problem:
                 nonsense += 1
                 if nonsense >= NONSENSE_MAX:
-                    raise Evicted(
+                    raise EvictedError(
                         f"{nonsense} messages in a row were not understood.", POLICY_VIOLATION
                     ) from problem
                 client.answer({"op": "error", "text": str(problem)})
@@ -81,7 +81,7 @@ class _Conversation:
     def _obey(self, client: Client, message: dict[str, Any]) -> None:
         op = message.get("op")
         if not isinstance(op, str) or op not in MESSAGES:
-            raise Nonsense(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
+            raise InvalidMessageError(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
         reason = may_say(self._owner.identity, op)
         if reason is not None:
             client.answer({"op": "error", "text": reason})
@@ -90,7 +90,7 @@ class _Conversation:
             case "ping":
                 number = message.get("id")
                 if not isinstance(number, int | float | str):
-                    raise Nonsense("A ping needs an id, a number or a text.")
+                    raise InvalidMessageError("A ping needs an id, a number or a text.")
                 client.answer({"op": "pong", "id": number})
             case "stop":
                 self._stop(client)
@@ -109,7 +109,7 @@ class _Conversation:
     async def _send_stop(self, client: Client) -> None:
         try:
             await self._bridge.command("stop", {})
-        except (Refused, RuntimeSilent) as problem:
+        except (RefusedError, RuntimeSilentError) as problem:
             client.answer({"op": "error", "text": f"STOP has not been confirmed: {problem}"})
         if self._stop_again:
             self._stop_again = False
@@ -154,13 +154,13 @@ async def live(
     try:
         # It may have been revoked while the socket opened; from here on the hub knows it.
         if not access.still(caller):
-            raise Evicted("Access was revoked by an operator.", POLICY_VIOLATION)
+            raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
             listen = _Conversation(socket, owner, hub, arbiter, bridge).listen
             await hub.serve(send, greeting(owner), listen, caller.device)
     except WebSocketDisconnect:
         return
-    except Evicted as reason:
+    except EvictedError as reason:
         # A client that does not read does not take the farewell either; the kernel then ends the connection.
         try:
             async with asyncio.timeout(FAREWELL_SECONDS):
@@ -194,19 +194,19 @@ async def get_past(
 
 def _read(text: str | None) -> dict[str, Any]:
     if text is None:
-        raise Nonsense("Messages must be text, not binary.")
+        raise InvalidMessageError("Messages must be text, not binary.")
     try:
         message = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as problem:
-        raise Nonsense("Messages must be JSON.") from problem
+        raise InvalidMessageError("Messages must be JSON.") from problem
     if not isinstance(message, dict):
-        raise Nonsense("Messages must be JSON objects.")
+        raise InvalidMessageError("Messages must be JSON objects.")
     return message
 
 
 def _topics(value: object) -> frozenset[str]:
     if not isinstance(value, list) or not all(isinstance(one, str) and one in WATCHABLE for one in value):
-        raise Nonsense(f"A watch needs pictures, a list of any of {', '.join(sorted(WATCHABLE))}.")
+        raise InvalidMessageError(f"A watch needs pictures, a list of any of {', '.join(sorted(WATCHABLE))}.")
     return frozenset(value)
 
 
@@ -214,7 +214,7 @@ def _drive(message: dict[str, Any]) -> Drive:
     try:
         return Drive.model_validate(message)
     except ValidationError as problem:
-        raise Nonsense(
+        raise InvalidMessageError(
             "A drive needs lease and sequence, whole numbers from 0 on, taken (s), and six axes from -1 to 1."
         ) from problem
 

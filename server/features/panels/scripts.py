@@ -10,7 +10,7 @@ SCRIPT_BYTES_MAX = 200_000
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]{0,39}")
 
 
-class UnknownPanel(LookupError):  # noqa: N818 - it says what happened
+class UnknownPanelError(LookupError):
     """There is no such panel."""
 
 
@@ -34,15 +34,15 @@ def list_panels(folder: Path) -> Sequence[OwnPanel]:
 
 
 def read_panel(folder: Path, name: str) -> OwnPanelScript:
-    """The panel of this name. Raises UnknownPanel, with what is wrong."""
+    """The panel of this name. Raises UnknownPanelError, with what is wrong."""
     # Looked up in the folder's own list: no name that is asked for becomes a path.
     for file in folder.glob("*.js"):
         if file.stem != name:
             continue
         if problem := _problem(file):
-            raise UnknownPanel(problem)
+            raise UnknownPanelError(problem)
         return OwnPanelScript(name=name, script=file.read_text(encoding="utf-8"))
-    raise UnknownPanel(f"There is no panel “{name}” in {folder} any more, or not yet.")
+    raise UnknownPanelError(f"There is no panel “{name}” in {folder} any more, or not yet.")
 
 
 def _problem(file: Path) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, desc, select
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.parameters.schemas import Change, ChangedValue, LeftOut, Restored
 from server.platform.models import ParameterChangeRow
 from server.platform.store import Store, StoreError
@@ -30,7 +30,7 @@ KEPT = 1000
 class Changes:
     """Every command that may change parameters passes here.
 
-    Every method raises Refused, RuntimeSilent, or StoreError where the history cannot be read.
+    Every method raises RefusedError, RuntimeSilentError, or StoreError where the history cannot be read.
     """
 
     def __init__(self, store: Store, bridge: Bridge) -> None:
@@ -63,9 +63,9 @@ class Changes:
         async with self._undoing:
             row = await asyncio.to_thread(self._find_newest)
             if row is None:
-                raise Refused("Nothing is left to be undone since the robot's runtime has started.")
+                raise RefusedError("Nothing is left to be undone since the robot's runtime has started.")
             if row.id != change:
-                raise Refused("Somebody has changed something since. Look at the list, and try again.")
+                raise RefusedError("Somebody has changed something since. Look at the list, and try again.")
             values = _values(row)
             payload = {
                 "values": {one.name: one.before for one in values},

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from sqlalchemy import Connection, delete, insert
 from sqlmodel import col, select
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server import VERSION
 from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
 from server.platform.models import ProfileRow
@@ -22,7 +22,7 @@ FORMAT = 1
 PROFILES_MAX = 500
 
 
-class UnknownProfile(LookupError):  # noqa: N818 - it says what happened
+class UnknownProfileError(LookupError):
     """There is no such profile."""
 
 
@@ -57,21 +57,21 @@ class Profiles:
         with self._store.read() as database:
             row = database.get(ProfileRow, profile)
         if row is None:
-            raise UnknownProfile("There is no such profile; somebody may have deleted it.")
+            raise UnknownProfileError("There is no such profile; somebody may have deleted it.")
         return _show(row)
 
     async def save(self, name: str, note: str, values: Mapping[str, Value]) -> Profile:
-        """Keep these values. Raises Refused where the name is taken, or where there are too many."""
+        """Keep these values. Raises RefusedError where the name is taken, or where there are too many."""
         row = ProfileRow(name=name, note=note, saved=time(), parameters=json.dumps(dict(values)))
 
         def write(connection: Connection) -> Profile:
             names = connection.execute(select(ProfileRow.name)).scalars().all()
             if name in names:
-                raise Refused(
+                raise RefusedError(
                     f"There is a profile “{name}” already. Delete it first, or choose another name."
                 )
             if len(names) >= PROFILES_MAX:
-                raise Refused(f"There are {PROFILES_MAX} profiles already. Delete some first.")
+                raise RefusedError(f"There are {PROFILES_MAX} profiles already. Delete some first.")
             key = connection.execute(
                 insert(ProfileRow).values(row.model_dump(exclude={"id"}))
             ).inserted_primary_key
@@ -87,7 +87,7 @@ class Profiles:
         def write(connection: Connection) -> None:
             found = connection.execute(delete(ProfileRow).where(col(ProfileRow.id) == profile))
             if found.rowcount == 0:
-                raise UnknownProfile("There is no such profile; somebody may have deleted it.")
+                raise UnknownProfileError("There is no such profile; somebody may have deleted it.")
 
         await self._store.write(write)
 

@@ -18,7 +18,7 @@ router = APIRouter(prefix="/api/parameters", tags=["parameters"])
 
 
 async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
-    """As the runtime knows them now. Raises RuntimeSilent, Refused."""
+    """As the runtime knows them now. Raises RuntimeSilentError, RefusedError."""
     answer = await bridge.query("parameters")
     return {name: answer[name] for name in ("time", "parameters")}
 

@@ -22,7 +22,7 @@ from server.http.problems import answers
 from server.http.sign_in.access import Access
 from server.http.sign_in.devices import Device
 from server.http.sign_in.identity import IDENTITY, Caller, Identity
-from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTries, WrongCode
+from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTriesError, WrongCodeError
 from server.http.sign_in.policy import Need, list_needs, needs
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
@@ -63,9 +63,9 @@ async def pair(
     """Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more."""
     try:
         identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
-    except WrongCode as problem:
+    except WrongCodeError as problem:
         raise HTTPException(403, str(problem)) from problem
-    except TooManyTries as problem:
+    except TooManyTriesError as problem:
         raise HTTPException(429, str(problem), {"retry-after": str(problem.seconds)}) from problem
     if secret is not None:
         response.set_cookie(

@@ -5,7 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.durable_files import make_folder, write_whole
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, ScenarioError, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
 
@@ -25,16 +25,16 @@ def list_scenarios(own: Path) -> list[ScenarioText]:
 def keep_scenario(own: Path, text: str) -> Scenario:
     """Write a scenario into the folder `own`, under its own name.
 
-    Raises ScenarioError where it cannot be run, Refused where it may not or cannot be written.
+    Raises ScenarioError where it cannot be run, RefusedError where it may not or cannot be written.
     """
     scenario = read_scenario(text)
     if scenario.name in SHIPPED:
-        raise Refused(f"{scenario.name} comes with the program. Give yours another name.")
+        raise RefusedError(f"{scenario.name} comes with the program. Give yours another name.")
     try:
         make_folder(own)
         write_whole(own / f"{scenario.name}.toml", text.encode())
     except OSError as problem:
-        raise Refused(f"{own} cannot be written: {problem.strerror}.") from problem
+        raise RefusedError(f"{own} cannot be written: {problem.strerror}.") from problem
     return scenario
 
 

@@ -6,20 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Event, Line
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.scenarios.live_setup import Before, Surroundings
 from server.features.scenarios.recording import begin, describe_session, mark
-from server.features.scenarios.run import Run, RunCancelled, RunFailed
+from server.features.scenarios.run import Run, RunCancelledError, RunFailedError
 from server.features.scenarios.snapshot import Left
 from server.features.sessions.recorder import Recorder
 from server.health.monitor import Watch
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.supervisor import Parts, Tell
-from server.stream.bridge import Bridge, RuntimeSilent
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 LOOK_SECONDS = 0.1
 SETTLE_SECONDS = 0.5
@@ -56,9 +56,9 @@ class Live:
         )
 
     def check(self, scenario: Scenario) -> None:
-        """Raises Refused with all reasons why it cannot be performed now."""
+        """Raises RefusedError with all reasons why it cannot be performed now."""
         if reasons := [*self._occupied(), *self._unlike(scenario)]:
-            raise Refused(" ".join(reasons))
+            raise RefusedError(" ".join(reasons))
 
     async def perform(self, run: Run) -> None:
         """From its beginning to its end. Raises what may go wrong on its way."""
@@ -105,7 +105,7 @@ class Live:
         session = await begin(self._recorder, self._store, run, row)
         try:
             await self._play(run, row.started_steady)
-        except RunCancelled as why:
+        except RunCancelledError as why:
             await mark(self._store, session, self._clock.now(), str(why))
             raise
         finally:
@@ -132,29 +132,29 @@ class Live:
         if event.to != "session":
             try:
                 await self._surroundings.apply(event)
-            except (Refused, RuntimeSilent) as problem:
+            except (RefusedError, RuntimeSilentError) as problem:
                 # As with an operator, whom the robot may refuse something: the experiment goes on.
                 words = f"{words}: refused. {problem}"
                 run.remarks.append(f"At {event.at:g} s: {words}")
         await mark(self._store, run.session, max(self._clock.now(), began), words)
 
     def _look(self, run: Run, processes: Mapping[str, int | None]) -> None:
-        """Raises RunFailed where what the run needs is no longer there."""
+        """Raises RunFailedError where what the run needs is no longer there."""
         recording = self._recorder.session
         if recording is None or recording.id != run.session:
-            raise RunCancelled("Somebody stopped the recording.")
+            raise RunCancelledError("Somebody stopped the recording.")
         if self._bridge.lent is not None:
-            raise RunFailed(self._bridge.lent)
+            raise RunFailedError(self._bridge.lent)
         for name, pid in self._processes().items():
             if pid != processes[name]:
-                raise RunFailed(f"The {name} ended in the middle of it, and with it what was set.")
+                raise RunFailedError(f"The {name} ended in the middle of it, and with it what was set.")
 
     async def _finish(self, session: int | None) -> None:
         """Disarm, and close the scenario's recording with that in it."""
         try:
             await self._surroundings.disarm()
             await asyncio.sleep(SETTLE_SECONDS)
-        except (Refused, RuntimeSilent) as problem:
+        except (RefusedError, RuntimeSilentError) as problem:
             self._tell("scenario", "alarm", f"The robot could not be disarmed after the scenario: {problem}")
         if self._recorder.session is not None and self._recorder.session.id == session:
             await self._recorder.stop(session)
@@ -209,7 +209,7 @@ class Live:
     def _state(self) -> dict[str, Any]:
         state = self._watch.state()
         if state is None:
-            raise Refused("The robot's runtime has said nothing yet. Wait a moment.")
+            raise RefusedError("The robot's runtime has said nothing yet. Wait a moment.")
         return state
 
     def _processes(self) -> dict[str, int | None]:

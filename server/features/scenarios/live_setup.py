@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.control.controllers import CONTROLLERS, Controller
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Event, Line
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
-from server.stream.bridge import Bridge, RuntimeSilent
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 Question = Mapping[str, Any]
 STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
@@ -35,7 +35,8 @@ class Before:
 class Surroundings:
     """The runtime, the simulator and the board, as a scenario speaks to them.
 
-    `board_socket` is None where the board is a real one. Everything may raise Refused or RuntimeSilent.
+    `board_socket` is None where the board is a real one. Everything may raise RefusedError or
+    RuntimeSilentError.
     """
 
     def __init__(self, bridge: Bridge, board_socket: Path | None) -> None:
@@ -47,7 +48,7 @@ class Surroundings:
         water = await self._bridge.ask_simulator("surroundings", {})
         try:
             return Before(robot, water, await self._bridge.scene("contents", {}))
-        except RuntimeSilent:
+        except RuntimeSilentError:
             return Before(robot, water, None)
 
     async def prepare(self, scenario: Scenario, before: Before) -> None:
@@ -120,14 +121,14 @@ class Surroundings:
         for step in steps:
             try:
                 await step()
-            except (Refused, RuntimeSilent) as problem:
+            except (RefusedError, RuntimeSilentError) as problem:
                 problems.append(str(problem))
         return list(dict.fromkeys(problems))
 
     async def _put_card_back(self, colour: str | None) -> None:
         try:
             await self._bridge.command("card", {"colour": colour})
-        except Refused:
+        except RefusedError:
             # A camera without cards had none before, either.
             if colour is not None:
                 raise
@@ -161,7 +162,7 @@ class Surroundings:
         try:
             await asyncio.to_thread(_order, self._board_socket, command)
         except BoardError as problem:
-            raise Refused(f"The emulated board: {problem}.") from problem
+            raise RefusedError(f"The emulated board: {problem}.") from problem
 
 
 def _order(socket: Path, command: str) -> None:

@@ -7,7 +7,7 @@ from sqlalchemy import insert
 from sqlmodel import col, desc, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.scenarios.run import Run
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
@@ -17,12 +17,12 @@ from server.platform.store import Store
 
 
 def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: str) -> SessionRow:
-    """The session of a run that begins now. Raises Refused where the configuration cannot be read."""
+    """The session of a run that begins now. Raises RefusedError where the configuration cannot be read."""
     scenario = run.scenario
     try:
         row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
     except OSError as problem:
-        raise Refused(f"The configuration {settings.config} cannot be read: {problem}") from problem
+        raise RefusedError(f"The configuration {settings.config} cannot be read: {problem}") from problem
     row.origin = "scenario" if run.place == "live" else "simulated"
     row.scenario = run.text
     row.scenario_name = scenario.name
@@ -31,7 +31,7 @@ def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: st
 
 
 async def begin(recorder: Recorder, store: Store, run: Run, row: SessionRow) -> int:
-    """Record the run from now on; the session's number. Raises RecordingRefused, StoreError."""
+    """Record the run from now on; the session's number. Raises RecordingRefusedError, StoreError."""
     session = await recorder.start(row)
     run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)
     run.session, run.phase = session.id, "running"

@@ -16,11 +16,11 @@ from server.features.scenarios.schemas import (
 )
 
 
-class RunCancelled(Exception):  # noqa: N818 - it says what happened
+class RunCancelledError(Exception):
     """Somebody ended the run; the text says who or how."""
 
 
-class RunFailed(Exception):  # noqa: N818 - it says what happened
+class RunFailedError(Exception):
     """The run cannot go on; the text says why."""
 
 
@@ -50,16 +50,16 @@ class Run:
             self._cancelled.set()
 
     def check(self) -> None:
-        """Raises RunCancelled where it was cancelled."""
+        """Raises RunCancelledError where it was cancelled."""
         if self._cancelled.is_set():
-            raise RunCancelled(self._why)
+            raise RunCancelledError(self._why)
 
     async def cancelled(self) -> None:
         """Wait until it is cancelled."""
         await self._cancelled.wait()
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass. Raises RunCancelled."""
+        """Let time pass. Raises RunCancelledError."""
         try:
             async with asyncio.timeout(max(seconds, 0.0)):
                 await self._cancelled.wait()

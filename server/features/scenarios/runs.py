@@ -7,13 +7,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Protocol
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
-from server.features.scenarios.run import Run, RunCancelled, RunFailed
+from server.features.scenarios.run import Run, RunCancelledError, RunFailedError
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
-from server.features.sessions.recorder import RecordingRefused
+from server.features.sessions.recorder import RecordingRefusedError
 from server.platform.store import StoreError
-from server.stream.bridge import RuntimeSilent
+from server.stream.bridge import RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
@@ -25,10 +25,13 @@ class Stage(Protocol):
     """Where a scenario is performed."""
 
     def check(self, scenario: Scenario) -> None:
-        """Raises Refused with all reasons why it cannot be performed here now."""
+        """Raises RefusedError with all reasons why it cannot be performed here now."""
 
     async def perform(self, run: Run) -> None:
-        """From its beginning to its end. Raises RunCancelled, RunFailed, and what it meets on its way."""
+        """From its beginning to its end.
+
+        Raises RunCancelledError, RunFailedError, and what it meets on its way.
+        """
 
 
 class Runs:
@@ -60,12 +63,14 @@ class Runs:
         )
 
     def start(self, text: str, place: Place, board: BoardKind) -> int:
-        """Run a scenario, or let it wait for its turn; its number. Raises ScenarioError, Refused."""
+        """Run a scenario, or let it wait for its turn; its number. Raises ScenarioError, RefusedError."""
         scenario = read_scenario(text)
         if place == "live" and self._active is not None:
-            raise Refused(f"“{self._active.scenario.title}” is being run. Wait for its end, or cancel it.")
+            raise RefusedError(
+                f"“{self._active.scenario.title}” is being run. Wait for its end, or cancel it."
+            )
         if len(self._queue) >= QUEUE_MAX:
-            raise Refused(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
+            raise RefusedError(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
         self._stages[place].check(scenario)
         self._number += 1
         run = Run(self._number, scenario, text, place, board)
@@ -121,9 +126,16 @@ class Runs:
         try:
             run.check()
             await self._stages[run.place].perform(run)
-        except RunCancelled as why:
+        except RunCancelledError as why:
             state, problem = "cancelled", str(why)
-        except (RunFailed, Refused, RecordingRefused, RuntimeSilent, StoreError, OSError) as why:
+        except (
+            RunFailedError,
+            RefusedError,
+            RecordingRefusedError,
+            RuntimeSilentError,
+            StoreError,
+            OSError,
+        ) as why:
             state, problem = "failed", str(why)
         except Exception as why:
             log.exception("a scenario failed")

@@ -10,7 +10,7 @@ from time import sleep
 import click
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.lease.command import in_control, renew_control
 from server.features.scenarios.runs import Runs
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
@@ -58,7 +58,7 @@ async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> 
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
     try:
         runs.start(wanted.text, wanted.place, wanted.board)
-    except Refused as problem:
+    except RefusedError as problem:
         raise SetupError(str(problem)) from problem
     await runs.wait()
     last = runs.state().last

@@ -22,7 +22,7 @@ from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import Block, read_blocks
 from robot_runtime.experiments.scenario.document import Scenario
 from server.features.scenarios.recording import begin, describe_session, mark
-from server.features.scenarios.run import Run, RunFailed
+from server.features.scenarios.run import Run, RunFailedError
 from server.features.sessions.recorder import Recorder
 from server.platform.notices import Notices
 from server.platform.settings import Settings
@@ -62,7 +62,7 @@ class Simulated:
         """There is always room for one more in the queue."""
 
     async def perform(self, run: Run) -> None:
-        """From its beginning to its end. Raises RunCancelled, RunFailed, StoreError, OSError."""
+        """From its beginning to its end. Raises RunCancelledError, RunFailedError, StoreError, OSError."""
         clock = SimulatedClock()
         recorder = Recorder(self._store, clock, self._notices, lambda: None)
         run.phase = "preparing"
@@ -73,7 +73,7 @@ class Simulated:
                 run.check()
                 if status != 0:
                     said = " / ".join(words)
-                    raise RunFailed(f"The simulation {describe_status(status)}. {said}".strip())
+                    raise RunFailedError(f"The simulation {describe_status(status)}. {said}".strip())
         finally:
             run.phase = "ending"
             if recorder.session is not None:
@@ -95,7 +95,7 @@ class _Playback:
         self._ended: dict[str, Any] | None = None
 
     async def take(self, process: Process) -> None:
-        """Everything up to its end. Raises RunFailed, StoreError."""
+        """Everything up to its end. Raises RunFailedError, StoreError."""
         assert process.stdout is not None
         try:
             while (message := await _read(process.stdout)) is not None:
@@ -106,7 +106,9 @@ class _Playback:
                     await self._take_blocks(read_blocks(data), len(data))
         except (ValueError, LayoutError, KeyError, TypeError, asyncio.IncompleteReadError) as problem:
             if not isinstance(problem, asyncio.IncompleteReadError):
-                raise RunFailed(f"What the simulation told cannot be understood: {problem!r}") from problem
+                raise RunFailedError(
+                    f"What the simulation told cannot be understood: {problem!r}"
+                ) from problem
         if self._ended and self._ended.get("problem"):
             self._run.remarks.append(str(self._ended["problem"]))
 
@@ -125,7 +127,7 @@ class _Playback:
             case "ended":
                 self._ended = event
             case "refused":
-                raise RunFailed(" ".join(map(str, event["problems"])))
+                raise RunFailedError(" ".join(map(str, event["problems"])))
 
     async def _take_blocks(self, blocks: list[Block], size: int) -> None:
         for block in blocks:

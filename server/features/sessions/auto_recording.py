@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import Block
-from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
 from server.platform.store import StoreError
@@ -80,7 +80,7 @@ class ArmingRecording:
             await self._recorder.start(
                 await self._make_row(f"Armed {datetime.now(UTC):%Y-%m-%d %H:%M} UTC", state)
             )
-        except RecordingRefused as problem:
+        except RecordingRefusedError as problem:
             log.info("not recorded at arming: %s", problem)
         except (StoreError, OSError) as problem:
             self._notices.tell("recording", "caution", f"Armed, but not recorded: {problem}.")
@@ -88,5 +88,5 @@ class ArmingRecording:
     async def _end(self, session: int) -> None:
         try:
             await self._recorder.stop(session)
-        except (RecordingRefused, StoreError) as problem:
+        except (RecordingRefusedError, StoreError) as problem:
             log.info("the session begun at arming does not end yet: %s", problem)

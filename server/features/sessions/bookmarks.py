@@ -8,22 +8,22 @@ from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from server.features.sessions.presence import NotNow, require
+from server.features.sessions.presence import SessionStateError, require
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import Mark
 from server.platform.models import Marker, SessionRow
 from server.platform.store import Store
 
 
-class UnknownMark(LookupError):  # noqa: N818 - it says what happened
+class UnknownBookmarkError(LookupError):
     """The session has no such mark."""
 
 
 class Markers:
     """The marks of all sessions. Times are in s since the session's start.
 
-    Every method raises StoreError, UnknownSession, UnknownMark, and NotNow where the session does not reach
-    so far.
+    Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError where
+    the session does not reach so far.
     """
 
     def __init__(self, store: Store, clock: Clock, recorder: Recorder) -> None:
@@ -102,7 +102,7 @@ def _require_mark(connection: Connection, session: int, mark: int) -> Marker:
     )
     found = connection.execute(query).first()
     if found is None:
-        raise UnknownMark(f"Session {session} has no mark {mark}.")
+        raise UnknownBookmarkError(f"Session {session} has no mark {mark}.")
     return Marker(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
 
 
@@ -115,9 +115,11 @@ def _span(connection: Connection, session: int) -> tuple[float, float]:
 def _place(moment: float | None, start: float, duration: float, now: float | None) -> float:
     if moment is None:
         if now is None:
-            raise NotNow("This session does not record any more. Say at what time of it the mark is to be.")
+            raise SessionStateError(
+                "This session does not record any more. Say at what time of it the mark is to be."
+            )
         return now
     end = duration if now is None else now - start
     if moment > end:
-        raise NotNow(f"The session has {end:.1f} s; {moment:.1f} s is beyond its end.")
+        raise SessionStateError(f"The session has {end:.1f} s; {moment:.1f} s is beyond its end.")
     return start + moment

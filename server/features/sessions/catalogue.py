@@ -12,7 +12,7 @@ from sqlmodel import col, desc, func, select
 
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.chunks import row_layout
-from server.features.sessions.presence import NotNow, UnknownSession, require
+from server.features.sessions.presence import SessionStateError, UnknownSessionError, require
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import (
     HIDDEN,
@@ -32,7 +32,7 @@ from server.platform.store import Reader, Store
 class Listing:
     """Every session of a database, to be looked at.
 
-    Every method raises StoreError, and UnknownSession where a session or a marker is not there.
+    Every method raises StoreError, and UnknownSessionError where a session or a marker is not there.
     """
 
     def __init__(self, store: Reader) -> None:
@@ -77,7 +77,7 @@ class Listing:
         with self._reader.read() as database:
             row = database.get(SessionRow, session)
             if row is None or row.state in HIDDEN:
-                raise UnknownSession(session)
+                raise UnknownSessionError(session)
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
             markers = select(func.count()).select_from(Marker).where(Marker.session_id == session)
             return from_row(row, tags, database.exec(markers).one())
@@ -86,7 +86,7 @@ class Listing:
         """The row of a session, for whoever reads its samples."""
         row = find_row(self._reader, session)
         if row is None:
-            raise UnknownSession(session)
+            raise UnknownSessionError(session)
         return row
 
     def detail(self, session: int) -> SessionDetail:
@@ -155,11 +155,11 @@ class Catalogue(Listing):
         return self.tell(session)
 
     async def delete(self, session: int) -> Session:
-        """Put a session into the bin. Raises NotNow for one that records."""
+        """Put a session into the bin. Raises SessionStateError for one that records."""
 
         def write(connection: Connection) -> None:
             if require(connection, session) == "recording":
-                raise NotNow("This session records. Stop it first, then delete it.")
+                raise SessionStateError("This session records. Stop it first, then delete it.")
             unset = col(SessionRow.deleted).is_(None)
             query = update(SessionRow).where(col(SessionRow.id) == session, unset)
             connection.execute(query.values(deleted=time()))
@@ -178,13 +178,16 @@ class Catalogue(Listing):
         return self.find(session)
 
     async def purge(self, session: int) -> None:
-        """Have a session removed for good; to everybody it is gone at once. Raises NotNow outside the bin."""
+        """Have a session removed for good; to everybody it is gone at once.
+
+        Raises SessionStateError outside the bin.
+        """
 
         def write(connection: Connection) -> None:
             require(connection, session)
             query = select(SessionRow.deleted).where(SessionRow.id == session)
             if connection.execute(query).scalar() is None:
-                raise NotNow("This session is not in the bin. Delete it first.")
+                raise SessionStateError("This session is not in the bin. Delete it first.")
             connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(state=REMOVING))
 
         await self._store.write(write)

@@ -18,7 +18,7 @@ Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
 def open_recording(store: Provided[Store], catalogue: Provided[Catalogue], session: Identifier) -> Recording:
-    """The recording of the session in the path, also from the bin. Raises UnknownSession."""
+    """The recording of the session in the path, also from the bin. Raises UnknownSessionError."""
     return Recording(store, catalogue.row(session))
 
 

@@ -43,7 +43,7 @@ BACKLOG_BYTES = 8_000_000
 _PARAMETERS = BY_NAME["parameters"]
 
 
-class RecordingRefused(Exception):  # noqa: N818 - it says what happened
+class RecordingRefusedError(Exception):
     """A session cannot be started or stopped now; the text says why."""
 
 
@@ -166,13 +166,13 @@ class Recorder:
         self._skip.clear()
 
     async def start(self, row: SessionRow) -> Session:
-        """Store a new session and record into it from now on. Raises RecordingRefused, StoreError."""
+        """Store a new session and record into it from now on. Raises RecordingRefusedError, StoreError."""
         return await _whole(self._start(row))
 
     async def _start(self, row: SessionRow) -> Session:
         async with self._busy:
             if self.session is not None:
-                raise RecordingRefused(f"“{self.session.name}” is being recorded; stop it first.")
+                raise RecordingRefusedError(f"“{self.session.name}” is being recorded; stop it first.")
             values = row.model_dump(exclude={"id"})
             row.id = await self._store.write(lambda connection: _insert_session(connection, values))
             self.session = from_row(row)
@@ -189,15 +189,15 @@ class Recorder:
     async def stop(self, session: int) -> Session:
         """Store what is left and complete the session.
 
-        Raises RecordingRefused where it does not record, StoreError where its end cannot be stored; it then
-        goes on.
+        Raises RecordingRefusedError where it does not record, StoreError where its end cannot be stored; it
+        then goes on.
         """
         return await _whole(self._stop(session))
 
     async def _stop(self, session: int) -> Session:
         async with self._busy:
             if self.session is None or self.session.id != session:
-                raise RecordingRefused("This session does not record; there is nothing to stop.")
+                raise RecordingRefusedError("This session does not record; there is nothing to stop.")
             self._accepts = False
             try:
                 done = await self._commit(final=True)

@@ -25,7 +25,7 @@ from server.features.sessions.chunks import (
     describe_topics,
 )
 from server.features.sessions.recording import Recording
-from server.features.sessions.upgrade import NoCounterpart, rewrite_document, rewrite_rows
+from server.features.sessions.upgrade import NoCounterpartError, rewrite_document, rewrite_rows
 from server.platform.models import Chunk
 
 RANGE_MAX = 120.0
@@ -47,7 +47,7 @@ COUNT_MAX = 65_535
 log = logging.getLogger(__name__)
 
 
-class TooMuch(Exception):  # noqa: N818 - it says what is the matter
+class TooMuchDataError(Exception):
     """More was asked for than one answer holds; the text says how much may be."""
 
 
@@ -87,11 +87,11 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
-    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises TooMuch,
-    StoreError.
+    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises
+    TooMuchDataError, StoreError.
     """
     if end - start > RANGE_MAX:
-        raise TooMuch(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
+        raise TooMuchDataError(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
     ranges = {name: _range(name, start, end, history) for name in recording.topics}
     found = _find(recording, ranges)
     described = describe_topics()
@@ -107,7 +107,9 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
         for time, block in reader.read(pieces, ranges[name]):
             size += len(block.data)
             if size > BYTES_MAX:
-                raise TooMuch(f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time.")
+                raise TooMuchDataError(
+                    f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time."
+                )
             timed.append((time, block))
         left_out += reader.left_out
     if history is not None and not any(block.topic is STATE and time < start for time, block in timed):
@@ -283,6 +285,6 @@ def _rewrite_lines(lines: list[bytes], topic: Topic) -> Iterator[bytes]:
     for line in lines:
         try:
             document = rewrite_document(json.loads(line), topic)
-        except NoCounterpart:
+        except NoCounterpartError:
             continue
         yield json.dumps(document, separators=(",", ":")).encode()

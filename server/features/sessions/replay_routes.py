@@ -6,7 +6,7 @@ from fastapi import APIRouter, HTTPException, Query
 from fastapi.responses import Response
 
 from server.features.sessions.dependencies import UNKNOWN, OpenRecording
-from server.features.sessions.replay import HISTORY_MAX, TooMuch, read_stretch
+from server.features.sessions.replay import HISTORY_MAX, TooMuchDataError, read_stretch
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.http.sign_in.policy import Need, needs
 
@@ -59,7 +59,7 @@ def get_blocks(
     zero = recording.row.started_steady
     try:
         stretch = read_stretch(recording, zero + start, zero + end, history)
-    except TooMuch as problem:
+    except TooMuchDataError as problem:
         raise HTTPException(422, str(problem)) from problem
     headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
     return Response(stretch.data, media_type="application/octet-stream", headers=headers)

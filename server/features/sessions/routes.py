@@ -11,7 +11,7 @@ from starlette.responses import Response
 from robot_runtime.clock import Clock
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import STORING, UNKNOWN, Identifier, OpenRecording
-from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.retention import Tidying
 from server.features.sessions.session import (
     Name,
@@ -73,12 +73,14 @@ async def start_session(
 ) -> Session:
     """Record everything from now on; refused while another records, or the board is lent to a test."""
     if bridge.lent is not None:
-        raise RecordingRefused(bridge.lent)
+        raise RecordingRefusedError(bridge.lent)
     state = json.dumps(watch.state())
     try:
         row = await run_in_threadpool(new_row, settings, clock, wanted.name, wanted.note, state)
     except OSError as problem:
-        raise RecordingRefused(f"The configuration {settings.config} cannot be read: {problem}") from problem
+        raise RecordingRefusedError(
+            f"The configuration {settings.config} cannot be read: {problem}"
+        ) from problem
     return await recorder.start(row)
 
 

@@ -14,7 +14,7 @@ from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import Topic
 
 
-class NoCounterpart(ValueError):  # noqa: N818 - it says what is the matter
+class NoCounterpartError(ValueError):
     """A document that this version has no way to say."""
 
 
@@ -53,7 +53,8 @@ def rewrite_document(document: Mapping[str, Any], topic: Topic) -> dict[str, Any
     """The document as this version's `topic` has it: fields unknown now are dropped, missing ones get their
     default; without one None, an empty list or an empty text where that is allowed.
 
-    Raises NoCounterpart where a field is missing that has no such thing, or holds what is not allowed now.
+    Raises NoCounterpartError where a field is missing that has no such thing, or holds what is not allowed
+    now.
     """
     assert topic.record is not None
     made = _rewrite(document, topic.record)
@@ -84,12 +85,12 @@ def _rewrite(value: Any, wanted: Any) -> Any:
         return value
     if wanted in (int, str, bool) and type(value) is wanted:
         return value
-    raise NoCounterpart(f"{value!r} is no {wanted}")
+    raise NoCounterpartError(f"{value!r} is no {wanted}")
 
 
 def _rewrite_object(value: Any, wanted: Any) -> dict[str, Any]:
     if not isinstance(value, Mapping):
-        raise NoCounterpart(f"{value!r} is no {wanted.__name__}")
+        raise NoCounterpartError(f"{value!r} is no {wanted.__name__}")
     return {
         name: _rewrite(value[name], hint) if name in value else _stand_in(wanted, name, hint)
         for name, hint in _hints(wanted).items()
@@ -108,7 +109,7 @@ def _stand_in(owner: Any, name: str, hint: Any) -> Any:
         return []
     if hint is str:
         return ""
-    raise NoCounterpart(f"{name} is missing")
+    raise NoCounterpartError(f"{name} is missing")
 
 
 @cache

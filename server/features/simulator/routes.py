@@ -3,7 +3,7 @@
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -31,7 +31,7 @@ class Place(BaseModel):
 async def put_simulator(settings: Provided[Settings], parts: Provided[Parts], wanted: Place) -> None:
     """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""
     if not settings.in_the_loop:
-        raise Refused(
+        raise RefusedError(
             "Only a robot with its hardware in the loop can do with or without this computer's simulator; "
             f"robot.mode is {settings.mode}."
         )

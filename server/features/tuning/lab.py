@@ -12,7 +12,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import ExperimentPhase
 from robot_runtime.contract.topics import Block
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.tuning.curve import Gathering
 from server.features.tuning.figure_definitions import is_angle
 from server.features.tuning.runs import Runs
@@ -27,7 +27,7 @@ from server.features.tuning.schemas import (
 )
 from server.platform.store import StoreError
 from server.processes.supervisor import Tell
-from server.stream.bridge import Bridge, RuntimeSilent
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +102,7 @@ class TuningLab:
         return TuningState(active=active, last=self._last)
 
     async def start(self, wanted: StepStart | RelayStart) -> int:
-        """Begin a run; its number. Raises Refused, RuntimeSilent, StoreError."""
+        """Begin a run; its number. Raises RefusedError, RuntimeSilentError, StoreError."""
         self._check()
         self._starting = True
         try:
@@ -123,16 +123,22 @@ class TuningLab:
         return run
 
     async def delete(self, run: int) -> None:
-        """Remove a run for good. Raises NotNow while it is on, UnknownRun, StoreError."""
+        """Remove a run for good.
+
+        Raises SessionStateError while it is on, UnknownTuningRunError, StoreError.
+        """
         await self.runs.delete(run)
         if self._last is not None and self._last.id == run:
             self._last = None
             self.announce()
 
     async def stop(self) -> None:
-        """End what runs; the curve so far is kept. Raises Refused where nothing runs, RuntimeSilent."""
+        """End what runs; the curve so far is kept.
+
+        Raises RefusedError where nothing runs, RuntimeSilentError.
+        """
         if self._active is None:
-            raise Refused("No experiment runs.")
+            raise RefusedError("No experiment runs.")
         await self._bridge.command("end_experiment", {})
 
     def see(self, block: Block) -> None:
@@ -159,14 +165,14 @@ class TuningLab:
                 self._end(active)
             if self._stray:
                 self._stray = False
-                with suppress(Refused, RuntimeSilent):
+                with suppress(RefusedError, RuntimeSilentError):
                     await self._bridge.command("end_experiment", {})
 
     async def close(self) -> None:
         """End what runs, and keep what there is of it."""
         active = self._active
         if active is not None and not active.over:
-            with suppress(Refused, RuntimeSilent):
+            with suppress(RefusedError, RuntimeSilentError):
                 await self._bridge.command("end_experiment", {})
             active.phase, active.text = "stopped", "The server ended."
             self._end(active)
@@ -175,9 +181,9 @@ class TuningLab:
 
     def _check(self) -> None:
         if self._active is not None or self._starting:
-            raise Refused("An experiment runs already. Wait for its end, or stop it first.")
+            raise RefusedError("An experiment runs already. Wait for its end, or stop it first.")
         if (why := self._occupied()) is not None:
-            raise Refused(why)
+            raise RefusedError(why)
 
     def _hear(self, told: dict[str, Any]) -> None:
         active = self._active
@@ -235,12 +241,15 @@ def _place(value: float, loop: str) -> str:
 
 
 def _in_force(state: Mapping[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
-    """The loop's controller, and what its PID's gains may be. Raises Refused where no run may begin on it."""
+    """The loop's controller, and what its PID's gains may be.
+
+    Raises RefusedError where no run may begin on it.
+    """
     if state["mode"] != "automatic":
-        raise Refused(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
+        raise RefusedError(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
     one = next((one for one in state["loops"] if one["name"] == loop), None)
     if one is None:
-        raise Refused(f"This robot's runtime steers no loop {loop!r}.")
+        raise RefusedError(f"This robot's runtime steers no loop {loop!r}.")
     choices = {choice["name"]: choice for choice in one["controllers"]}
     chosen = choices[one["controller"]]
     force = Force(

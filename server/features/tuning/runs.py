@@ -10,7 +10,7 @@ from sqlalchemy import Connection, delete, insert, select, update
 from sqlmodel import col
 from sqlmodel import select as select_rows
 
-from server.features.sessions.presence import NotNow
+from server.features.sessions.presence import SessionStateError
 from server.features.tuning.curve import Curve
 from server.features.tuning.proposals import propose
 from server.features.tuning.schemas import (
@@ -29,7 +29,7 @@ from server.platform.store import Store
 LISTED_MOST = 500
 
 
-class UnknownRun(LookupError):  # noqa: N818 - it says what happened
+class UnknownTuningRunError(LookupError):
     """There is no such run."""
 
 
@@ -53,7 +53,7 @@ class Runs:
         with self._store.read() as database:
             row = database.exec(select_rows(TuningRunRow).where(col(TuningRunRow.id) == run)).one_or_none()
         if row is None:
-            raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+            raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
         shown = TuningRun(**_shown(row))
         curve = Curve.from_bytes(row.curve)
         limits = json.loads(row.parameters)["limits"]
@@ -103,19 +103,19 @@ class Runs:
         """Call it so."""
         change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(name=name)
         if (await self._store.write(lambda connection: connection.execute(change).rowcount)) == 0:
-            raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+            raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
 
     async def delete(self, run: int) -> None:
-        """Remove it for good. Raises NotNow while it runs."""
+        """Remove it for good. Raises SessionStateError while it runs."""
 
         def change(connection: Connection) -> None:
             state = connection.execute(
                 select(col(TuningRunRow.state)).where(col(TuningRunRow.id) == run)
             ).scalar_one_or_none()
             if state is None:
-                raise UnknownRun(f"There is no run {run}; it may have been deleted.")
+                raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
             if state == "running":
-                raise NotNow("This run is on. Stop it first.")
+                raise SessionStateError("This run is on. Stop it first.")
             connection.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
 
         await self._store.write(change)

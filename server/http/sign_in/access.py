@@ -8,10 +8,10 @@ from starlette.requests import HTTPConnection
 from robot_runtime.clock import Clock
 from robot_runtime.contract import documents
 from robot_runtime.durable_files import write_whole
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.http.sign_in.devices import Device, Devices
 from server.http.sign_in.identity import SHELL, Identity, Role
-from server.http.sign_in.pairing_codes import Codes, TooManyTries
+from server.http.sign_in.pairing_codes import Codes, TooManyTriesError
 from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -69,11 +69,11 @@ class Access:
         """Let a browser in, and what its cookie is to hold; None where it has one, being `known`.
 
         Such a one keeps its name, and its role where the code's is not a higher one.
-        Raises WrongCode, TooManyTries, Refused, StoreError.
+        Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
         """
         try:
             role = self.codes.use(code)
-        except TooManyTries as problem:
+        except TooManyTriesError as problem:
             if not self._limit_told:
                 self._tell("access", "caution", f"Somebody tries pairing codes. {problem}")
             self._limit_told = True
@@ -88,7 +88,7 @@ class Access:
         return device.identity, secret
 
     async def make_program(self, name: str, role: Role, by: Identity) -> tuple[Device, str]:
-        """A program's place, and its token. Raises Refused, StoreError."""
+        """A program's place, and its token. Raises RefusedError, StoreError."""
         device, token = await self.devices.add(name, role, "program")
         self._tell("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
         return device, token
@@ -96,7 +96,7 @@ class Access:
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
         """From now on; live sockets are closed, and come back in the new role.
 
-        Raises UnknownDevice, Refused, StoreError.
+        Raises UnknownDeviceError, RefusedError, StoreError.
         """
         device = self.devices.get(number)
         if device.role == role:
@@ -111,20 +111,26 @@ class Access:
         self._tell("access", "info", f"“{by.name}” made “{device.name}” {_with_article(role)}.")
 
     async def rename(self, number: int, name: str) -> None:
-        """Raises UnknownDevice, StoreError."""
+        """Raises UnknownDeviceError, StoreError."""
         await self.devices.rename(number, name)
 
     async def revoke(self, number: int, by: Identity) -> None:
-        """It is nobody from now on, also on live sockets. Raises UnknownDevice, Refused, StoreError."""
+        """It is nobody from now on, also on live sockets.
+
+        Raises UnknownDeviceError, RefusedError, StoreError.
+        """
         device = self.devices.get(number)
         self._keep_an_operator(device, by)
         await self._remove(device, "Access was revoked by an operator.")
         self._tell("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
 
     async def sign_out(self, identity: Identity) -> None:
-        """Its own end, which even the last operator may choose. Raises Refused for the shell, StoreError."""
+        """Its own end, which even the last operator may choose.
+
+        Raises RefusedError for the shell, StoreError.
+        """
         if identity == SHELL:
-            raise Refused("The shell of this computer is not signed in, and needs not sign out.")
+            raise RefusedError("The shell of this computer is not signed in, and needs not sign out.")
         await self._remove(self.devices.get(identity.device), "Signed out.")
         self._tell("access", "info", f"“{identity.name}” signed out.")
 
@@ -140,7 +146,7 @@ class Access:
 
     def _keep_an_operator(self, device: Device, by: Identity) -> None:
         if by != SHELL and self.devices.operators == [device]:
-            raise Refused(
+            raise RefusedError(
                 f"“{device.name}” is the only operator. Make somebody else one first; "
                 "or use `mucat access` on the robot's computer, which always may."
             )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, select
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.http.sign_in.identity import Identity, Kind, Role
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
 from server.platform.models import DeviceRow
@@ -22,7 +22,7 @@ SEEN_SECONDS = 3600.0
 """How old the moment of the last visit may be in the database, which should not wear out its card."""
 
 
-class UnknownDevice(Exception):  # noqa: N818 - it says what happened
+class UnknownDeviceError(Exception):
     """There is no such browser or program; the text names it."""
 
     def __init__(self, device: int) -> None:
@@ -69,9 +69,9 @@ class Devices:
         return [self._devices[number] for number in sorted(self._devices)]
 
     def get(self, number: int) -> Device:
-        """The device of this number. Raises UnknownDevice."""
+        """The device of this number. Raises UnknownDeviceError."""
         if number not in self._devices:
-            raise UnknownDevice(number)
+            raise UnknownDeviceError(number)
         return self._devices[number]
 
     def find(self, secret: str, kind: Kind) -> Device | None:
@@ -87,10 +87,10 @@ class Devices:
     async def add(self, name: str, role: Role, kind: Kind) -> tuple[Device, str]:
         """A new device, and the secret that proves it, which nobody can be told again.
 
-        Raises Refused where there are too many, StoreError.
+        Raises RefusedError where there are too many, StoreError.
         """
         if len(self._devices) >= DEVICES_MAX:
-            raise Refused(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
+            raise RefusedError(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
         secret = make_token(TOKEN_PREFIX if kind == "program" else "")
         now = self._utc()
         row = DeviceRow(name=name, role=role, kind=kind, secret=digest(secret), paired=now, seen=now)
@@ -106,7 +106,7 @@ class Devices:
     async def set_role(self, number: int, role: Role) -> None:
         """Less is allowed from now on, whatever the database says; more once it is stored.
 
-        Raises UnknownDevice, StoreError.
+        Raises UnknownDeviceError, StoreError.
         """
         device = self.get(number)
         if role == "viewer":
@@ -115,13 +115,13 @@ class Devices:
         device.role = role
 
     async def rename(self, number: int, name: str) -> None:
-        """Call it otherwise. Raises UnknownDevice, StoreError."""
+        """Call it otherwise. Raises UnknownDeviceError, StoreError."""
         device = self.get(number)
         await self._update(number, name=name)
         device.name = name
 
     async def remove(self, number: int) -> None:
-        """It proves nothing from now on. Raises UnknownDevice; StoreError where it would come back."""
+        """It proves nothing from now on. Raises UnknownDeviceError; StoreError where it would come back."""
         self.get(number)
         self._by_secret = {secret: one for secret, one in self._by_secret.items() if one != number}
         await self._store.write(

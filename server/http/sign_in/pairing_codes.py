@@ -20,7 +20,7 @@ LIMITS = ((3, 60.0), (10, 3600.0))
 nothing."""
 
 
-class WrongCode(Exception):  # noqa: N818 - it says what happened
+class WrongCodeError(Exception):
     """This code opens nothing."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class WrongCode(Exception):  # noqa: N818 - it says what happened
         )
 
 
-class TooManyTries(Exception):  # noqa: N818 - it says what happened
+class TooManyTriesError(Exception):
     """Codes are not looked at now; `seconds` until they are again."""
 
     def __init__(self, seconds: float) -> None:
@@ -75,16 +75,19 @@ class Codes:
         return code
 
     def use(self, typed: str) -> Role:
-        """What a code stands for; it is void afterwards. Raises WrongCode, which counts, and TooManyTries."""
+        """What a code stands for; it is void afterwards.
+
+        Raises WrongCodeError, which counts, and TooManyTriesError.
+        """
         if (wait := self.wait) > 0:
-            raise TooManyTries(wait)
+            raise TooManyTriesError(wait)
         self._forget_old()
         wanted = digest(normal_code(typed))
         # Every one is compared, and in full, so that the time taken tells nothing.
         found = [code for code in self._codes if compare_digest(code.digest, wanted)]
         if not found:
             self._wrong.append(self._clock.now())
-            raise WrongCode
+            raise WrongCodeError
         self._codes.remove(found[0])
         return found[0].role
 

@@ -9,7 +9,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import Start, StatusFlag, Stop
 from robot_runtime.control.transitions import ARMED, TRANSITIONS
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from tests.runtime.control.test_supervisor import Rig
 
 HEARTBEAT = 4.0
@@ -87,7 +87,7 @@ class Arming(RuleBasedStateMachine):
         before = sum(isinstance(one, Start) for one in self.board.sent)
         try:
             self.supervisor.begin_arming(mode, alone)
-        except Refused:
+        except RefusedError:
             assert sum(isinstance(one, Start) for one in self.board.sent) == before
         else:
             assert armed or not reasons
@@ -100,7 +100,7 @@ class Arming(RuleBasedStateMachine):
         armed = self.supervisor.mode in ("automatic", "manual")
         try:
             self.supervisor.change_mode(mode)
-        except Refused:
+        except RefusedError:
             return
         assert armed
         self._look()

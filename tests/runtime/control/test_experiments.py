@@ -7,7 +7,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Experiment, State
 from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from tests.runtime.control.flight import Flight
 
 STEP: dict[str, Any] = {
@@ -200,11 +200,11 @@ WRONG = [
 
 def test_what_cannot_be_is_refused() -> None:
     with Flight() as flight:
-        with pytest.raises(Refused, match="The robot is disarmed"):
+        with pytest.raises(RefusedError, match="The robot is disarmed"):
             flight.command("experiment", **STEP)
         flight.arm()
         for wanted, why in WRONG:
-            with pytest.raises(Refused, match=why):
+            with pytest.raises(RefusedError, match=why):
                 flight.command("experiment", **wanted)
         flight.robot.experiments.require_none()
 
@@ -220,5 +220,5 @@ def test_nothing_else_changes_meanwhile() -> None:
             ("set_points", {"default": 1.0}),
             ("steering", {"by": "beacons"}),
         ):
-            with pytest.raises(Refused, match="An experiment runs on the depth"):
+            with pytest.raises(RefusedError, match="An experiment runs on the depth"):
                 flight._commands[name](question)

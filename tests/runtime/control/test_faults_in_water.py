@@ -8,7 +8,7 @@ import pytest
 from robot_runtime.control.fault_detector import TILT_MAX
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.pilot import PATIENCE
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.stepped_board import PERIOD
 from tests.runtime.control.flight import Flight
 
@@ -63,7 +63,7 @@ def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
     words = [event.text for event in flight.events if event.kind == "alarm"]
     assert any(text.startswith(BY_NAME[name].what) for text in words)
     assert not any(time > flight.now - 0.9 for time, _ in flight.sent)
-    with pytest.raises(Refused, match="Acknowledge the alarms"):
+    with pytest.raises(RefusedError, match="Acknowledge the alarms"):
         flight.supervisor.begin_arming()
     assert not flight.supervisor.board_armed or not flight.robot.line.connected
 
@@ -85,7 +85,7 @@ def test_a_robot_that_turns_over_is_stopped(flight: Flight) -> None:
     assert flight.alarm("capsized")
     flight.run(0.5)
     flight.supervisor.acknowledge()
-    with pytest.raises(Refused, match="on its side or on its back"):
+    with pytest.raises(RefusedError, match="on its side or on its back"):
         flight.supervisor.begin_arming()
 
 
@@ -103,7 +103,7 @@ def test_a_low_battery_turns_the_fins_down_and_is_an_alarm() -> None:
         assert 20.0 <= flight.now <= BY_NAME["battery_low"].limit
         assert flight.alarm("battery_low")
         flight.supervisor.acknowledge()
-        with pytest.raises(Refused, match="battery is low"):
+        with pytest.raises(RefusedError, match="battery is low"):
             flight.supervisor.begin_arming()
 
 
@@ -205,7 +205,7 @@ def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: 
     flight.until(lambda: flight.alarm("depth_stale"), BY_NAME["depth_stale"].limit + LATE)
     flight.run(5.0)
     assert flight.supervisor.mode == "manual"
-    with pytest.raises(Refused, match="pressure sensor does not answer"):
+    with pytest.raises(RefusedError, match="pressure sensor does not answer"):
         flight.command("mode", mode="automatic")
     flight.break_("pressure", "none")
     flight.run(1.0)

@@ -13,7 +13,7 @@ from robot_runtime.control.controllers import BangBang
 from robot_runtime.control.loop import LoopOverride
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import Pilot
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
 from tests.runtime.control.attitudes import quaternion
 
@@ -261,12 +261,12 @@ def test_the_depths_set_point_is_the_default_one_but_where_it_is_held_by_hand() 
 def test_what_is_wrong_is_refused_and_changes_nothing(name: str, change: dict[str, object], why: str) -> None:
     rig = Rig("automatic")
     before = [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()]
-    with pytest.raises(Refused, match=why):
+    with pytest.raises(RefusedError, match=why):
         rig.node.set_loop(name, **change)  # type: ignore[arg-type]
     assert [(loop.on, loop.set_point, loop.controller) for loop in rig.node.loops.values()] == before
 
 
 def test_nothing_is_held_that_is_not_measured() -> None:
     rig = Rig("manual")
-    with pytest.raises(Refused, match="Nothing is known of the heading yet"):
+    with pytest.raises(RefusedError, match="Nothing is known of the heading yet"):
         rig.node.set_loop("heading", on=True)

@@ -7,7 +7,7 @@ from robot_runtime.contract.documents import Control, Detection, Document, Event
 from robot_runtime.contract.packets import Beacon, Depth, Navigation
 from robot_runtime.control.node import BEACON_STALE, ControlNode
 from robot_runtime.control.pilot import Pilot
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
 
 
@@ -162,7 +162,7 @@ def test_bad_choices_are_refused_and_the_old_one_stays(
     rig: Rig, name: str, gains: dict[str, float], why: str
 ) -> None:
     before = rig.node.depth.controller
-    with pytest.raises(Refused, match=why):
+    with pytest.raises(RefusedError, match=why):
         rig.node.choose(name, gains)
     assert rig.node.depth.controller is before
 
@@ -170,7 +170,7 @@ def test_bad_choices_are_refused_and_the_old_one_stays(
 @pytest.mark.parametrize("depth", [-0.1, 10.1, float("nan"), float("inf")])
 def test_set_points_out_of_range_are_refused(rig: Rig, depth: float) -> None:
     for pair in ((depth, 1.0), (0.5, depth)):
-        with pytest.raises(Refused, match="not between 0 and 10"):
+        with pytest.raises(RefusedError, match="not between 0 and 10"):
             rig.node.set_points(*pair)
     assert (rig.node.set_point_default, rig.node.set_point_detected) == (0.5, 1.0)
 
@@ -184,7 +184,7 @@ def test_it_steers_only_where_it_is_told_to(rig: Rig) -> None:
     rig.tick()
     assert rig.commands[-1].x > 0
     assert rig.commands[-1].yaw > 0
-    with pytest.raises(Refused, match="there is no steering 'home'"):
+    with pytest.raises(RefusedError, match="there is no steering 'home'"):
         rig.node.steer("home")
     assert rig.node.steering == "beacons"
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.control.pilot import AGE_MAX, NEUTRAL, PATIENCE, Pilot
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 LEFT = [0.0, -1.0, 0.0, 0.0, 0.0, 0.25]
 
@@ -93,7 +93,7 @@ def test_another_holder_begins_with_the_sticks_in_the_middle(pilot: Pilot) -> No
     assert pilot.dropped == {"lease": 1}
     pilot.take(words(lease=4, sequence=0))
     assert pilot.command().y == -1.0
-    with pytest.raises(Refused, match="older than 4"):
+    with pytest.raises(RefusedError, match="older than 4"):
         pilot.change_lease(3)
 
 

@@ -20,7 +20,7 @@ from robot_runtime.contract.packets import (
     Stop,
 )
 from robot_runtime.control.supervisor import Supervisor
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 
 
 class Board:
@@ -130,7 +130,7 @@ def test_every_reason_against_arming_is_told(rig: Rig) -> None:
     rig.report()
     rig.clock.forward(0.41)
     rig.report()
-    with pytest.raises(Refused) as refusal:
+    with pytest.raises(RefusedError) as refusal:
         rig.supervisor.arm()
     for word in ("IMU", "back left fin", "fresh depth", "battery is low"):
         assert word in str(refusal.value)
@@ -147,7 +147,7 @@ def test_no_arming_without_a_connection_or_a_word_from_the_board(rig: Rig) -> No
 
 def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> None:
     rig.board.obeys = False
-    with pytest.raises(Refused, match="did not arm"):
+    with pytest.raises(RefusedError, match="did not arm"):
         rig.supervisor.arm()
     assert isinstance(rig.board.sent[-1], Stop)
     assert not rig.supervisor.armed
@@ -162,7 +162,7 @@ def test_a_look_while_the_board_arms_does_not_stop_it(rig: Rig) -> None:
 
 def test_a_stop_while_the_board_arms_is_the_last_word(rig: Rig) -> None:
     rig.on_start = lambda: rig.supervisor.stop("Stopped.")
-    with pytest.raises(Refused, match="Stopped before"):
+    with pytest.raises(RefusedError, match="Stopped before"):
         rig.supervisor.arm()
     assert not rig.supervisor.armed
     assert rig.board.sent == [Start(epoch=7), Stop()]
@@ -272,7 +272,7 @@ def test_a_failsafe_is_acknowledged_before_anything_arms(rig: Rig) -> None:
     rig.board.flags = 0
     rig.report()
     before = len(rig.board.sent)
-    with pytest.raises(Refused, match="Acknowledge the alarms"):
+    with pytest.raises(RefusedError, match="Acknowledge the alarms"):
         rig.supervisor.arm()
     assert not any(isinstance(packet, Start) for packet in rig.board.sent[before:])
     rig.supervisor.acknowledge()

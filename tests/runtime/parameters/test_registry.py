@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.parameters.entry import Entry
 from robot_runtime.parameters.registry import Registry
 
@@ -62,7 +62,7 @@ class Box:
 def test_what_cannot_be_is_refused_and_nothing_is_set(values: dict[str, Any], why: str) -> None:
     box = Box()
     before = dict(box.held)
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(RefusedError) as refused:
         box.registry.apply({"b": -1, **values})
     assert why in str(refused.value)
     assert str(refused.value).endswith("Nothing was changed.")
@@ -87,7 +87,7 @@ def test_whatever_is_said_all_of_it_is_set_or_nothing(values: dict[str, Any]) ->
     before = dict(box.held)
     try:
         box.registry.apply(values)
-    except Refused:
+    except RefusedError:
         assert box.held == before
     else:
         assert box.held == before | values
@@ -107,7 +107,7 @@ def test_partly_sets_what_can_be_and_says_why_the_rest_cannot() -> None:
 def test_what_waits_for_the_disarmed_robot_is_refused_while_it_is_armed() -> None:
     box = Box()
     box.armed = True
-    with pytest.raises(Refused, match="rest can only be changed while the robot is disarmed"):
+    with pytest.raises(RefusedError, match="rest can only be changed while the robot is disarmed"):
         box.registry.apply({"rest": 1, "a": 4})
     # What it is already changes nothing.
     box.registry.apply({"rest": 0, "a": 4})
@@ -116,7 +116,7 @@ def test_what_waits_for_the_disarmed_robot_is_refused_while_it_is_armed() -> Non
 
 def test_where_something_else_is_in_force_than_expected_nothing_is_set() -> None:
     box = Box()
-    with pytest.raises(Refused, match="and not 3 any more"):
+    with pytest.raises(RefusedError, match="and not 3 any more"):
         box.registry.apply({"a": 2}, expected={"a": 3})
     box.registry.apply({"a": 2}, expected={"a": 1})
     assert box.held["a"] == 2.0

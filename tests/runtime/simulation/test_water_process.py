@@ -18,7 +18,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents
 from robot_runtime.contract.topics import read_blocks, read_rows
-from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import PERIOD, WaterProcess
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -243,7 +243,7 @@ class TestAttached:
     def test_impossible_currents_are_refused(
         self, messages: ZenohTransport, question: dict[str, object]
     ) -> None:
-        with pytest.raises(Refused, match=r"takes|number|at most 2 m/s"):
+        with pytest.raises(RefusedError, match=r"takes|number|at most 2 m/s"):
             messages.ask("simulator/current", question)
 
     def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
@@ -281,11 +281,11 @@ class TestAttached:
         self, messages: ZenohTransport, name: str, question: dict[str, object]
     ) -> None:
         assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
-        with pytest.raises(Refused, match="takes"):
+        with pytest.raises(RefusedError, match="takes"):
             messages.ask(f"simulator/{name}", {})
 
     def test_reset_takes_no_depth(self, messages: ZenohTransport) -> None:
-        with pytest.raises(Refused, match="not depth"):
+        with pytest.raises(RefusedError, match="not depth"):
             messages.ask("simulator/reset", {"depth": 1})
 
 
@@ -298,7 +298,7 @@ def command(folder: Path, *more: str) -> list[str]:
 def accepted(messages: ZenohTransport) -> bool:
     try:
         return messages.ask("simulator/reset", {}, timeout=0.5) == {"accepted": True}
-    except NoAnswer:
+    except NoAnswerError:
         return False
 
 

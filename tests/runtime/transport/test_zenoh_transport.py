@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 
@@ -24,7 +24,7 @@ def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:
     while True:
         try:
             return asking.ask_bytes(name, payload)
-        except NoAnswer:
+        except NoAnswerError:
             continue
 
 
@@ -39,10 +39,10 @@ def test_a_refusal_is_told_in_its_words(ends: tuple[ZenohTransport, ZenohTranspo
     answering, asking = ends
 
     def refuse(question: bytes) -> bytes:
-        raise Refused(f"no picture {question.decode()} µm wide")
+        raise RefusedError(f"no picture {question.decode()} µm wide")
 
     answering.answer_bytes("picture", refuse)
-    with pytest.raises(Refused, match="no picture 3 µm wide"):
+    with pytest.raises(RefusedError, match="no picture 3 µm wide"):
         ask(asking, "picture", b"3")
 
 
@@ -55,7 +55,7 @@ def test_an_error_inside_is_no_detail_for_others(
         raise RuntimeError("secret")
 
     answering.answer_bytes("picture", fail)
-    with pytest.raises(Refused, match="its log says more"):
+    with pytest.raises(RefusedError, match="its log says more"):
         ask(asking, "picture", b"")
     assert "secret" in caplog.text
 
@@ -66,6 +66,6 @@ def test_who_does_not_answer_in_time_is_given_up(ends: tuple[ZenohTransport, Zen
     answering.answer_bytes("there", lambda _: b"")
     answering.answer_bytes("picture", lambda _: b"late" if gate.wait(30) else b"")
     ask(asking, "there", b"")
-    with pytest.raises(NoAnswer, match="nobody answered picture within"):
+    with pytest.raises(NoAnswerError, match="nobody answered picture within"):
         asking.ask_bytes("picture", b"", timeout=0.2)
     gate.set()

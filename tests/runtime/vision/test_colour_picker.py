@@ -9,7 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import COLOURS, ColourRange
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import CameraError
 from robot_runtime.vision.colour_picker import PickPoint, propose, range_of
 from robot_runtime.vision.node import VisionNode
@@ -87,14 +87,14 @@ def one_colour(blue: int, green: int, red: int) -> Picture:
     ],
 )
 def test_where_there_is_no_colour_none_is_picked(picture: Picture, why: str) -> None:
-    with pytest.raises(Refused, match=f"no colour at this place: {why}.*nothing was changed"):
+    with pytest.raises(RefusedError, match=f"no colour at this place: {why}.*nothing was changed"):
         propose(picture, MIDDLE)
 
 
 def test_several_colours_are_not_picked_as_one() -> None:
     picture = one_colour(20, 20, 220)
     picture[:, 80:] = (20, 220, 20)
-    with pytest.raises(Refused, match="several colours"):
+    with pytest.raises(RefusedError, match="several colours"):
         propose(picture, PickPoint(x=0.5, y=0.5, radius=0.1))
     assert propose(picture, PickPoint(x=0.2, y=0.5)).share == pytest.approx(0.5)
 
@@ -133,12 +133,12 @@ class TestNode:
     def test_without_a_picture_it_says_why(self) -> None:
         clock = SimulatedClock(1.0)
         node, camera = self.vision(drawn(1.0, "blue"), clock)
-        with pytest.raises(Refused, match=r"no picture to pick a colour in\. Camera: starting"):
+        with pytest.raises(RefusedError, match=r"no picture to pick a colour in\. Camera: starting"):
             node.pick({"x": 0.5, "y": 0.5})
         node.look()
         camera.failure = CameraError("the lens cap is on")
         node.look()
-        with pytest.raises(Refused, match="the lens cap is on"):
+        with pytest.raises(RefusedError, match="the lens cap is on"):
             node.pick({"x": 0.5, "y": 0.5})
 
     @pytest.mark.parametrize(

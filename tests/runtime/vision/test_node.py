@@ -16,7 +16,7 @@ from robot_runtime.clock import Clock, SimulatedClock, SteadyClock
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.documents import Detection, Event
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.vision.camera import Camera, CameraError
 from robot_runtime.vision.node import RETRY, VisionNode
 from tests.runtime.vision.harness import ShakyCamera, drawn
@@ -237,12 +237,12 @@ def test_pi_camera_where_there_is_none(listener: Listener, clock: SimulatedClock
 def test_cards_are_refused_where_they_cannot_be_shown(listener: Listener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
     with pytest.raises(
-        Refused, match="no card of colour 'pink'; there are red, yellow, green, blue, marker 7"
+        RefusedError, match="no card of colour 'pink'; there are red, yellow, green, blue, marker 7"
     ):
         node.show_card("pink")
     assert node.card is None
     other = listener.node(clock, config=VisionConfig(camera="file", file="a.mp4"))
-    with pytest.raises(Refused, match="the camera is 'file'"):
+    with pytest.raises(RefusedError, match="the camera is 'file'"):
         other.show_card("red")
 
 

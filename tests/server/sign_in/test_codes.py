@@ -1,7 +1,7 @@
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from server.http.sign_in.pairing_codes import CODES_MAX, Codes, TooManyTries, WrongCode
+from server.http.sign_in.pairing_codes import CODES_MAX, Codes, TooManyTriesError, WrongCodeError
 from server.http.sign_in.tokens import CODE_ALPHABET, CODE_LENGTH, make_code, make_token
 
 
@@ -16,7 +16,7 @@ def codes(clock: SimulatedClock) -> Codes:
 
 
 def try_wrong(codes: Codes) -> None:
-    with pytest.raises(WrongCode):
+    with pytest.raises(WrongCodeError):
         codes.use("wrong")
 
 
@@ -25,7 +25,7 @@ def test_a_code_works_once(codes: Codes) -> None:
     assert codes.any_valid
     assert codes.use(code) == "operator"
     assert not codes.any_valid
-    with pytest.raises(WrongCode):
+    with pytest.raises(WrongCodeError):
         codes.use(code)
 
 
@@ -45,7 +45,7 @@ def test_a_code_is_void_after_ten_minutes(codes: Codes, clock: SimulatedClock) -
     assert codes.use(early) == "operator"
     clock.forward(0.1)
     assert not codes.any_valid
-    with pytest.raises(WrongCode):
+    with pytest.raises(WrongCodeError):
         codes.use(late)
 
 
@@ -54,11 +54,11 @@ def test_three_wrong_codes_a_minute(codes: Codes, clock: SimulatedClock) -> None
     for _ in range(3):
         try_wrong(codes)
         clock.forward(10.0)
-    with pytest.raises(TooManyTries, match="30 s") as refused:
+    with pytest.raises(TooManyTriesError, match="30 s") as refused:
         codes.use(code)
     assert refused.value.seconds == 30
     clock.forward(29.9)
-    with pytest.raises(TooManyTries):
+    with pytest.raises(TooManyTriesError):
         codes.use("wrong")
     clock.forward(0.1)
     assert codes.use(code) == "operator"
@@ -69,12 +69,12 @@ def test_ten_wrong_codes_an_hour(codes: Codes, clock: SimulatedClock) -> None:
         try_wrong(codes)
         clock.forward(60.0)
     code = codes.make("operator")
-    with pytest.raises(TooManyTries, match="50 minutes") as refused:
+    with pytest.raises(TooManyTriesError, match="50 minutes") as refused:
         codes.use(code)
     assert refused.value.seconds == 3000
     clock.forward(2999.9)
     code = codes.make("operator")
-    with pytest.raises(TooManyTries):
+    with pytest.raises(TooManyTriesError):
         codes.use(code)
     clock.forward(0.1)
     assert codes.use(code) == "operator"
@@ -84,7 +84,7 @@ def test_refused_tries_do_not_prolong_the_wait(codes: Codes, clock: SimulatedClo
     for _ in range(3):
         try_wrong(codes)
     for _ in range(100):
-        with pytest.raises(TooManyTries):
+        with pytest.raises(TooManyTriesError):
             codes.use("wrong")
     clock.forward(60.0)
     try_wrong(codes)
@@ -97,7 +97,7 @@ def test_right_codes_are_no_tries(codes: Codes) -> None:
 
 def test_the_oldest_code_makes_room(codes: Codes) -> None:
     made = [codes.make("viewer") for _ in range(CODES_MAX + 1)]
-    with pytest.raises(WrongCode):
+    with pytest.raises(WrongCodeError):
         codes.use(made[0])
     assert all(codes.use(code) == "viewer" for code in made[1:])
 

@@ -14,10 +14,10 @@ from hypothesis.stateful import Bundle, RuleBasedStateMachine, invariant, precon
 from starlette.requests import HTTPConnection
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL, Identity, Kind, Role
-from server.http.sign_in.pairing_codes import CODE_SECONDS, CODES_MAX, TooManyTries, WrongCode
+from server.http.sign_in.pairing_codes import CODE_SECONDS, CODES_MAX, TooManyTriesError, WrongCodeError
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -136,11 +136,11 @@ class SigningIn(RuleBasedStateMachine):
         browser = known is not None and not known.out and known.identity.kind == "browser"
         asking = self.access.pair(code.text, "tablet", known.identity if known and not known.out else None)
         if self.waits():
-            with pytest.raises(TooManyTries):
+            with pytest.raises(TooManyTriesError):
                 self.run(asking)
             return self.nobody()
         if code not in self.valid():
-            with pytest.raises(WrongCode):
+            with pytest.raises(WrongCodeError):
                 self.run(asking)
             self.wrong.append(self.clock.now())
             return self.nobody()
@@ -172,10 +172,10 @@ class SigningIn(RuleBasedStateMachine):
     @rule(typed=st.sampled_from(["", "wrong", "AAAAA-AAAAA", "é" * 64]))
     def guess(self, typed: str) -> None:
         if self.waits():
-            with pytest.raises(TooManyTries):
+            with pytest.raises(TooManyTriesError):
                 self.run(self.access.pair(typed, "x", None))
         else:
-            with pytest.raises(WrongCode):
+            with pytest.raises(WrongCodeError):
                 self.run(self.access.pair(typed, "x", None))
             self.wrong.append(self.clock.now())
 
@@ -200,7 +200,7 @@ class SigningIn(RuleBasedStateMachine):
         last = self.operators() == [member] and role == "viewer" and not shell
         asking = self.access.set_role(member.identity.device, role, SHELL if shell else by.identity)
         if last:
-            with pytest.raises(Refused):
+            with pytest.raises(RefusedError):
                 self.run(asking)
             return
         before, self.closed = member.identity.role, []
@@ -215,7 +215,7 @@ class SigningIn(RuleBasedStateMachine):
             return
         asking = self.access.revoke(member.identity.device, SHELL if shell else by.identity)
         if self.operators() == [member] and not shell:
-            with pytest.raises(Refused):
+            with pytest.raises(RefusedError):
                 self.run(asking)
             return
         self.closed = []

@@ -8,7 +8,7 @@ import pytest
 import server.stream.hub as hub_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import read_blocks
-from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, Evicted, Hub
+from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, EvictedError, Hub
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.waiting import until
 
@@ -160,7 +160,7 @@ def test_documents_are_never_skipped_until_the_page_is_sent_away() -> None:
             hub.add([debug_block(number, "x")])
             await asyncio.sleep(0)
         page.reading.set()
-        with pytest.raises(Evicted, match="fell too far behind") as reason:
+        with pytest.raises(EvictedError, match="fell too far behind") as reason:
             await page.task
         assert reason.value.code == 1013
         await until(lambda: len(other.numbers("debug")) == 2 * DOCUMENTS_MESSAGES + 2, "the other page")
@@ -203,7 +203,7 @@ def test_who_has_stopped_reading_is_cut_off_and_costs_the_others_nothing(
         await asyncio.sleep(0.02)
         assert not stalled.task.done()
         clock.forward(0.2)
-        with pytest.raises(Evicted, match="Nothing was read"):
+        with pytest.raises(EvictedError, match="Nothing was read"):
             await stalled.task
         hub.add([depth_block(1, 1)])
         await until(lambda: other.numbers("depth") == [0, 1], "the other page")
@@ -223,7 +223,7 @@ def test_answers_nobody_reads_end_the_connection() -> None:
         assert client is not None
         for number in range(hub_module.ANSWERS_MAX):
             client.answer({"op": "pong", "id": number})
-        with pytest.raises(Evicted, match="unread"):
+        with pytest.raises(EvictedError, match="unread"):
             client.answer({"op": "pong", "id": -1})
         page.reading.set()
         await page.leave()
@@ -297,7 +297,7 @@ def test_there_is_room_for_so_many_pages_and_no_more() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
         pages = [Page(hub) for _ in range(hub_module.CLIENTS_MAX)]
         await until(lambda: hub.clients == hub_module.CLIENTS_MAX, "all pages")
-        with pytest.raises(Evicted, match="open already"):
+        with pytest.raises(EvictedError, match="open already"):
             await Page(hub).task
         for page in pages:
             await page.leave()

@@ -23,7 +23,7 @@ from robot_runtime.contract.scene_picture import (
     write_request,
 )
 from robot_runtime.contract.topics import BY_NAME, Block, Kind, read_blocks, row
-from robot_runtime.errors import NoAnswer, Refused
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.scene import process as process_module
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.process import SceneProcess
@@ -70,7 +70,7 @@ def patiently(ask: Callable[[], Any]) -> Any:
     while True:
         try:
             return ask()
-        except NoAnswer:
+        except NoAnswerError:
             continue
 
 
@@ -95,7 +95,7 @@ def conversation() -> Iterator[Ends]:
 @rendered
 def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
     with conversation() as ends:
-        with pytest.raises(Refused, match="not told yet where the robot is"):
+        with pytest.raises(RefusedError, match="not told yet where the robot is"):
             ends.picture()
         ends.tell(12.5, truth((0.0, 0.0, 1.0)))
         first = ends.picture()
@@ -165,7 +165,7 @@ def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
     ],
 )
 def test_bad_questions_are_refused_in_words(name: str, question: dict[str, Any], words: str) -> None:
-    with conversation() as ends, pytest.raises(Refused, match=words):
+    with conversation() as ends, pytest.raises(RefusedError, match=words):
         ends.ask(name, question)
 
 
@@ -197,7 +197,7 @@ def test_a_client_that_goes_away_harms_nobody() -> None:
     with conversation() as ends:
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
-        with pytest.raises(NoAnswer):
+        with pytest.raises(NoAnswerError):
             # Gone long before there can be an answer.
             ends.other.ask_bytes("scene/picture", write_request(1280, 960, None), timeout=0.001)
         assert ends.picture().time == 1.0
@@ -271,7 +271,7 @@ def test_without_mujoco_a_drawn_card_stands_in_and_one_line_says_so(monkeypatch:
     with conversation() as ends:
         ends.ask("ready", {})
         ends.tell(1.0, truth())
-        with pytest.raises(Refused, match="do this"):
+        with pytest.raises(RefusedError, match="do this"):
             ends.picture()
         events = look(ends.other, lambda vision: "drawn" in vision.text, VisionConfig(camera="scene"))
         assert [event.severity for event in events] == ["caution"]

@@ -11,7 +11,7 @@ import pytest
 
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.topics import BY_NAME, Block, row
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.hil import GAP_MAX, HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
@@ -122,5 +122,5 @@ def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simul
     ):
         HilSimulator(simulator, here)
         here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
-        with pytest.raises(Refused, match="has no buses"):
+        with pytest.raises(RefusedError, match="has no buses"):
             here.ask("simulator/fault", {"sensor": "pressure", "kind": "bus"})

@@ -5,7 +5,7 @@ from math import isnan, pi
 
 import pytest
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.faults import DEVICES, SENSORS
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import Question, changes
@@ -237,7 +237,7 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
 def test_what_cannot_be_is_refused_in_words_and_changes_nothing(
     simulator: Simulator, name: str, question: Question, words: str
 ) -> None:
-    with pytest.raises((Refused, ValueError), match=words):
+    with pytest.raises((RefusedError, ValueError), match=words):
         changes(simulator)[name](question)
     assert rest(simulator, 1) == rest(Simulator(QUIET, seed=1), 1)
 
@@ -265,7 +265,7 @@ def test_a_reset_may_choose_the_noise(ask: Ask) -> None:
     assert rest(noisy, 1) != first
     changes(noisy)["reset"]({"seed": 1})
     assert rest(noisy, 1) == first
-    with pytest.raises(Refused, match=r"seed must be a whole number, not 1\.5"):
+    with pytest.raises(RefusedError, match=r"seed must be a whole number, not 1\.5"):
         ask("reset", seed=1.5)
 
 

@@ -13,7 +13,7 @@ import pytest
 import server.features.comm_tests.board_reservation as handover_module
 import server.stream.bridge as bridge_module
 from robot_runtime.config import LinkConfig
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.platform.settings import Settings
 from server.processes.supervisor import Command
 from tests.server.blocks import state_block
@@ -105,7 +105,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
                 answer = await served.api.post(f"/{path}", json=body)
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
-            with pytest.raises(Refused, match="grid"):
+            with pytest.raises(RefusedError, match="grid"):
                 async with served.assembly.handover.lend("another"):
                     pass
             assert runtime_state(served) == "paused"
@@ -121,7 +121,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
 def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
-        with pytest.raises(Refused, match="“dive” is being recorded"):
+        with pytest.raises(RefusedError, match="“dive” is being recorded"):
             async with served.assembly.handover.lend("tested"):
                 pass
         assert served.runtime.asked == []
@@ -140,7 +140,7 @@ def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
         if state is not None:
             served.runtime.publish(state_block(0, **{"time": served.assembly.clock.now() + 60} | state))
             await until(served.assembly.watch.state, "the state")
-        with pytest.raises(Refused, match="was not disarmed within"):
+        with pytest.raises(RefusedError, match="was not disarmed within"):
             async with served.assembly.handover.lend("tested"):
                 pass
         assert (runtime_state(served), robot.marker.exists()) == ("running", False)
@@ -154,7 +154,7 @@ def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch:
 
     async def scenario(served: Served) -> None:
         served.runtime.gates["stop"].clear()
-        with pytest.raises(Refused, match="could not be disarmed before the test"):
+        with pytest.raises(RefusedError, match="could not be disarmed before the test"):
             async with served.assembly.handover.lend("tested"):
                 pass
         served.runtime.gates["stop"].set()
@@ -166,7 +166,7 @@ def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch:
 def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         robot.marker.mkdir()
-        with pytest.raises(Refused, match="firmware-away cannot be written"):
+        with pytest.raises(RefusedError, match="firmware-away cannot be written"):
             async with lent(served):
                 pass
         assert not robot.uploads.exists()

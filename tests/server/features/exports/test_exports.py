@@ -27,7 +27,7 @@ from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
 from server.features.exports.mcap_schemas import WELL_KNOWN
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.sessions.session import find_row
 from server.platform.models import Marker
 from server.platform.settings import Settings
@@ -146,7 +146,7 @@ def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> No
 def test_parquet_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    with pytest.raises(ExportRefused, match=r"pip install mucat\[parquet\]"):
+    with pytest.raises(ExportRequestError, match=r"pip install mucat\[parquet\]"):
         check(Wanted(format="parquet"))
 
 
@@ -284,7 +284,7 @@ def test_a_range_and_topics_are_kept_to(store: Store, session: int) -> None:
     ],
 )
 def test_what_cannot_be_made_is_told(store: Store, session: int, wanted: dict[str, Any], words: str) -> None:
-    with pytest.raises(ExportRefused, match=words):
+    with pytest.raises(ExportRequestError, match=words):
         write(store, session, **wanted)
 
 
@@ -298,7 +298,7 @@ def test_the_same_session_gives_the_same_bytes(store: Store, session: int, kind:
 def test_an_empty_session_gives_a_file(store: Store, settings: Settings, kind: str) -> None:
     number = record(store, settings)
     if kind == "csv-grid":
-        with pytest.raises(ExportRefused, match="No topic has numbers"):
+        with pytest.raises(ExportRequestError, match="No topic has numbers"):
             write(store, number, format=kind)
     else:
         write(store, number, format=kind)

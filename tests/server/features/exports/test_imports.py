@@ -18,10 +18,10 @@ from sqlalchemy import Connection, insert, text
 from sqlmodel import col, select
 
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
-from server.features.exports.archive_reader import ArchiveRefused, examine
+from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRefused, Source
+from server.features.exports.selection import ExportRequestError, Source
 from server.features.sessions.session import IMPORTING, REMOVING, find_row
 from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.platform.schema import prepare
@@ -197,7 +197,7 @@ BAD = {
 def test_a_bad_archive_is_refused_in_words(archive: Path, name: str) -> None:
     edit, summed, words = BAD[name]
     change(archive, edit, summed=summed)
-    with pytest.raises(ArchiveRefused, match=words):
+    with pytest.raises(ArchiveError, match=words):
         examine(archive)
 
 
@@ -206,13 +206,13 @@ def test_what_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
     for data in (b"", b"time,depth\n", whole[:1000], whole[:-1], whole[:200] + b"\0" * 50 + whole[250:]):
         other = tmp_path / "other"
         other.write_bytes(data)
-        with pytest.raises(ArchiveRefused):
+        with pytest.raises(ArchiveError):
             examine(other)
     packed = tmp_path / "packed.zip"
     with zipfile.ZipFile(archive) as old, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():
             new.writestr(name, old.read(name))
-    with pytest.raises(ArchiveRefused, match="packed or encrypted"):
+    with pytest.raises(ArchiveError, match="packed or encrypted"):
         examine(packed)
     examine(archive)
 
@@ -221,7 +221,7 @@ def test_a_session_that_records_is_not_archived(store: Store, session: int) -> N
     row = find_row(store, session)
     assert row is not None
     row.state = "recording"
-    with pytest.raises(ExportRefused, match="Stop the recording"):
+    with pytest.raises(ExportRequestError, match="Stop the recording"):
         write_archive(store, Source(store, row, Wanted(format="archive")), io.BytesIO())
 
 

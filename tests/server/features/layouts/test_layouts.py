@@ -7,9 +7,9 @@ import pytest
 from pydantic import ValidationError
 from sqlmodel import insert
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
-from server.features.layouts.library import LAYOUTS_MOST, Layouts, UnknownLayout
+from server.features.layouts.library import LAYOUTS_MOST, Layouts, UnknownLayoutError
 from server.platform.models import LayoutRow
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -71,10 +71,10 @@ def test_there_may_be_so_many(store: Store) -> None:
         layouts = Layouts(store)
         rows = [{"name": f"n{one}", "document": "{}", "saved": 0.0} for one in range(LAYOUTS_MOST)]
         await store.write(lambda connection: connection.execute(insert(LayoutRow), rows))
-        with pytest.raises(Refused, match="Delete one"):
+        with pytest.raises(RefusedError, match="Delete one"):
             await layouts.save("one more", document())
         assert (await layouts.save("n3", document())).name == "n3"
-        with pytest.raises(UnknownLayout):
+        with pytest.raises(UnknownLayoutError):
             await layouts.delete(LAYOUTS_MOST + 1)
 
     asyncio.run(scenario())

@@ -4,10 +4,10 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import PROGRAM_SECONDS
-from server.features.lease.lease import NotInControl
+from server.features.lease.lease import NotInControlError
 from server.http.sign_in.identity import Identity
 from tests.server.features.lease.people import ANNA, BEN, VERA, Seen
 
@@ -42,7 +42,9 @@ def test_held_control_is_not_taken_by_accident() -> None:
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
         arbiter.take(anna)
-        with pytest.raises(Refused, match=r"Control is with Anna\. Agree with them, then take it over\."):
+        with pytest.raises(
+            RefusedError, match=r"Control is with Anna\. Agree with them, then take it over\."
+        ):
             arbiter.take(ben)
         arbiter.take(anna)
         assert (arbiter.lease.holder, arbiter.lease.epoch) == (anna.number, 1_000_001)
@@ -64,10 +66,10 @@ def test_a_server_that_was_started_again_begins_above_what_the_last_one_reached(
 def test_a_viewer_neither_takes_control_nor_takes_it_over() -> None:
     seen = Seen()
     with seen.arbiter.page(VERA) as vera, seen.arbiter.page(ANNA) as anna:
-        with pytest.raises(Refused, match="Only operators"):
+        with pytest.raises(RefusedError, match="Only operators"):
             seen.arbiter.take(vera)
         seen.arbiter.take(anna)
-        with pytest.raises(Refused, match="Only operators"):
+        with pytest.raises(RefusedError, match="Only operators"):
             seen.arbiter.take(vera, over=True)
         assert seen.arbiter.lease.holder == anna.number
 
@@ -76,12 +78,12 @@ def test_it_says_who_has_control_and_what_to_do() -> None:
     seen = Seen()
     arbiter = seen.arbiter
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
-        with pytest.raises(NotInControl, match=r"Nobody has control\. Take control first\."):
+        with pytest.raises(NotInControlError, match=r"Nobody has control\. Take control first\."):
             arbiter.require(anna)
         arbiter.take(anna)
         arbiter.require(anna)
         for client in (ben, None):
-            with pytest.raises(NotInControl, match=r"Control is with Anna\. Agree with them"):
+            with pytest.raises(NotInControlError, match=r"Control is with Anna\. Agree with them"):
                 arbiter.require(client)
 
 
@@ -89,7 +91,7 @@ def test_two_pages_of_one_browser_are_two_clients() -> None:
     seen = Seen()
     with seen.arbiter.page(ANNA) as one, seen.arbiter.page(ANNA) as other:
         seen.arbiter.take(one)
-        with pytest.raises(NotInControl):
+        with pytest.raises(NotInControlError):
             seen.arbiter.require(seen.arbiter.clients.find(ANNA, other.key))
         seen.arbiter.require(seen.arbiter.clients.find(ANNA, one.key))
         # Without a key a page's browser has nothing.

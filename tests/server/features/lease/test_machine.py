@@ -15,7 +15,7 @@ from hypothesis.stateful import (
     rule,
 )
 
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.lease.clients import ControlClient
 from server.features.lease.lease import Change
 from server.http.sign_in.identity import Identity, Role
@@ -91,7 +91,7 @@ class Contest(RuleBasedStateMachine):
         before = self.arbiter.lease.holder
         try:
             self.arbiter.take(client, over=over)
-        except Refused:
+        except RefusedError:
             assert self.arbiter.lease.holder == before
             held = before is not None and before != client.number
             assert client.identity.role == "viewer" or (held and not over)

@@ -3,9 +3,9 @@ import asyncio
 import pytest
 
 import server.features.lease.sync as sync_module
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from server.features.lease.sync import LeaseSync
-from server.stream.bridge import RuntimeSilent
+from server.stream.bridge import RuntimeSilentError
 from tests.server.waiting import until
 
 
@@ -14,7 +14,10 @@ def test_the_runtime_is_told_each_epoch_and_each_run_until_it_has_answered(
 ) -> None:
     monkeypatch.setattr(sync_module, "TRY_AGAIN_SECONDS", 0.001)
     asked: list[int] = []
-    problems: list[Exception] = [RuntimeSilent("not there", False), RuntimeSilent("not there", True)]
+    problems: list[Exception] = [
+        RuntimeSilentError("not there", False),
+        RuntimeSilentError("not there", True),
+    ]
 
     async def ask(epoch: int) -> None:
         asked.append(epoch)
@@ -29,7 +32,7 @@ def test_the_runtime_is_told_each_epoch_and_each_run_until_it_has_answered(
         sync.see_epoch(5)
         sync.see_run("a")
         await until(lambda: asked == [5, 5, 5, 5], "the new run to be told")
-        problems.append(Refused("That epoch is over."))
+        problems.append(RefusedError("That epoch is over."))
         sync.see_epoch(6)
         await until(lambda: asked[4:] == [6], "the change")
         sync.see_run("a")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanel, list_panels, read_panel
+from server.features.panels.scripts import SCRIPT_BYTES_MAX, UnknownPanelError, list_panels, read_panel
 from server.platform.settings import Settings
 from tests.server.serving import serve
 
@@ -43,7 +43,7 @@ def test_no_other_file_is_read(tmp_path: Path, name: str) -> None:
     put(folder, "Climb rate.js")
     put(folder, "large.js", b" " * (SCRIPT_BYTES_MAX + 1))
     put(tmp_path, "secret.js")
-    with pytest.raises(UnknownPanel):
+    with pytest.raises(UnknownPanelError):
         read_panel(folder, name)
 
 

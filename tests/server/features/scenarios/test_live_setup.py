@@ -9,7 +9,7 @@ from typing import Any, cast
 import pytest
 
 from robot_runtime.control.controllers.angle import HeadingPid
-from robot_runtime.errors import Refused
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import firmware_path
@@ -201,7 +201,7 @@ def test_what_cannot_be_put_back_is_told_and_the_rest_done(
     async def work() -> list[str]:
         surroundings = Surroundings(cast(Bridge, bridge), Path("/nowhere/socket"))
         before = await surroundings.read(STATE)
-        with pytest.raises(Refused, match="The emulated board: no emulated board answers"):
+        with pytest.raises(RefusedError, match="The emulated board: no emulated board answers"):
             await surroundings.prepare(SCENARIO, before)
         return await surroundings.put_back(before)
 

@@ -16,7 +16,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.chunks import decode_rows
-from server.features.sessions.recorder import Recorder, RecordingRefused
+from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row, new_row
 from server.platform.models import Chunk, Gap
@@ -234,12 +234,12 @@ def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
 def test_one_session_at_a_time(deck: Deck) -> None:
     async def scenario() -> None:
         session = await deck.start()
-        with pytest.raises(RecordingRefused, match="stop it first"):
+        with pytest.raises(RecordingRefusedError, match="stop it first"):
             await deck.start()
-        with pytest.raises(RecordingRefused):
+        with pytest.raises(RecordingRefusedError):
             await deck.recorder.stop(session + 1)
         await deck.recorder.stop(session)
-        with pytest.raises(RecordingRefused):
+        with pytest.raises(RecordingRefusedError):
             await deck.recorder.stop(session)
         assert await deck.start() == session + 1
 

@@ -17,7 +17,7 @@ from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, read_blocks, read_rows, row
 from server.features.sessions.chunks import encode_rows
 from server.features.sessions.recording import Recording
-from server.features.sessions.replay import CHARTED, LISTED_CHUNKS, RANGE_MAX, TooMuch, read_stretch
+from server.features.sessions.replay import CHARTED, LISTED_CHUNKS, RANGE_MAX, TooMuchDataError, read_stretch
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Hole, read_timeline
 from server.platform.models import Marker
@@ -168,7 +168,7 @@ def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
 
 
 def test_too_long_a_range_is_refused_with_its_limit(dive: Recording) -> None:
-    with pytest.raises(TooMuch, match="at most 120 s"):
+    with pytest.raises(TooMuchDataError, match="at most 120 s"):
         read_stretch(dive, 100.0, 100.1 + RANGE_MAX)
 
 
