@@ -27,8 +27,8 @@ def main() -> int:
             config.robot.name, *_endpoints(options.data, config.zenoh.listen), config.zenoh.scouting
         ) as messages:
             port = options.port or config.link.port
-            kept = VisionSettingsFile(options.data / "vision.json")
-            robot = Robot(config, port, messages, heartbeat=options.heartbeat, kept_vision=kept)
+            vision_file = VisionSettingsFile(options.data / "vision.json")
+            robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
             robot.answer()
             if options.server_lock is not None:
                 watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)

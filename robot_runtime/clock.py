@@ -37,7 +37,7 @@ class SimulatedClock:
         return self._now
 
     def forward(self, seconds: float) -> None:
-        """Let time pass. Raises ValueError where it would run backwards."""
+        """Advances the time. Raises ValueError for a negative duration."""
         if seconds < 0:
             raise ValueError(f"time cannot run backwards by {-seconds} s")
         self._now += seconds

@@ -112,7 +112,7 @@ class Commands:
         name, on = _text(question, "name"), question.get("on")
         if on is not None and not isinstance(on, bool):
             raise RefusedError(f"on is {on!r}; it must be true or false")
-        if on and name == "depth" and (reasons := self._robot.supervisor.watch.depth_refusals()):
+        if on and name == "depth" and (reasons := self._robot.supervisor.detector.depth_refusals()):
             raise RefusedError(" ".join(reasons))
         self._robot.control.set_loop(
             name,

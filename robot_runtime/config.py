@@ -26,7 +26,7 @@ def _chip_baud(baud: int) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
-    """Who this robot is."""
+    """The robot's name and how it is run."""
 
     name: str = "turtle"
     mode: Literal["emulated", "robot", "hil"] = "emulated"
@@ -80,13 +80,13 @@ class VisionConfig(VisionSettings):
 
     @property
     def settings(self) -> VisionSettings:
-        """What of it may change while the node looks."""
+        """The settings that may change while the node runs."""
         return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZenohConfig:
-    """What the runtime offers beyond its own computer."""
+    """The Zenoh endpoints that other computers may use."""
 
     listen: list[str] = field(default_factory=list)
     scouting: bool = False
@@ -104,7 +104,7 @@ class ServerConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionsConfig:
-    """What is recorded and removed by itself; times in days, room in GB of 10^9 bytes, 0: no such rule."""
+    """Automatic recording and retention; times in days, space in GB of 10^9 bytes, 0: no such rule."""
 
     record_at_arming: bool = True
     undo_days: Annotated[float, Range(0, 3650)] = 7.0

@@ -1,4 +1,4 @@
-"""What the robot does, step by step: link, control, vision and the way to the others, put together.
+"""The robot's core: link, control, vision and publication, as steps without threads.
 
 It has no thread and waits for nothing. `robot.Robot` gives it threads and the computer's time; in simulated
 time `scenario.run` calls the same steps one after the other.
@@ -71,7 +71,7 @@ _ROW_OF = {
     Status.type: "status",
 }
 PUBLISH_EVERY = 0.1
-"""s between two looks for what the board's own messages have not already taken along."""
+"""s between two publications when no message of the board triggers one."""
 _STATE_EVERY = 1.0
 _STATISTICS_EVERY = 1.0
 _VISION_EVERY = 10.0
@@ -108,7 +108,7 @@ class Core:
         self.bus = Bus()
         self.outbox = outbox
         self._run = run
-        self._state_wanted = threading.Event()
+        self._state_changed = threading.Event()
         self._piloted = False
         self.line = line
         self._paces = [
@@ -119,21 +119,21 @@ class Core:
         self.supervisor = Supervisor(
             clock,
             self.line,
-            self.tell,
+            self.publish_event,
             loop,
             heartbeat,
             on_mode=lambda mode: self.control.change_mode(mode),
-            unsettled=self.board_parameters.refusals,
+            arming_obstacles=self.board_parameters.refusals,
         )
         self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
-        self.experiments = Experiments(clock, self._tell_experiment)
+        self.experiments = Experiments(clock, self._publish_experiment)
         self.vision = VisionNode(
             config.vision,
             clock,
             self._take_detection,
             outbox.send_picture,
             watched,
-            self.tell,
+            self.publish_event,
             open_camera,
             messages,
             on_thumbnail=self._take_thumbnail,
@@ -148,34 +148,34 @@ class Core:
         self.parameters = Registry(
             [*runtime_entries(self.control, self.vision, self.set_vision), *self.board_parameters.entries()],
             armed=lambda: self.supervisor.armed,
-            between_ticks=self.control.between_ticks,
+            tick_lock=self.control.tick_lock,
         )
-        self._parameters_told: Parameters | None = None
+        self._parameters_published: Parameters | None = None
         self._join()
 
-    def tell(self, event: Event) -> None:
-        """Publish an event, and the state that it changed."""
+    def publish_event(self, event: Event) -> None:
+        """Publishes an event and the changed state."""
         self.bus.publish_document("event", event)
-        self._state_wanted.set()
+        self._state_changed.set()
 
-    def _tell_experiment(self, told: Experiment) -> None:
+    def _publish_experiment(self, experiment: Experiment) -> None:
         # First, so that who hears of its end knows already that the loop is as it was.
         self.bus.publish_document("state", self.state())
-        self.bus.publish_document("experiment", told)
+        self.bus.publish_document("experiment", experiment)
 
     def announce(self) -> None:
-        """Publish the state soon, since something of it changed."""
-        self._state_wanted.set()
+        """Requests publication of the state."""
+        self._state_changed.set()
 
     def control_tick(self) -> None:
-        """Decide and command once; to be called at the control rate."""
-        with self.control.between_ticks:
+        """Runs one control tick; call it at the control rate."""
+        with self.control.tick_lock:
             self._control_tick()
 
     def _control_tick(self) -> None:
         self.look()
         try:
-            if self.control.depth.on and (reasons := self.supervisor.watch.depth_refusals()):
+            if self.control.depth.on and (reasons := self.supervisor.detector.depth_refusals()):
                 self.control.let_go(self.control.depth, reasons[0])
             self.experiments.tick(self.supervisor.mode)
             self.control.tick()
@@ -186,12 +186,12 @@ class Core:
             self.supervisor.fail("control_failed")
 
     def take_pilot(self, payload: bytes) -> None:
-        """Do at once what the pilot's sticks say, without waiting for the next tick."""
+        """Sends the pilot's input at once, without waiting for the next tick."""
         if self.supervisor.pilot.take(payload):
             self._drive()
 
     def pilot_tick(self) -> float:
-        """Let the fins rest as soon as the pilot has fallen silent; when to look again (s, steady clock)."""
+        """Stops the fins when the pilot falls silent; returns when to check again (s, steady clock)."""
         pilot, now = self.supervisor.pilot, self.clock.now()
         if self.supervisor.mode != "manual":
             return inf
@@ -204,7 +204,7 @@ class Core:
         return min(now + PILOT_LOOK, pilot.until)
 
     def look(self) -> None:
-        """Look for faults; to be called every `PUBLISH_EVERY` at least."""
+        """Checks for faults; call it every `PUBLISH_EVERY` at least."""
         try:
             self.supervisor.tick()
         except Exception:
@@ -212,7 +212,7 @@ class Core:
             self.supervisor.fail("control_failed")
 
     def publish_tick(self) -> None:
-        """Look for faults and send what waits; to be called every `PUBLISH_EVERY`."""
+        """Checks for faults and publishes queued data; call it every `PUBLISH_EVERY`."""
         # Here too, as the control loop may be slower.
         self.look()
         self.board_parameters.tick()
@@ -221,14 +221,14 @@ class Core:
             if now >= self._due[index]:
                 self._due[index] = now + seconds
                 action()
-        if self._state_wanted.is_set():
-            self._state_wanted.clear()
+        if self._state_changed.is_set():
+            self._state_changed.clear()
             self.bus.publish_document("state", self.state())
             self._publish_parameters()
         self.outbox.flush()
 
     def state(self) -> State:
-        """The robot as a whole, now."""
+        """Returns the state of the robot."""
         board = self.line.board
         loops = [_describe(loop) for loop in self.control.loops.values()]
         return State(
@@ -263,22 +263,22 @@ class Core:
         )
 
     def set_vision(self, settings: VisionSettings) -> None:
-        """Have the vision node look so from its next picture on, and tell of it."""
+        """Applies vision settings from the next picture on, and publishes them."""
         self.vision.settings = settings
         self.control.colour = settings.colour
         self._publish_vision()
 
     def vision_settings(self) -> dict[str, Any]:
-        """How the vision node looks, and how it would by the configuration alone; for a JSON object."""
+        """Returns the vision settings in force and the configured ones, as a JSON object."""
         now, configured = self.vision.settings, self.config.vision.settings
         return {"settings": now.table(), "configured": configured.table()}
 
     def list_parameters(self) -> Parameters:
-        """Everything that may be tuned, as it is now."""
+        """Returns all tunable parameters with their values."""
         return Parameters(time=self.clock.now(), parameters=self.parameters.listed())
 
     def frames(self) -> dict[str, Any]:
-        """The last frames on the serial line, now and at the last fault, in words; for a JSON object."""
+        """Returns the last frames on the serial line, now and at the last failure, as a JSON object."""
         fault = self.line.fault
         return {
             "time": self.clock.now(),
@@ -320,9 +320,13 @@ class Core:
             self.supervisor.fin_check.see(Motor.from_bytes(record))
 
     def _publish_parameters(self) -> None:
-        now, told = self.list_parameters(), self._parameters_told
-        if told is None or now.parameters != told.parameters or now.time - told.time >= _PARAMETERS_EVERY:
-            self._parameters_told = now
+        now, experiment = self.list_parameters(), self._parameters_published
+        if (
+            experiment is None
+            or now.parameters != experiment.parameters
+            or now.time - experiment.time >= _PARAMETERS_EVERY
+        ):
+            self._parameters_published = now
             self.bus.publish_document("parameters", now)
 
     def _publish_statistics(self) -> None:
@@ -343,16 +347,16 @@ class Core:
         self.line.send(command)
 
     def take_messages(self, messages: list[BoardMessage]) -> None:
-        """Publish what the board said, and send it on."""
-        watch = self.supervisor.watch
-        watch.see_messages()
+        """Handles and publishes the board's messages."""
+        detector = self.supervisor.detector
+        detector.see_messages()
         attitude: bytes | None = None
         for message in messages:
             topic = _ROW_OF.get(message.type)
             if topic is not None:
                 self.bus.publish_row(topic, message.time, message.payload)
             if message.type == Depth.type:
-                watch.see_depth(Depth.from_bytes(message.payload))
+                detector.see_depth(Depth.from_bytes(message.payload))
             elif message.type == Imu.type:
                 attitude = message.payload
             elif message.type == Status.type:
@@ -368,22 +372,24 @@ class Core:
                 self.bus.publish_document("debug", line)
         if attitude is not None:
             # Of a hundred a second the newest of a batch will do: decoding one takes a Pi its time.
-            watch.see_imu(Imu.from_bytes(attitude))
+            detector.see_imu(Imu.from_bytes(attitude))
         self.board_parameters.tick()
         self.look()
         self.outbox.flush()
 
     def link_changed(self) -> None:
-        """Tell that the connection was established or lost."""
+        """Publishes that the connection was established or lost."""
         text = self.line.text
         severity: Severity = "info" if self.line.connected else "caution"
-        self.tell(Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}."))
+        self.publish_event(
+            Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}.")
+        )
 
     def _take_thumbnail(self, time: float, jpeg: bytes) -> None:
         self.outbox.add_picture("thumbnail", time, jpeg)
 
     def _take_detection(self, detection: Detection) -> None:
-        self.supervisor.watch.see_picture(detection.taken)
+        self.supervisor.detector.see_picture(detection.taken)
         self.bus.publish_document("detection", replace(detection, latency=self.control.picture_age))
 
 
@@ -391,7 +397,7 @@ def _describe(loop: ControlLoop) -> Loop:
     return Loop(
         name=loop.name,
         on=loop.on,
-        set_point=loop.wanted,
+        set_point=loop.set_point_in_force,
         controller=loop.controller.name,
         controllers=[_choice(one) for one in loop.controllers.values()],
     )

@@ -1,9 +1,9 @@
-"""What goes wrong between the parts of the robot, told to whoever asked."""
+"""Errors that answer a request."""
 
 
 class RefusedError(Exception):
-    """A question was understood and refused; the text says why and what to do."""
+    """A request was refused; the text says why and what to do."""
 
 
 class NoAnswerError(Exception):
-    """Nobody answered a question in time."""
+    """A request was not answered in time."""

@@ -1,4 +1,4 @@
-"""What ran, as hashes, so that a recording can say later which program and which firmware it is of."""
+"""Hashes of the software and the firmware, stored with each recording."""
 
 from functools import cache
 from hashlib import sha256

@@ -1,4 +1,4 @@
-"""The one place where the runtime is assembled: the core, its threads, and the way to the other processes."""
+"""Assembles the runtime: the core, its threads, and the transport to other processes."""
 
 import threading
 import time
@@ -24,7 +24,7 @@ from robot_runtime.vision.settings_file import VisionSettingsFile
 class Robot(Core):
     """The running robot. `run` returns after `close`. `heartbeat`: s for which no server need be heard.
 
-    `kept_vision` goes before the configuration's settings.
+    `vision_file` goes before the configuration's settings.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class Robot(Core):
         messages: ZenohTransport,
         clock: Clock | None = None,
         heartbeat: float | None = None,
-        kept_vision: VisionSettingsFile | None = None,
+        vision_file: VisionSettingsFile | None = None,
     ) -> None:
         clock = clock or SteadyClock()
         self.cache = ReplayCache(messages.run, clock)
@@ -48,7 +48,7 @@ class Robot(Core):
         )
         self.loop: HilFeed | None = None
         if config.robot.mode == "hil":
-            self.loop = HilFeed(clock, self.connection.send, self.tell)
+            self.loop = HilFeed(clock, self.connection.send, self.publish_event)
             hear = self.loop.hear
             messages.subscribe("sense", lambda _, data: hear(data))
         outbox = Outbox(messages.publish, messages.watched, self.cache)
@@ -63,14 +63,14 @@ class Robot(Core):
             messages=messages,
             heartbeat=heartbeat,
         )
-        self._kept_vision = kept_vision
-        self._take_kept()
-        watch = self.supervisor.watch
-        messages.subscribe(HEARTBEAT, lambda *_: watch.see_server())
+        self._vision_file = vision_file
+        self._restore_vision()
+        detector = self.supervisor.detector
+        messages.subscribe(HEARTBEAT, lambda *_: detector.see_server())
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def answer(self) -> None:
-        """From now on do what the other processes ask, and answer their queries, which change nothing."""
+        """Serves the commands and queries of the other processes."""
         for name, command in Commands(self).do.items():
             self._messages.answer(f"command/{name}", command)
         self._messages.answer("query/frames", lambda _: self.frames())
@@ -81,17 +81,19 @@ class Robot(Core):
         self._messages.answer_bytes("query/blocks", self.cache.answer)
 
     def set_vision(self, settings: VisionSettings) -> None:
-        """Have the vision node look so from its next picture on, now and after a restart."""
+        """Applies vision settings from the next picture on, and stores them for the next start."""
         super().set_vision(settings)
-        if self._kept_vision is None:
+        if self._vision_file is None:
             return
         try:
             if settings == self.config.vision.settings:
-                self._kept_vision.forget()
+                self._vision_file.forget()
             else:
-                self._kept_vision.write(settings)
+                self._vision_file.write(settings)
         except OSError as problem:
-            self._tell_vision(f"The settings hold, but could not be kept over a restart: {problem.strerror}")
+            self._publish_vision_event(
+                f"The settings hold, but could not be kept over a restart: {problem.strerror}"
+            )
 
     def run(self) -> None:
         """Run until `close` is called; afterwards the board is disarmed and everything is closed."""
@@ -115,17 +117,19 @@ class Robot(Core):
         """Ask `run` to return; may be called from a signal handler, which must take no lock."""
         self._closing = True
 
-    def _take_kept(self) -> None:
+    def _restore_vision(self) -> None:
         try:
-            settings = self._kept_vision.read() if self._kept_vision is not None else None
+            settings = self._vision_file.read() if self._vision_file is not None else None
         except ConfigError as problem:
-            self._tell_vision(f"What was set up last cannot be used, robot.toml's holds: {problem}")
+            self._publish_vision_event(f"What was set up last cannot be used, robot.toml's holds: {problem}")
         else:
             if settings is not None:
                 super().set_vision(settings)
 
-    def _tell_vision(self, text: str) -> None:
-        self.tell(Event(time=self.clock.now(), kind="vision", severity="caution", text=f"Vision: {text}."))
+    def _publish_vision_event(self, text: str) -> None:
+        self.publish_event(
+            Event(time=self.clock.now(), kind="vision", severity="caution", text=f"Vision: {text}.")
+        )
 
     def _control_loop(self) -> None:
         period = 1 / self.config.control.rate

@@ -1,4 +1,4 @@
-"""What flows beside the board's own packets: records of the runtime and documents, in SI units.
+"""Records and documents of the runtime, beside the board's own packets; SI units.
 
 Records have a byte layout, for numbers that come fast. Documents are JSON objects, for what is rare or has
 no fixed size. Both are frozen dataclasses; the page's types are generated from them.
@@ -42,7 +42,7 @@ class Turning(Record):
 
 @record()
 class Truth(Record):
-    """What the simulated body really does; north, east, down and forward, right, down."""
+    """The true motion of the simulated body; north, east, down and forward, right, down."""
 
     position: Annotated[tuple[float, float, float], Wire("f", unit="m", count=3, meaning="north, east, down")]
     attitude: Annotated[
@@ -115,7 +115,7 @@ class ArucoMarker:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Detection(Document):
-    """What the vision node found in one picture: the largest patch of each wanted colour that it saw."""
+    """The result of searching one picture: the largest patch of the colour that was found."""
 
     taken: float
     colour: str | None
@@ -139,7 +139,7 @@ class Detection(Document):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionInForce(Document):
-    """How the vision node looks now; sent at every change, and every ten seconds."""
+    """The vision settings in force; sent at every change and every ten seconds."""
 
     settings: VisionSettings
 
@@ -180,7 +180,7 @@ class Loop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pace:
-    """How often the board sends a topic on this line: s between two samples."""
+    """The period, s, at which the board sends a topic at this baud rate."""
 
     topic: str
     period: float
@@ -282,7 +282,7 @@ ExperimentPhase = Literal["settling", "balancing", "running", "complete", "stopp
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Experiment(Document):
-    """How an experiment on a loop goes; sent at every change and twice a second, and once at its end."""
+    """The progress of an experiment on a loop; sent at every change, twice a second, and once at its end."""
 
     number: int = field(metadata={"meaning": "as whoever began it named it"})
     kind: ExperimentKind

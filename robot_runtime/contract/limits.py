@@ -1,4 +1,4 @@
-"""What numbers of a configuration may be, and what is raised where something of it cannot be used."""
+"""Limits of numbers in a configuration, and the error for a configuration that cannot be used."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What the serial line carried, as a record."""
+"""Counters and estimates of the serial link, as a record."""
 
 from typing import Annotated
 

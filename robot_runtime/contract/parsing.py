@@ -51,7 +51,7 @@ _WORDS = {
 
 
 def place(where: str, name: str) -> str:
-    """How problems name an entry."""
+    """Returns the name of an entry in error messages."""
     return f"{where}: {name}" if where else name
 
 

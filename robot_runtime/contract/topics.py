@@ -27,7 +27,7 @@ NUMBERS = 1 << 32
 
 
 class Kind(IntEnum):
-    """What a block's payload is made of."""
+    """The kind of payload that a block holds."""
 
     ROWS = 0
     DOCUMENTS = 1
@@ -115,7 +115,7 @@ class Block:
         return (self.first + self.count) % NUMBERS
 
     def after(self, number: int) -> bool:
-        """Whether it holds the sample of this number or later ones, as numbers go round."""
+        """True if it holds the sample of this number or a later one, modulo 2^32."""
         return is_after(self.first, self.count, number)
 
     def time_of(self, number: int) -> float:
@@ -137,7 +137,7 @@ class Block:
 
 
 def is_after(first: int, count: int, number: int) -> bool:
-    """Whether so many samples from `first` on hold that of this number or later ones, as numbers go round."""
+    """True if the `count` samples from `first` on include this number or a later one, modulo 2^32."""
     return 0 < (first + count - number) % NUMBERS <= NUMBERS // 2
 
 

@@ -1,4 +1,4 @@
-"""How the vision node looks. All of it may be changed while it does."""
+"""Settings of the vision node. All of them may change while it runs."""
 
 import json
 import re
@@ -30,13 +30,13 @@ MARKERS_MAX = 64
 
 
 def marker_name(number: int) -> str:
-    """How a marker of this number is named among what may be seen."""
+    """Returns the name of the marker with this number."""
     return f"marker {number}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourRange:
-    """What counts as one colour: lowest and highest hue, saturation and value, both included.
+    """The range of one colour: lowest and highest hue, saturation and value, both included.
 
     A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
     where another one does.

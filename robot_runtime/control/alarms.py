@@ -1,4 +1,4 @@
-"""What is wrong, or was and nobody has acknowledged it yet: the list that everybody is shown."""
+"""The alarm list: active faults, and past ones that are not acknowledged yet."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -8,20 +8,20 @@ from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.faults import BY_NAME
 
 CLEAR_AFTER = 1.0
-"""s without the fault after which it is over: what flickers is one alarm."""
+"""s without the fault after which an alarm ends, so that a flickering fault is one alarm."""
 
 
 class Alarms:
-    """Each beginning and end is told as an event. Not for several threads at once."""
+    """The alarms; each start and end is published as an event. Not thread-safe."""
 
-    def __init__(self, clock: Clock, tell: Callable[[Event], None]) -> None:
+    def __init__(self, clock: Clock, on_event: Callable[[Event], None]) -> None:
         self._clock = clock
-        self._tell = tell
+        self._on_event = on_event
         self._alarms: dict[str, Alarm] = {}
         self._last: dict[str, float] = {}
 
     def update(self, wrong: Mapping[str, str]) -> None:
-        """Say what is wrong now, each fault by name with what is special about it this time."""
+        """Sets the active faults: name and detail of each."""
         now = self._clock.now()
         for name, detail in wrong.items():
             self._last[name] = now
@@ -33,17 +33,17 @@ class Alarms:
                 self._end(name, alarm)
 
     def note(self, name: str, detail: str = "") -> None:
-        """Say that something happened that is over already."""
+        """Adds a fault that is over already."""
         self._begin(name, detail, active=False)
 
     def acknowledge(self) -> None:
-        """Somebody has seen them all; what is over goes away."""
+        """Acknowledges all alarms; those that are over are removed."""
         self._alarms = {
             name: replace(alarm, acknowledged=True) for name, alarm in self._alarms.items() if alarm.active
         }
 
     def listed(self) -> list[Alarm]:
-        """As everybody is shown them, the newest last."""
+        """Returns all alarms, the newest last."""
         return sorted(self._alarms.values(), key=lambda alarm: alarm.since)
 
     def _begin(self, name: str, detail: str, *, active: bool) -> None:
@@ -59,7 +59,7 @@ class Alarms:
             cause=fault.cause,
             remedy=fault.remedy,
         )
-        self._tell(
+        self._on_event(
             Event(
                 time=now, kind="alarm", severity=fault.severity, text=f"{what} {fault.cause} {fault.remedy}"
             )
@@ -70,6 +70,6 @@ class Alarms:
             del self._alarms[name]
         else:
             self._alarms[name] = replace(alarm, active=False)
-        self._tell(
+        self._on_event(
             Event(time=self._clock.now(), kind="alarm", severity="info", text=f"It is over: {alarm.what}")
         )

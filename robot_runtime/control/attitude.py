@@ -23,7 +23,7 @@ def euler_angles(attitude: tuple[float, float, float, float]) -> tuple[float, fl
 def heave_acceleration(
     attitude: tuple[float, float, float, float], force: tuple[float, float, float]
 ) -> float:
-    """How a hull gathers speed downwards, m/s², that feels this specific force (m/s², body axes).
+    """Returns the downward acceleration, m/s², from attitude and specific force (m/s², body axes).
 
     Attitude as in `euler_angles`. Near the poles 0.026 m/s² too little, at the equator as much too much.
     """

@@ -59,7 +59,7 @@ class RelaySettings:
 
 
 class LoopExperiment(ABC):
-    """Base of both: `look` before each tick until it is `over`; `text` says why where it did not complete."""
+    """Base of both: call `observe` before each tick until it is `over`; `text` explains an early end."""
 
     kind: ClassVar[ExperimentKind]
 
@@ -80,33 +80,33 @@ class LoopExperiment(ABC):
 
     @property
     @abstractmethod
-    def loan(self) -> LoopOverride:
-        """What the loop is to do from now on."""
+    def override(self) -> LoopOverride:
+        """Returns the override of the loop from now on."""
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
+        """True after the experiment has ended."""
         return self.phase in ("complete", "stopped", "failed")
 
-    def look(self, value: float) -> None:
-        """The loop's value is this."""
+    def observe(self, value: float) -> None:
+        """Takes the loop's measured value; ends the experiment beyond the limits."""
         if self._inside and not self._low <= value <= self._high:
             span = f"{self._low:g} to {self._high:g}"
             self.end("failed", f"It ended at {value:.2f}, which is beyond the limits ({span}).")
         # It may begin at a limit: at the surface, for one.
         margin = MARGIN * (self._high - self._low)
         self._inside = self._inside or self._low + margin <= value <= self._high - margin
-        self._look(value)
+        self._observe(value)
 
     def end(self, phase: ExperimentPhase, text: str = "") -> None:
-        """It is over; the first reason counts."""
+        """Ends the experiment; the first reason counts."""
         if not self.over:
             self.text = text
             self._enter(phase)
 
     @abstractmethod
-    def _look(self, value: float) -> None:
-        """The same."""
+    def _observe(self, value: float) -> None:
+        """Takes the measured value; see `observe`."""
 
     def _enter(self, phase: ExperimentPhase) -> None:
         self.phase, self.phase_since = phase, self._clock.now()
@@ -123,24 +123,24 @@ class StepExperiment(LoopExperiment):
         self._away = self._began
 
     @property
-    def loan(self) -> LoopOverride:
+    def override(self) -> LoopOverride:
         """Another set point for the loop's own controller."""
         return LoopOverride(
             set_point=self._settings.start if self.phase == "settling" else self._settings.target
         )
 
-    def _look(self, value: float) -> None:
-        wanted, now = self._settings, self._clock.now()
-        if abs(value - wanted.start) > wanted.tolerance:
+    def _observe(self, value: float) -> None:
+        settings, now = self._settings, self._clock.now()
+        if abs(value - settings.start) > settings.tolerance:
             self._away = now
         if self.phase == "settling":
             waited = now - self._began
-            self.progress = 0.5 * min(waited / wanted.settle, 1.0) if wanted.settle else 0.5
-            if waited >= wanted.settle or now - self._away >= SETTLED_SECONDS:
+            self.progress = 0.5 * min(waited / settings.settle, 1.0) if settings.settle else 0.5
+            if waited >= settings.settle or now - self._away >= SETTLED_SECONDS:
                 self._enter("running")
         if self.phase == "running":
-            self.progress = 0.5 + 0.5 * min((now - self.phase_since) / wanted.duration, 1.0)
-            if now - self.phase_since >= wanted.duration:
+            self.progress = 0.5 + 0.5 * min((now - self.phase_since) / settings.duration, 1.0)
+            if now - self.phase_since >= settings.duration:
                 self.end("complete")
 
 
@@ -157,16 +157,16 @@ class RelayExperiment(LoopExperiment):
     def __init__(self, settings: RelaySettings, clock: Clock) -> None:
         super().__init__(clock, settings.low, settings.high)
         self._settings = settings
-        self._loan = LoopOverride(_Relay(self), settings.set_point)
+        self._override = LoopOverride(_Relay(self), settings.set_point)
         self._side = 0.0
         self._switched = self._began
         self._forth = 0.0
         self._balancing = 0
 
     @property
-    def loan(self) -> LoopOverride:
+    def override(self) -> LoopOverride:
         """The relay, about its set point."""
-        return self._loan
+        return self._override
 
     def command(self, error: float) -> float:
         """The relay's command, -1 to 1, where the set point is so far away."""
@@ -179,10 +179,10 @@ class RelayExperiment(LoopExperiment):
         self._side = side
         return self.bias + side * self._settings.amplitude
 
-    def _look(self, value: float) -> None:  # noqa: ARG002 - the relay sees what is newer
-        wanted = self._settings
-        if self._clock.now() - self._began >= wanted.duration:
-            words = f"There were {self.cycles} of {wanted.cycles} cycles within {wanted.duration:g} s."
+    def _observe(self, value: float) -> None:  # noqa: ARG002 - the relay sees what is newer
+        settings = self._settings
+        if self._clock.now() - self._began >= settings.duration:
+            words = f"There were {self.cycles} of {settings.cycles} cycles within {settings.duration:g} s."
             self.end("failed", words)
 
     def _switch(self) -> None:

@@ -1,4 +1,4 @@
-"""The experiment that runs, one at a time: begun by a command, looked after before each tick."""
+"""Runs one experiment at a time: started by a command, advanced before each tick."""
 
 import threading
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from robot_runtime.control.experiment import LoopExperiment
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.errors import RefusedError
 
-TELL_EVERY = 0.5
+REPORT_PERIOD = 0.5
 """s."""
 _LEFT: dict[Mode, str] = {
     "manual": "The pilot took over.",
@@ -19,18 +19,18 @@ _LEFT: dict[Mode, str] = {
 
 
 class Experiments:
-    """`tell` takes each document. `tick` belongs to the control loop, the rest to any thread."""
+    """`on_report` takes each document. `tick` belongs to the control loop, the rest to any thread."""
 
-    def __init__(self, clock: Clock, tell: Callable[[Experiment], None]) -> None:
+    def __init__(self, clock: Clock, on_report: Callable[[Experiment], None]) -> None:
         self._clock = clock
-        self._tell = tell
+        self._on_report = on_report
         self._lock = threading.Lock()
         self._running: tuple[int, ControlLoop, LoopExperiment] | None = None
-        self._told: tuple[object, ...] = ()
+        self._reported: tuple[object, ...] = ()
         self._due = 0.0
 
     def require_none(self) -> None:
-        """Raises RefusedError while one runs: what it measures must not change meanwhile."""
+        """Raises RefusedError while an experiment runs: its loop must not change meanwhile."""
         running = self._running
         if running is not None:
             raise RefusedError(
@@ -50,7 +50,7 @@ class Experiments:
             running[2].end("stopped", text)
 
     def tick(self, mode: Mode) -> None:
-        """Let it see its loop, and lend it that; end it where the robot does not steer itself any more."""
+        """Advances the experiment and overrides its loop; ends it when the robot leaves automatic."""
         running = self._running
         if running is None:
             return
@@ -59,21 +59,21 @@ class Experiments:
             experiment.end("stopped", _LEFT.get(mode, "The robot was disarmed."))
         elif loop.measured is not None and not experiment.over:
             near = experiment.middle
-            experiment.look(
+            experiment.observe(
                 loop.measured if loop.name == "depth" else near + wrap_angle(loop.measured - near)
             )
-        loop.lent = None if experiment.over else experiment.loan
-        self._tell_changes(number, loop, experiment)
+        loop.override = None if experiment.over else experiment.override
+        self._report_changes(number, loop, experiment)
         if experiment.over:
             self._running = None
 
-    def _tell_changes(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
+    def _report_changes(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
         now = self._clock.now()
         changed = (number, experiment.phase, experiment.cycles, experiment.bias)
-        if changed == self._told and now < self._due:
+        if changed == self._reported and now < self._due:
             return
-        self._told, self._due = changed, now + TELL_EVERY
-        self._tell(
+        self._reported, self._due = changed, now + REPORT_PERIOD
+        self._on_report(
             Experiment(
                 time=now,
                 number=number,

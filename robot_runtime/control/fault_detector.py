@@ -1,4 +1,4 @@
-"""What is wrong now: when everything that the robot lives by was last seen, and how long that may be ago.
+"""Detects faults from the age and the content of what the board, the pilot and the server send.
 
 Arrivals count, not stamps: an emulated board that had to pause keeps its clock behind. All of it goes by the
 steady clock, so that nobody who sets the computer's time changes anything.
@@ -35,14 +35,14 @@ _NEVER = float("-inf")
 
 
 class BoardLink(Protocol):
-    """What is asked of the connection to the board."""
+    """The part of the link to the board that control uses."""
 
     text: str
     baud: int
 
     @property
     def connected(self) -> bool:
-        """Whether the board answers and speaks the same definitions."""
+        """True if the board answers and was built from the same definitions."""
         ...
 
     @property
@@ -51,12 +51,14 @@ class BoardLink(Protocol):
         ...
 
     def send(self, *packets: Packet) -> bool:
-        """Hand these packets to the line; False where nobody is there to take them."""
+        """Sends these packets; returns False when there is no connection."""
         ...
 
 
 class FaultDetector:
-    """`see_...` say what came; `wrong` and `refusals` judge it. Without `heartbeat` no server is expected."""
+    """Detects faults: `see_...` take the inputs, `wrong` and `refusals` return the results.
+
+    Without `heartbeat` no server is expected."""
 
     def __init__(
         self,
@@ -65,7 +67,7 @@ class FaultDetector:
         pilot: Pilot,
         loop: HilFeed | None,
         heartbeat: float | None,
-        unsettled: Callable[[], list[str]],
+        arming_obstacles: Callable[[], list[str]],
     ) -> None:
         self.status: Status | None = None
         self.server_patience = heartbeat
@@ -74,7 +76,7 @@ class FaultDetector:
         self._line = line
         self._pilot = pilot
         self._loop = loop
-        self._unsettled = unsettled
+        self._arming_obstacles = arming_obstacles
         baud = line.baud
         self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
         self._depth_stale = stale_after(_limit("depth_stale"), Depth, baud)
@@ -85,17 +87,17 @@ class FaultDetector:
         self._depth = 0.0
         self._pressure: int | None = None
         self._moved, self._repeats = _NEVER, 0
-        self._server = self._looked = clock.now()
+        self._server = self._checked = clock.now()
         self._vision = float("inf")
         self._ascent: tuple[float, float] | None = None
         self._sinks = False
 
     def see_messages(self) -> None:
-        """Something came from the board."""
+        """Notes that messages came from the board."""
         self._heard = self._clock.now()
 
     def see_depth(self, depth: Depth) -> None:
-        """A depth came."""
+        """Takes a depth."""
         now = self._clock.now()
         self._depth_time, self._depth = now, depth.depth
         if DEPTH_MIN <= depth.depth <= DEPTH_MAX:
@@ -106,43 +108,43 @@ class FaultDetector:
             self._pressure, self._moved, self._repeats = depth.pressure, now, 0
 
     def see_imu(self, imu: Imu) -> None:
-        """An attitude came."""
+        """Takes an attitude."""
         self._imu = self._clock.now()
         w, x, y, z = imu.attitude
         if w * w - x * x - y * y + z * z >= cos(TILT_MAX):
             self._upright = self._imu
 
     def see_status(self, status: Status) -> None:
-        """The board said how it is."""
+        """Takes the board's status."""
         self.status, self._status_time = status, self._clock.now()
 
     def see_server(self) -> None:
-        """The server lives."""
+        """Notes the server's heartbeat."""
         self._server = self._clock.now()
 
     def see_picture(self, taken: float) -> None:
-        """The vision node looked at a picture of that time (s)."""
+        """Notes the time (s) at which the newest searched picture was taken."""
         self._vision = taken
 
-    def note_look(self) -> bool:
-        """Somebody looks for faults; whether nobody had for so long that what is known may be of long ago.
+    def note_check(self) -> bool:
+        """Records a check; returns True if the previous one is too old for its inputs to be trusted.
 
         What the board sent before is read first then, as if it came just now.
         """
-        stalled = self._age(self._looked) > _limit("runtime_stalled")
-        self._looked = self._clock.now()
+        stalled = self._age(self._checked) > _limit("runtime_stalled")
+        self._checked = self._clock.now()
         return stalled
 
     def note_stopped(self) -> None:
-        """From now on the robot should rise."""
+        """Notes that the fins were stopped: from now on the robot should rise."""
         self._ascent, self._sinks = (self._clock.now(), float("inf")), False
 
     def note_armed(self) -> None:
-        """It steers again."""
+        """Notes that the robot is armed again."""
         self._ascent, self._sinks = None, False
 
     def wrong(self, mode: Mode, active: Collection[str]) -> dict[str, str]:
-        """The faults there are, each with what is special about it, if anything.
+        """Returns the active faults by name, each with a detail or an empty text.
 
         All are looked for but where the robot is disarmed: then only some, and those `active` already.
         """
@@ -156,7 +158,7 @@ class FaultDetector:
         return wrong
 
     def refusals(self) -> list[str]:
-        """Why arming would be refused now; empty where it would not."""
+        """Returns the reasons against arming now; empty if there are none."""
         if not self._line.connected:
             return [f"There is no connection to the board: {self._line.text}."]
         status = self.status
@@ -165,10 +167,10 @@ class FaultDetector:
         if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
             return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
         reasons = self._loop.refusals() if self._loop else []
-        return reasons or [*self.depth_refusals(), *self._other_refusals(status), *self._unsettled()]
+        return reasons or [*self.depth_refusals(), *self._other_refusals(status), *self._arming_obstacles()]
 
     def depth_refusals(self) -> list[str]:
-        """Why the depth cannot be steered by now; empty where it can."""
+        """Returns the reasons why the depth cannot be controlled now; empty if it can."""
         if self._faults & SensorFault.PRESSURE:
             return ["The pressure sensor does not answer."]
         if self._age(self._depth_time) > self._depth_stale:
@@ -220,7 +222,7 @@ class FaultDetector:
         return self._repeats >= REPEATS and self._age(self._moved) > _limit("depth_frozen")
 
     def _imu_is_stale(self) -> bool:
-        """Judged by what else came: a board that says nothing at all is another fault."""
+        """Compares with other messages: a board that sends nothing at all is another fault."""
         return self._heard - self._imu > self._imu_stale
 
     def _capsized(self) -> bool:

@@ -1,4 +1,4 @@
-"""Every fault that the runtime looks for: how soon it is noticed, what is done, and what a person is told.
+"""The table of faults: time to detection, action, and the text for the operator.
 
 What the chip does by itself, and how each is tested, is in docs/reference/safety.md.
 """
@@ -9,7 +9,7 @@ from typing import Literal
 from robot_runtime.contract.documents import Mode, Severity
 
 LOOK = 0.1
-"""s between two looks at most."""
+"""s between two checks at most."""
 
 Action = Literal["all-stop", "neutral", "drop set points", "alarm only"]
 
@@ -23,15 +23,15 @@ class FaultRule:
     limit: float
     action: Action
     steered_by: bool = False
-    """Whether only the depth controller needs it: by hand, or in the fin check, there is an alarm alone."""
+    """True if only depth control needs it: in manual and in the fin check it raises an alarm only."""
     always: bool = False
-    """Whether it is looked for while the robot is disarmed, too."""
+    """True if it is checked while the robot is disarmed, too."""
     what: str
     cause: str
     remedy: str
 
     def stops(self, mode: Mode) -> bool:
-        """Whether the robot is stopped for it in this mode."""
+        """True if the robot is stopped for it in this mode."""
         return self.action == "all-stop" and not (self.steered_by and mode != "automatic")
 
 

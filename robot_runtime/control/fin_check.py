@@ -1,4 +1,4 @@
-"""The fin check: each axis for a moment, and whether every fin's encoder followed what was wanted of it."""
+"""The fin check: moves each axis briefly and compares each fin's angle with its set point."""
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import FIN_COUNT, Motor, Navigation
@@ -9,26 +9,26 @@ _STEP = 1.3
 """s for each axis: one and a half strokes."""
 _SHARE = 0.5
 _FOLLOWED = 0.5
-"""Share of the wanted swing that a sound fin shows at least."""
+"""Share of the commanded swing that a sound fin reaches at least."""
 _SWING_MIN = 0.2
-"""rad, of what is wanted: below, nothing was asked of the fin."""
+"""rad of commanded swing; with less, the fin was not commanded."""
 
 
 class FinCheck:
-    """One check after the other; `step` belongs to the control loop, `see` to whoever hears the board."""
+    """Runs fin checks; `step` is called by the control loop, `see` by the receiver of messages."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self.begin()
 
     def begin(self) -> None:
-        """Forget the last check; the next begins now."""
+        """Starts a new check."""
         self._began = self._clock.now()
         self._least = [[float("inf")] * FIN_COUNT for _ in range(2)]
         self._most = [[float("-inf")] * FIN_COUNT for _ in range(2)]
 
     def step(self) -> Navigation | None:
-        """The command for now; None when it is over. Upwards and not down, so as not to dive."""
+        """Returns the command for now; None when the check is over. It swims up, so as not to dive."""
         number = int((self._clock.now() - self._began) / _STEP)
         if number >= len(AXES):
             return None
@@ -37,13 +37,13 @@ class FinCheck:
         return Navigation(**axes | {name: -_SHARE if name == "z" else _SHARE})
 
     def see(self, motor: Motor) -> None:
-        """Take in where the fins are, and where they should be."""
+        """Takes the fins' angles and their set points."""
         for row, angles in enumerate((motor.wanted, motor.angle)):
             self._least[row] = [min(pair) for pair in zip(self._least[row], angles, strict=True)]
             self._most[row] = [max(pair) for pair in zip(self._most[row], angles, strict=True)]
 
     def failed(self) -> dict[str, str]:
-        """The fins that did not follow, by name, and in words how far they moved."""
+        """Returns the fins that did not follow, by name, with how far they moved."""
         found = {}
         for fin, name in enumerate(FINS):
             wanted, angle = (max(self._most[row][fin] - self._least[row][fin], 0.0) for row in range(2))

@@ -1,4 +1,4 @@
-"""Hardware in the loop: the simulator's word goes on to the board, and its silence is noticed.
+"""Hardware in the loop: forwards the simulator's messages to the board and detects their absence.
 
 The board in the loop has no sensors. What they would show comes from the simulator, over a network, as the
 bytes of a `Sense`; the board takes the newest. The fins' angles go back as topic `motor`, like everywhere.
@@ -19,27 +19,29 @@ SILENCE = 0.5
 
 
 class HilFeed:
-    """The runtime's end of it. `hear` may be called from any thread; `tick` runs with the control loop."""
+    """Forwards simulated sensors. `hear` may be called from any thread; `tick` runs with the control loop."""
 
-    def __init__(self, clock: Clock, send: Callable[[Packet], object], tell: Callable[[Event], None]) -> None:
+    def __init__(
+        self, clock: Clock, send: Callable[[Packet], object], on_event: Callable[[Event], None]
+    ) -> None:
         self._clock = clock
         self._send = send
-        self._tell = tell
+        self._on_event = on_event
         self._heard = float("-inf")
-        self._told = False
+        self._reported = False
 
     @property
     def present(self) -> bool:
-        """Whether the simulator's last word is fresh."""
+        """True if the simulator's last message is fresh."""
         return self._clock.now() - self._heard <= SILENCE
 
     @property
     def lost(self) -> bool:
-        """Whether it was here, and is no more."""
+        """True if the simulator was connected and no longer is."""
         return self._heard > float("-inf") and not self.present
 
     def hear(self, data: bytes) -> None:
-        """Pass on a word of the simulator's; what is no such word is dropped and logged."""
+        """Forwards a message of the simulator; an invalid one is dropped and logged."""
         try:
             word = Sense.from_bytes(data)
         except LayoutError as problem:
@@ -49,16 +51,16 @@ class HilFeed:
         self._send(word)
 
     def tick(self) -> None:
-        """Tell where the simulator came; that it is lost is a fault."""
-        if self.present and not self._told:
-            self._told = True
+        """Publishes an event when the simulator connects; its loss is a fault."""
+        if self.present and not self._reported:
+            self._reported = True
             now, text = self._clock.now(), "The simulator is here."
-            self._tell(Event(time=now, kind="simulator", severity="info", text=text))
+            self._on_event(Event(time=now, kind="simulator", severity="info", text=text))
         elif not self.present:
-            self._told = False
+            self._reported = False
 
     def refusals(self) -> list[str]:
-        """Why arming would be refused now."""
+        """Returns the reasons against arming now."""
         if self.present:
             return []
         return [

@@ -1,4 +1,4 @@
-"""One of the loops that the robot steers by: what it measures, where it should be, and who decides."""
+"""A control loop: one axis, its measured value, set point and controllers."""
 
 from dataclasses import dataclass
 from math import degrees, pi
@@ -24,7 +24,7 @@ SET_POINTS: dict[LoopName, Range] = {
 
 @dataclass(frozen=True, slots=True)
 class LoopOverride:
-    """A controller and a set point for a while; None leaves the loop's own."""
+    """A controller and a set point that replace the loop's own during an experiment; None keeps the own."""
 
     controller: Controller | None = None
     set_point: float | None = None
@@ -33,8 +33,8 @@ class LoopOverride:
 class ControlLoop:
     """Steers one `axis` of the navigation command by one measured value, m or rad.
 
-    `lent` lends it for an experiment: to another controller, to another set point, also while it is not on.
-    Each attribute may be set from any thread; the next tick goes by it.
+    `override` replaces its controller, its set point or both during an experiment, even while it is off.
+    Each attribute may be set from any thread; the next tick uses it.
     """
 
     def __init__(self, name: LoopName, axis: Axis) -> None:
@@ -46,13 +46,13 @@ class ControlLoop:
         self.controller = next(iter(self.controllers.values()))
         self.on = False
         self.set_point = 0.0
-        self.lent: LoopOverride | None = None
+        self.override: LoopOverride | None = None
         self.measured: float | None = None
         self.mean: float | None = None
         """Of what was measured since the last tick, where that was more than one value."""
-        self.felt: float | None = None
+        self.heave_acceleration: float | None = None
         """Of the depth: the mean acceleration downwards since the last tick, m/s², where its controller
-        `feels` and any was measured."""
+        `needs_heave_acceleration` and any was measured."""
         self.output: float | None = None
         """The newest command; None where this loop does not steer."""
         self._is_angle = name != "depth"
@@ -60,19 +60,19 @@ class ControlLoop:
         self._counted_on = 0.0
 
     @property
-    def wanted(self) -> float:
-        """The set point that is in force."""
-        lent = self.lent
-        return self.set_point if lent is None or lent.set_point is None else lent.set_point
+    def set_point_in_force(self) -> float:
+        """The set point in force: the override's or the loop's own."""
+        override = self.override
+        return self.set_point if override is None or override.set_point is None else override.set_point
 
     @property
     def in_force(self) -> Controller:
-        """The controller that decides."""
-        lent = self.lent
-        return self.controller if lent is None or lent.controller is None else lent.controller
+        """The controller in force: the override's or the loop's own."""
+        override = self.override
+        return self.controller if override is None or override.controller is None else override.controller
 
-    def step(self, seconds: float, down: float = 0.0) -> None:
-        """Decide; `seconds` since the last step, `down` the command downwards beside this one's.
+    def step(self, seconds: float, heave_command: float = 0.0) -> None:
+        """Decide; `seconds` since the last step, `heave_command` the command downwards beside this one's.
 
         There must be a measured value.
         """
@@ -81,22 +81,22 @@ class ControlLoop:
         if controller is not self._running:
             controller.start()
             self._running, self._counted_on = controller, self.measured
-        set_point, measured = self.wanted, self.measured
+        set_point, measured = self.set_point_in_force, self.measured
         if controller.averages and self.mean is not None:
             measured = self.mean
         if self._is_angle:
             self._counted_on += wrap_angle(measured - self._counted_on)
             set_point = self._counted_on + wrap_angle(set_point - measured)
             measured = self._counted_on
-        controller.down, controller.felt = down, self.felt
+        controller.heave_command, controller.heave_acceleration = heave_command, self.heave_acceleration
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)
 
     def rest(self) -> None:
-        """Steer no more; the controller begins anew when it is needed again."""
+        """Stops control; the controller is reset before it is used again."""
         self._running = self.output = None
 
     def follow(self) -> None:
-        """Take the measured value as the set point, as far as it may be one."""
+        """Sets the set point to the measured value, within the limits."""
         if self.measured is not None:
             self.set_point = min(max(self.measured, self.limits.minimum), self.limits.maximum)
 
@@ -108,15 +108,15 @@ class ControlLoop:
         return controller
 
     def check(self, set_point: float) -> None:
-        """Raises RefusedError where there may be no such set point."""
+        """Raises RefusedError for a set point out of range."""
         low, high = self.limits.minimum, self.limits.maximum
         if not low <= set_point <= high:
             raise RefusedError(
-                f"a set point of {self._number(set_point)} is not between {self.words(low, high)}"
+                f"a set point of {self._number(set_point)} is not between {self.describe(low, high)}"
             )
 
-    def words(self, *values: float) -> str:
-        """These values with their unit, for people."""
+    def describe(self, *values: float) -> str:
+        """Returns these values with their unit, as text."""
         return f"{' and '.join(map(self._number, values))} {'°' if self._is_angle else 'm'}"
 
     def _number(self, value: float) -> str:

@@ -36,21 +36,21 @@ class ControlNode:
     there is one for. Meanwhile it may swim towards a light beacon.
 
     `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread. Whatever is changed under `between_ticks` is changed between two ticks.
+    thread. Whatever is changed under `tick_lock` is changed between two ticks.
     """
 
     def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None], pilot: Pilot) -> None:
         self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
         self.turning = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
         self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.turning)}
-        self.between_ticks = threading.RLock()
+        self.tick_lock = threading.RLock()
         self.mode: Mode = "disarmed"
         self.set_point_default = 0.5
         self.set_point_detected = 1.0
         self.steering: Steering = "none"
         self.colour = ""
         self.depth.set_point = self.set_point_default
-        self._wanted = self.set_point_default
+        self._announced_set_point = self.set_point_default
         self._bus = bus
         self._clock = clock
         self._send = send
@@ -79,7 +79,7 @@ class ControlNode:
         for loop in self.loops.values():
             if "manual" in (was, mode):
                 loop.on = False
-            loop.lent = None
+            loop.override = None
 
     def choose(self, name: str, gains: Mapping[str, Any] | None = None) -> None:
         """Take another depth controller, or other gains.
@@ -103,7 +103,7 @@ class ControlNode:
         A hold that is switched on in manual holds what is measured. The depth's set point is its hold's
         where it is held in manual, the default one otherwise.
         """
-        with self.between_ticks:
+        with self.tick_lock:
             loop = self._find(name)
             chosen = loop.controller if controller is None else loop.find(controller)
             try:
@@ -118,7 +118,7 @@ class ControlNode:
             if chosen is not loop.controller:
                 loop.controller = chosen
                 whose = "Controller" if loop is self.depth else f"{loop.title} controller"
-                self._tell("controller", f"{whose}: {chosen.title}.")
+                self._publish_event("controller", f"{whose}: {chosen.title}.")
             if on and not loop.on and self.mode == "manual":
                 loop.follow()
             holds_depth = self.mode == "manual" and (loop.on if on is None else on)
@@ -128,8 +128,8 @@ class ControlNode:
                 loop.set_point = set_point
             if on is not None and on != loop.on:
                 loop.on = on
-                words = f"held at {loop.words(loop.set_point)}" if on else "no longer held"
-                self._tell("loop", f"{loop.title} {words}.")
+                change = f"held at {loop.describe(loop.set_point)}" if on else "no longer held"
+                self._publish_event("loop", f"{loop.title} {change}.")
 
     def let_go(self, loop: ControlLoop, why: str) -> None:
         """Hold no more what cannot be held."""
@@ -158,7 +158,7 @@ class ControlNode:
         raise RefusedError(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self) -> None:
-        """Decide, and send the command where the robot is steered. The caller holds `between_ticks`."""
+        """Decide, and send the command where the robot is steered. The caller holds `tick_lock`."""
         now, mode = self._clock.now(), self.mode
         taken = self._measure()
         self._choose_set_point(now, mode)
@@ -221,7 +221,7 @@ class ControlNode:
             return False
         if loop is self.heading and self.steering == "beacons":
             return False
-        return loop is self.depth or loop.on or loop.lent is not None
+        return loop is self.depth or loop.on or loop.override is not None
 
     def _check_on(self, loop: ControlLoop) -> None:
         if loop is self.depth and self.mode != "manual":
@@ -241,9 +241,9 @@ class ControlNode:
             angles = euler_angles(Imu.from_bytes(self._imu).attitude)
             for loop, angle in zip(self.turning, angles, strict=True):
                 loop.measured = angle
-        self.depth.felt = None
-        if self.depth.in_force.feels:
-            self.depth.felt = self._feel()
+        self.depth.heave_acceleration = None
+        if self.depth.in_force.needs_heave_acceleration:
+            self.depth.heave_acceleration = self._mean_heave_acceleration()
         else:
             self._imus.clear()
         depths = []
@@ -255,21 +255,21 @@ class ControlNode:
         self.depth.mean = sum(depths) / len(depths) if depths else None
         return self._depth_taken
 
-    def _feel(self) -> float | None:
-        felt = []
+    def _mean_heave_acceleration(self) -> float | None:
+        accelerations = []
         while self._imus:
             imu = Imu.from_bytes(self._imus.popleft())
-            felt.append(heave_acceleration(imu.attitude, imu.force))
-        return sum(felt) / len(felt) if felt else None
+            accelerations.append(heave_acceleration(imu.attitude, imu.force))
+        return sum(accelerations) / len(accelerations) if accelerations else None
 
     def _publish(self, now: float, taken: float | None) -> None:
         depth = self.depth.measured
         if depth is not None and taken is not None:
-            wanted = self.depth.wanted
+            set_point = self.depth.set_point_in_force
             tick = Control(
-                set_point=wanted,
+                set_point=set_point,
                 depth=depth,
-                error=wanted - depth,
+                error=set_point - depth,
                 output=self.depth.output or 0.0,
                 latency=now - taken,
             )
@@ -278,10 +278,10 @@ class ControlNode:
             self._bus.publish_row("turning", now, self._turning().to_bytes())
 
     def _turning(self) -> Turning:
-        wanted, measured, output = zip(
+        set_point, measured, output = zip(
             *(
                 (
-                    nan if loop.output is None else loop.wanted,
+                    nan if loop.output is None else loop.set_point_in_force,
                     nan if loop.measured is None else loop.measured,
                     nan if loop.output is None else loop.output,
                 )
@@ -289,7 +289,7 @@ class ControlNode:
             ),
             strict=True,
         )
-        return Turning(set_point=wanted, measured=measured, output=output)
+        return Turning(set_point=set_point, measured=measured, output=output)
 
     def _find_course(self, now: float, seconds: float) -> tuple[float, float]:
         if self.steering == "none":
@@ -299,20 +299,20 @@ class ControlNode:
         return self._towards_light.step(fresh and right, fresh and left, seconds)
 
     def _choose_set_point(self, now: float, mode: Mode) -> None:
-        wanted, because = self.set_point_default, ""
+        set_point, reason = self.set_point_default, ""
         sight = self._sight
         if sight is not None and now - sight.taken <= VISION_STALE:
             if sight.set_point is not None:
-                wanted, because = sight.set_point, f": {sight.target} is seen"
+                set_point, reason = sight.set_point, f": {sight.target} is seen"
             elif sight.colour == self.colour:
-                wanted, because = self.set_point_detected, f": {self.colour} is seen"
+                set_point, reason = self.set_point_detected, f": {self.colour} is seen"
         if sight is not None and sight is not self._used:
             self._used, self.picture_age = sight, now - sight.taken
-        if wanted != self._wanted:
-            self._wanted = wanted
-            self._tell("set_point", f"Set point {wanted:.2f} m{because}.")
+        if set_point != self._announced_set_point:
+            self._announced_set_point = set_point
+            self._publish_event("set_point", f"Set point {set_point:.2f} m{reason}.")
         if mode != "manual" or not self.depth.on:
-            self.depth.set_point = wanted
+            self.depth.set_point = set_point
 
     def _take_depth(self, _: str, time: float, record: bytes) -> None:
         self._depths.append((time, record))
@@ -329,6 +329,6 @@ class ControlNode:
         if isinstance(document, Detection):
             self._sight = document
 
-    def _tell(self, kind: str, text: str) -> None:
+    def _publish_event(self, kind: str, text: str) -> None:
         event = Event(time=self._clock.now(), kind=kind, severity="info", text=text)
         self._bus.publish_document("event", event)

@@ -1,4 +1,4 @@
-"""What the pilot's sticks say: the newest fresh input, and nothing that is old or somebody else's."""
+"""The pilot's input: the newest valid command of the control's holder."""
 
 import json
 import math
@@ -19,13 +19,13 @@ PATIENCE = 0.2
 Fins that flap take a quarter of a second to rest: together less than half a second.
 """
 PILOT_LOOK = 0.05
-"""s between two looks at most whether the pilot has fallen silent."""
+"""s between two checks of the pilot's silence at most."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 
 
 class Pilot:
-    """Takes what comes from the server, from any thread; `dropped` counts, by reason, what did not count."""
+    """Takes inputs from the server, from any thread; `dropped` counts the rejected ones by reason."""
 
     def __init__(self, clock: Clock) -> None:
         self.lease = 0
@@ -38,21 +38,18 @@ class Pilot:
         self._command = NEUTRAL
 
     def begin(self) -> None:
-        """Control by hand begins now, with the sticks in the middle."""
+        """Starts manual control with neutral sticks."""
         self.taken, self._command = self._clock.now(), NEUTRAL
 
     def change_lease(self, epoch: int) -> None:
-        """From now on only this holder's input counts.
-
-        Raises RefusedError where the epoch is an older one.
-        """
+        """Accepts only this holder's input from now on. Raises RefusedError for an older epoch."""
         if epoch < self.lease:
             raise RefusedError(f"the lease {epoch} is older than {self.lease}, which counts")
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 
     def take(self, payload: bytes) -> bool:
-        """An input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
+        """Takes an input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
 
         Whether it counts.
         """
@@ -76,7 +73,7 @@ class Pilot:
 
     @property
     def quiet(self) -> bool:
-        """Whether the newest input is too old to count."""
+        """True if the newest input is too old to use."""
         return not self._clock.now() - self.taken <= PATIENCE
 
     @property
@@ -85,7 +82,7 @@ class Pilot:
         return self.taken + PATIENCE
 
     def command(self) -> Navigation:
-        """The newest input; neutral where that is too old."""
+        """Returns the newest input; neutral if it is too old."""
         return NEUTRAL if self.quiet else self._command
 
 

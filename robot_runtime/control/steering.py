@@ -1,4 +1,4 @@
-"""Where to swim while the depth is held: nowhere, or towards a light beacon.
+"""Steering while the depth is held: none, or towards a light beacon.
 
 Each of the two detectors only says whether it sees a light on its side; ahead both see it. So the robot
 swims straight on while both do, turns towards the one that does alone, and where neither does turns to the
@@ -21,13 +21,13 @@ SEARCH_SECONDS = 20.0
 
 
 class BeaconSteering:
-    """Steers by what the detectors have said last."""
+    """Steers by the newest readings of the detectors."""
 
     def __init__(self) -> None:
         self.start()
 
     def start(self) -> None:
-        """Forget the past: look for a light to the right first."""
+        """Resets the search; it starts to the right."""
         self._side = 1.0
         self._searched = 0.0
 

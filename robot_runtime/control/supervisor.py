@@ -1,4 +1,4 @@
-"""Who may move the fins: the robot's state, arming with reasons, stopping without, and what faults do."""
+"""The supervisor: the robot's state, arming, stopping, and the actions on faults."""
 
 import threading
 from collections.abc import Callable
@@ -38,15 +38,15 @@ _ARMED_WORDS: dict[Mode, str] = {
 class Arming:
     """An attempt to arm this board; once it is `over`, `refusal` says why it failed, if it did.
 
-    `rested`: the board has said that it is disarmed. What it said of an earlier arming, before the last STOP,
-    may be on its way still.
+    `disarmed_seen`: the board has reported that it is disarmed. Until then, reports of an earlier arming may
+    still be on their way.
     """
 
     board: Hello | None
     tries: int
     mode: Mode = "automatic"
     alone: float = 0.0
-    rested: bool = False
+    disarmed_seen: bool = False
     over: bool = False
     refusal: str = ""
 
@@ -56,32 +56,32 @@ class Supervisor:
 
     `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
     the board must be one for it; with `heartbeat` a server must be heard so often (s). `on_mode` gets each
-    new mode, and may wait for nothing. `unsettled` tells what the board has not been told yet, and why it is
-    not to be armed therefore.
+    new mode, and may wait for nothing. `arming_obstacles` returns the parameters
+    that the board has not confirmed yet, as reasons against arming.
     """
 
     def __init__(
         self,
         clock: Clock,
         line: BoardLink,
-        tell: Callable[[Event], None],
+        on_event: Callable[[Event], None],
         loop: HilFeed | None = None,
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
-        unsettled: Callable[[], list[str]] = list,
+        arming_obstacles: Callable[[], list[str]] = list,
     ) -> None:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.watch = FaultDetector(clock, line, self.pilot, loop, heartbeat, unsettled)
+        self.detector = FaultDetector(clock, line, self.pilot, loop, heartbeat, arming_obstacles)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line
-        self._tell = tell
+        self._on_event = on_event
         self._loop = loop
         self._heartbeat = heartbeat
         self._on_mode = on_mode
-        self._alarms = Alarms(clock, tell)
+        self._alarms = Alarms(clock, on_event)
         self._arming: Arming | None = None
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
@@ -89,26 +89,26 @@ class Supervisor:
 
     @property
     def armed(self) -> bool:
-        """Whether the board is armed and this process armed it."""
+        """True if the board is armed and this process armed it."""
         return self.mode in ARMED
 
     @property
     def alarms(self) -> list[Alarm]:
-        """What is wrong, or was and is not acknowledged."""
+        """The active alarms, and past ones that are not acknowledged."""
         with self._changed:
             return self._alarms.listed()
 
     @property
     def board_armed(self) -> bool:
-        """Whether the board says that it is armed."""
-        status = self.watch.status
+        """True if the board reports that it is armed."""
+        status = self.detector.status
         return status is not None and bool(status.flags & StatusFlag.ARMED)
 
     def see_status(self, status: Status) -> None:
-        """Note what the board says of itself now."""
+        """Takes the board's status."""
         with self._changed:
-            old = self.watch.status
-            self.watch.see_status(status)
+            old = self.detector.status
+            self.detector.see_status(status)
             if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
                 # Its silence may have been noticed first; this is what it was.
                 self._fail("board_restarted")
@@ -117,27 +117,28 @@ class Supervisor:
             self._changed.notify_all()
 
     def refusals(self) -> list[str]:
-        """Why arming would be refused now; empty where it would not."""
+        """Returns the reasons against arming now; empty if there are none."""
         with self._changed:
             failsafe = [_ACKNOWLEDGE] if self.mode == "failsafe" else []
-            return [*failsafe, *self.watch.refusals()]
+            return [*failsafe, *self.detector.refusals()]
 
     def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
-        """Arm the board, and wait until it is.
+        """Arms the board and waits until it is armed.
 
         Raises RefusedError with every reason where it may not be, or does not follow.
         """
         with self._changed:
             arming = self.begin_arming(mode, alone)
             while not arming.over:
-                self._changed.wait_for(lambda: arming.over or self.board_armed == arming.rested, ARM_WAIT)
+                self._changed.wait_for(
+                    lambda: arming.over or self.board_armed == arming.disarmed_seen, ARM_WAIT
+                )
                 self.go_on_arming()
             if arming.refusal:
                 raise RefusedError(arming.refusal)
 
     def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
-        """Ask the board to arm; `go_on_arming` does the rest. Raises RefusedError with every reason against
-        it.
+        """Asks the board to arm; `go_on_arming` completes it. Raises RefusedError with every reason against it.
 
         `alone` are the s for which the robot may go on without the server.
         """
@@ -152,7 +153,7 @@ class Supervisor:
                 raise RefusedError(" ".join(reasons))
             if self._arming is None:
                 self._arming = arming = Arming(board, self._arm_tries, mode, alone)
-                arming.rested = not self.board_armed
+                arming.disarmed_seen = not self.board_armed
                 self._ask_to_arm(arming)
                 return arming
             if self._arming.mode != mode:
@@ -160,13 +161,13 @@ class Supervisor:
             return self._arming
 
     def go_on_arming(self) -> None:
-        """See whether the board has followed, or ask again; to be called every `ARM_WAIT` at least."""
+        """Completes arming when the board is armed, or asks again; call it every `ARM_WAIT` at least."""
         with self._changed:
             arming = self._arming
             if arming is None:
                 return
-            if not arming.rested:
-                arming.rested = not self.board_armed
+            if not arming.disarmed_seen:
+                arming.disarmed_seen = not self.board_armed
             elif self.board_armed:
                 self._become_armed(arming)
                 return
@@ -177,10 +178,7 @@ class Supervisor:
                 self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
     def change_mode(self, mode: Mode) -> None:
-        """Hand over between pilot and controller while armed.
-
-        Raises RefusedError with every reason against it.
-        """
+        """Changes between manual and automatic while armed. Raises RefusedError with every reason against it."""
         with self._changed:
             if self.mode == mode:
                 return
@@ -188,7 +186,7 @@ class Supervisor:
                 raise RefusedError(
                     f"The robot is {self.mode}; only while it is armed can it change to {mode}."
                 )
-            if mode == "automatic" and (reasons := self.watch.depth_refusals()):
+            if mode == "automatic" and (reasons := self.detector.depth_refusals()):
                 raise RefusedError(" ".join(reasons))
             self.pilot.begin()
             self._go(_CHANGE[mode])
@@ -196,27 +194,27 @@ class Supervisor:
             self._event("mode", "info", text)
 
     def acknowledge(self) -> None:
-        """Somebody has seen the alarms; after a failsafe the robot may be armed again."""
+        """Acknowledges the alarms; after a failsafe the robot may be armed again."""
         with self._changed:
             self._alarms.acknowledge()
             if self._go("acknowledge"):
                 self._event("mode", "info", "The failsafe is acknowledged; the robot is disarmed.")
 
     def stop(self, why: str, severity: Severity = "info") -> None:
-        """Disarm at once, whatever was before."""
+        """Disarms at once, in any state."""
         with self._changed:
             # First, so that the board's own word of it is no surprise.
             self._leave("stop", severity, why)
         self._line.send(Stop())
 
     def fail(self, fault: str) -> None:
-        """Stop for this fault, by its name, which is over at once."""
+        """Stops the robot for this fault, which is over at once."""
         with self._changed:
             if self.armed:
                 self._fail(fault)
 
     def end_fin_check(self) -> None:
-        """Disarm after a fin check, and tell what it found."""
+        """Disarms after a fin check and publishes its result."""
         with self._changed:
             failed = self.fin_check.failed()
             if failed:
@@ -227,14 +225,14 @@ class Supervisor:
         self._line.send(Stop())
 
     def tick(self) -> None:
-        """Look for faults, and do what each demands; repeat STOP until the board follows."""
+        """Checks for faults and takes their actions; repeats STOP until the board is disarmed."""
         if self._loop is not None:
             self._loop.tick()
         with self._changed:
-            if self.watch.note_look() and self.armed:
+            if self.detector.note_check() and self.armed:
                 self._fail("runtime_stalled")
             active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}
-            wrong = self.watch.wrong(self.mode, active)
+            wrong = self.detector.wrong(self.mode, active)
             self._alarms.update(wrong)
             for name in wrong:
                 if BY_NAME[name].stops(self.mode):
@@ -244,8 +242,8 @@ class Supervisor:
 
     def _become_armed(self, arming: Arming) -> None:
         self._end_arming("")
-        self.watch.server_patience = self._heartbeat and max(self._heartbeat, arming.alone)
-        self.watch.note_armed()
+        self.detector.server_patience = self._heartbeat and max(self._heartbeat, arming.alone)
+        self.detector.note_armed()
         self.pilot.begin()
         self.fin_check.begin()
         self.armed_since = self._clock.now()
@@ -256,7 +254,7 @@ class Supervisor:
         # Repeated because the board wants half a second of steady traffic first. It ignores what it has, and
         # the line does not carry the same twice at a time.
         arming.tries -= 1
-        if not arming.rested:
+        if not arming.disarmed_seen:
             self._line.send(Stop())
         elif arming.board is not None:
             self._line.send(Start(epoch=arming.board.epoch))
@@ -268,7 +266,7 @@ class Supervisor:
         self._changed.notify_all()
 
     def _fail(self, name: str) -> None:
-        """An alarm for something that is over already, and all-stop."""
+        """Adds an alarm for a fault that is over already, and stops the robot."""
         self._alarms.note(name)
         self._all_stop()
 
@@ -277,13 +275,13 @@ class Supervisor:
             self._line.send(Stop())
 
     def _leave(self, trigger: Trigger, severity: Severity, why: str, kind: str = "disarmed") -> bool:
-        """Out of whatever armed state it is; whether it was in one."""
+        """Leaves any armed state; returns True if it was in one."""
         was_armed = self.armed
         self._end_arming("Stopped before the board was armed.")
         self._go(trigger)
         if was_armed:
             self.armed_since = None
-            self.watch.note_stopped()
+            self.detector.note_stopped()
             self._event(kind, severity, why)
         return was_armed
 
@@ -295,7 +293,7 @@ class Supervisor:
         return after is not None
 
     def _event(self, kind: str, severity: Severity, text: str) -> None:
-        self._tell(Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
+        self._on_event(Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
 
 
 _ACKNOWLEDGE = "Acknowledge the alarms before the robot is armed again."

@@ -41,5 +41,5 @@ _AFTER = {(one.before, one.trigger): one.after for one in TRANSITIONS}
 
 
 def follow(mode: Mode, trigger: Trigger) -> Mode | None:
-    """The state after it; None where that cannot happen in this one."""
+    """Returns the state after the trigger; None if it cannot happen in this state."""
     return _AFTER.get((mode, trigger))

@@ -68,12 +68,12 @@ class BoardTime:
             self._least.clear()
         self._least.append((board, offset))
         self._fit(list(self._least))
-        kept = [
+        inliers = [
             point
             for point in self._least
             if abs(point[1] - self._fitted(point[0])) <= _OUTLIER * self.error + _RESOLUTION
         ]
-        self._fit(kept)
+        self._fit(inliers)
 
     def _fit(self, points: list[tuple[float, float]]) -> None:
         """Least squares, about the points' middle so that little is lost to rounding."""

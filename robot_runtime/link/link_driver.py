@@ -133,7 +133,7 @@ class LinkDriver:
             if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")
             self._stage = self._session.stage
-        self.tell(_words(self._stage, self._session))
+        self.report(_words(self._stage, self._session))
         with self._writing:
             data = self._session.poll(self._clock.now())
             if data and self._write is not None:
@@ -160,7 +160,7 @@ class LinkDriver:
             except LayoutError:
                 log.exception("a packet could not be understood")
 
-    def tell(self, text: str) -> None:
+    def report(self, text: str) -> None:
         """Say how things stand, where that has changed."""
         if text != self.text:
             self.text = text

@@ -43,7 +43,7 @@ class SerialLink(LinkDriver):
                 with Port(self.path, self.baud) as port:
                     self._converse(port)
             except PortError as problem:
-                self.tell(str(problem))
+                self.report(str(problem))
             self._ending.wait(_RETRY)
 
     def _converse(self, port: Port) -> None:

@@ -36,9 +36,9 @@ class BoardParameters:
         self._clock = clock
         self._send = send
         self._patience = _ANSWER_SECONDS + 2 * airtime(_BYTES, baud)
-        self._wanted = [one.default for one in CHIP_PARAMETERS]
+        self._values = [one.default for one in CHIP_PARAMETERS]
         self._unconfirmed = set(range(len(CHIP_PARAMETERS)))
-        self._said = float("-inf")
+        self._rounded = float("-inf")
         self._lock = threading.Lock()
 
     def entries(self) -> Iterator[Entry]:
@@ -46,7 +46,7 @@ class BoardParameters:
         for number, one in enumerate(CHIP_PARAMETERS):
             yield Entry(
                 name=one.name,
-                get=partial(self._wanted.__getitem__, number),
+                get=partial(self._values.__getitem__, number),
                 set=partial(self._want, number),
                 minimum=one.minimum,
                 maximum=one.maximum,
@@ -61,13 +61,13 @@ class BoardParameters:
         """The board may have been another one, or forgotten all."""
         with self._lock:
             self._unconfirmed = set(range(len(CHIP_PARAMETERS)))
-            self._said = float("-inf")
+            self._rounded = float("-inf")
 
     def see(self, answer: Parameter) -> bool:
         """The board said what is in force; whether that settles what was open."""
         with self._lock:
-            wanted = [_said(self._wanted[number]) for number in self._unconfirmed & {answer.number}]
-            if _said(answer.value) not in wanted:
+            requested = [_rounded(self._values[number]) for number in self._unconfirmed & {answer.number}]
+            if _rounded(answer.value) not in requested:
                 return False
             self._unconfirmed.discard(answer.number)
             return True
@@ -75,7 +75,7 @@ class BoardParameters:
     def tick(self) -> None:
         """Say what is not confirmed, where it was not said lately; to be called several times a second."""
         with self._lock:
-            if self._unconfirmed and self._clock.now() - self._said >= self._patience:
+            if self._unconfirmed and self._clock.now() - self._rounded >= self._patience:
                 self._say()
 
     def refusals(self) -> list[str]:
@@ -90,17 +90,17 @@ class BoardParameters:
     def _want(self, number: int, value: float) -> None:
         with self._lock:
             # What the line carries is what is in force.
-            self._wanted[number] = _said(value) / 1000
+            self._values[number] = _rounded(value) / 1000
             self._unconfirmed.add(number)
             self._say()
 
     def _say(self) -> None:
         packets = [
-            Parameter(number=number, value=self._wanted[number]) for number in sorted(self._unconfirmed)
+            Parameter(number=number, value=self._values[number]) for number in sorted(self._unconfirmed)
         ]
         if self._send(*packets):
-            self._said = self._clock.now()
+            self._rounded = self._clock.now()
 
 
-def _said(value: float) -> int:
+def _rounded(value: float) -> int:
     return round(value * 1000)

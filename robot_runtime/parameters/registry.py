@@ -15,7 +15,7 @@ Changed = dict[str, tuple[ParameterValue, ParameterValue]]
 class Registry:
     """The parameters of these entries. A default is what a parameter is when this is made.
 
-    A control tick holds `between_ticks`, and so does whoever changes parameters: a tick sees all of a change
+    A control tick holds `tick_lock`, and so does whoever changes parameters: a tick sees all of a change
     or none. Every method may be called from any thread.
     """
 
@@ -23,12 +23,12 @@ class Registry:
         self,
         entries: Iterable[Entry],
         armed: Callable[[], bool],
-        between_ticks: AbstractContextManager[object],
+        tick_lock: AbstractContextManager[object],
     ) -> None:
         self._entries = {entry.name: entry for entry in entries}
         self._defaults = self.values()
         self._armed = armed
-        self._between_ticks = between_ticks
+        self._tick_lock = tick_lock
 
     def values(self) -> dict[str, ParameterValue]:
         """What is in force, by name."""
@@ -58,7 +58,7 @@ class Registry:
     def changing(self) -> Iterator[Changed]:
         """Wait for the tick that runs, and keep the next one waiting; filled at the end with what changed."""
         changed: Changed = {}
-        with self._between_ticks:
+        with self._tick_lock:
             before = self.values()
             yield changed
             after = self.values()
@@ -74,7 +74,7 @@ class Registry:
         """
         problems: dict[str, str] = {}
         checked: dict[str, ParameterValue] = {}
-        with self._between_ticks:
+        with self._tick_lock:
             for name, value in (expected or {}).items():
                 if name in self._entries and (now := self._entries[name].get()) != value:
                     problems[name] = f"{name} is {now} now, and not {value} any more"

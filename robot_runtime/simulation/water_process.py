@@ -72,9 +72,9 @@ class WaterProcess:
                 continue
             reading = self._simulator.advance(PERIOD, read_fins(text))
             now = self._clock.now()
-            wanted = self._simulator.broken_devices
-            line.sendall((_faults(broken, wanted) + write_sense(reading)).encode())
-            broken = wanted
+            failing = self._simulator.broken_devices
+            line.sendall((_faults(broken, failing) + write_sense(reading)).encode())
+            broken = failing
             if not self._attached:
                 log.info("attached to the board at %s", self._board)
             self._attached = True
@@ -102,8 +102,8 @@ class WaterProcess:
         self._outbox.flush()
 
 
-def _faults(told: frozenset[str], wanted: frozenset[str]) -> str:
-    """The lines that let the board's devices fail, or answer again; `told` are those that fail by now."""
-    absent = [f"fault {device} absent\n" for device in sorted(wanted - told)]
-    mended = [f"fault {device} none\n" for device in sorted(told - wanted)]
+def _faults(known: frozenset[str], failing: frozenset[str]) -> str:
+    """The lines that let the board's devices fail, or answer again; `known` are those that fail by now."""
+    absent = [f"fault {device} absent\n" for device in sorted(failing - known)]
+    mended = [f"fault {device} none\n" for device in sorted(known - failing)]
     return "".join(absent + mended)

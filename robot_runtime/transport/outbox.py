@@ -67,7 +67,7 @@ class Outbox:
             if blocks:
                 message = b"".join(blocks.values())
                 if self._cache is not None:
-                    self._cache.keep(message, self._next)
+                    self._cache.add(message, self._next)
                 self._send(STREAM, message)
             for name, block in blocks.items():
                 if self._watched(name):

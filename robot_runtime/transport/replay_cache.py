@@ -61,7 +61,7 @@ class ReplayCache:
         self._bytes = 0
         self._next: dict[str, int] = {}
 
-    def keep(self, message: bytes, following: Mapping[str, int]) -> None:
+    def add(self, message: bytes, following: Mapping[str, int]) -> None:
         """Keep a message that is about to be sent; `following` are the topics' numbers after it."""
         now = self._clock.now()
         with self._lock:
@@ -72,16 +72,16 @@ class ReplayCache:
             self._next.update(following)
 
     def answer(self, question: bytes) -> bytes:
-        """The blocks from the wanted numbers on: `question` is JSON, {topic: first number that is wanted}.
+        """Returns the blocks from these numbers on; `question` is JSON, {topic: first number}.
 
         Topics that are not named are left out. Raises ValueError where it is no such thing.
         """
-        wanted = _read_question(question)
+        first_numbers = _read_question(question)
         with self._lock:
             messages = list(self._messages)
             following = {name: number % NUMBERS for name, number in self._next.items()}
         head = json.dumps({"run": self._run, "next": following}).encode()
-        numbers = {BY_NAME[name].id: number for name, number in wanted.items()}
+        numbers = {BY_NAME[name].id: number for name, number in first_numbers.items()}
         return b"".join([_SIZE.pack(len(head)), head, *_cut(messages, numbers)])
 
 
@@ -101,18 +101,18 @@ def _cut(messages: Iterable[tuple[float, bytes]], numbers: Mapping[int, int]) ->
             at = end
 
 
-def write_question(wanted: Mapping[str, int]) -> bytes:
+def write_question(first_numbers: Mapping[str, int]) -> bytes:
     """The question for blocks from these numbers on, by the topics' names."""
-    return json.dumps(dict(wanted)).encode()
+    return json.dumps(dict(first_numbers)).encode()
 
 
 def _read_question(question: bytes) -> dict[str, int]:
-    wanted = json.loads(question)
-    if not isinstance(wanted, dict):
+    first_numbers = json.loads(question)
+    if not isinstance(first_numbers, dict):
         raise ValueError("a question for blocks must be a JSON object")
-    for name, number in wanted.items():
+    for name, number in first_numbers.items():
         if name not in BY_NAME:
             raise ValueError(f"there is no topic {name!r}")
         if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < NUMBERS:
             raise ValueError(f"the number of {name} is {number!r}; it must be a whole number below 2^32")
-    return wanted
+    return first_numbers

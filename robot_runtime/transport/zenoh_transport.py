@@ -157,14 +157,14 @@ class ZenohTransport:
 
 def join(robot: str, endpoints: Sequence[str]) -> ZenohTransport:
     """Join the conversation of a robot elsewhere, as a client; wait until it is there."""
-    told = False
+    warned = False
     while True:
         try:
             return ZenohTransport(robot, connect=endpoints, client=True)
         except OSError as problem:
-            if not told:
+            if not warned:
                 log.warning("%s; trying again until the robot answers", problem)
-            told = True
+            warned = True
             time.sleep(_JOIN_RETRY)
 
 

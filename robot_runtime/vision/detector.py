@@ -17,12 +17,12 @@ from robot_runtime.vision.picture import Picture
 class Sight:
     """What is in one picture.
 
-    `wanted` are the patches of the wanted colour; `patch` is the one that counts, of `colour`: the largest of
-    the target's or, without one, of any. `target` is what is acted on, `set_point` (m) the action for it.
+    `target_patches` are the patches of the selected colour. `patch`, of `colour`, is the reported one:
+    the target's largest or, without a target, the largest of all. `set_point` (m) is the action for `target`.
     """
 
     balanced: Picture
-    wanted: Patches
+    target_patches: Patches
     colour: str | None
     patch: Candidate | None
     markers: list[ArucoMarker]
@@ -48,10 +48,10 @@ class Detector:
         balanced = self.balance(picture)
         hsv = cv2.cvtColor(balanced, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
         markers = self._markers.find(balanced)
-        wanted = find_patches(hsv, settings.colour, settings)
-        if (patch := wanted.largest) is not None:
+        target_patches = find_patches(hsv, settings.colour, settings)
+        if (patch := target_patches.largest) is not None:
             action = settings.actions.get(settings.colour)
-            return Sight(balanced, wanted, settings.colour, patch, markers, settings.colour, action)
+            return Sight(balanced, target_patches, settings.colour, patch, markers, settings.colour, action)
         others = (find_patches(hsv, name, settings) for name in settings.colours if name != settings.colour)
         seen = {one.colour: patch for one in others if (patch := one.largest) is not None}
         there = {*seen, *(marker_name(one.number) for one in markers)}
@@ -59,7 +59,7 @@ class Detector:
         colour = target if target in seen else max(seen, key=lambda name: seen[name].area, default=None)
         return Sight(
             balanced=balanced,
-            wanted=wanted,
+            target_patches=target_patches,
             colour=colour,
             patch=seen[colour] if colour is not None else None,
             markers=markers,

@@ -49,7 +49,7 @@ class VisionNode:
         on_detection: Callable[[Detection], None],
         on_picture: Callable[[str, float, bytes], None],
         watched: Callable[[str], bool],
-        tell: Callable[[Event], None],
+        on_event: Callable[[Event], None],
         open_camera: Callable[[], Camera] | None = None,
         messages: ZenohTransport | None = None,
         on_thumbnail: Callable[[float, bytes], None] | None = None,
@@ -65,7 +65,7 @@ class VisionNode:
         self._thumbnail_due = -inf
         self._watched = watched
         self._frame: CameraFrame | None = None
-        self._tell = tell
+        self._on_event = on_event
         self._messages = messages
         self._open_camera = open_camera or self._configured_camera
         self._pace = RateTimer(clock, config.rate)
@@ -216,7 +216,7 @@ class VisionNode:
                 box=patch.box if patch else None,
                 area=patch.area if patch else 0.0,
                 processing=ended - begun,
-                candidates=list(sight.wanted.candidates),
+                candidates=list(sight.target_patches.candidates),
                 markers=sight.markers,
                 target=sight.target,
                 set_point=sight.set_point,
@@ -232,7 +232,7 @@ class VisionNode:
 
         made: dict[str, Callable[[], Picture]] = {
             "picture": lambda: frame.picture,
-            "mask": lambda: pipeline.draw_mask(sight.wanted),
+            "mask": lambda: pipeline.draw_mask(sight.target_patches),
             "balanced": lambda: sight.balanced,
         }
         for topic, make in made.items():
@@ -251,7 +251,7 @@ class VisionNode:
             self._report("caution", f"Camera: {text}. It is tried again every {RETRY:g} s.")
 
     def _report(self, severity: Severity, text: str) -> None:
-        self._tell(Event(time=self._clock.now(), kind="camera", severity=severity, text=text))
+        self._on_event(Event(time=self._clock.now(), kind="camera", severity=severity, text=text))
 
     def _drop_camera(self) -> None:
         camera, self._camera = self._camera, None
@@ -264,7 +264,7 @@ class VisionNode:
     def _configured_camera(self) -> Camera:
         from robot_runtime.vision.pipeline import open_camera
 
-        def tell_missing(why: str) -> None:
+        def report_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-        return open_camera(self._config, self._clock, self._messages, lambda: self.held, tell_missing)
+        return open_camera(self._config, self._clock, self._messages, lambda: self.held, report_missing)

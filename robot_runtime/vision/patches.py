@@ -57,8 +57,8 @@ def find_patches(hsv: Picture, name: str, settings: VisionSettings) -> Patches:
     measured = [(_measure(one, width, height, settings), one) for one in contours[:CONTOURS_MAX]]
     # Those that count are told of before any that does not, however large.
     measured.sort(key=lambda pair: bool(pair[0].refused))
-    told = measured[:CANDIDATES_MAX]
-    return Patches(name, mask, [one for one, _ in told], [contour for _, contour in told])
+    listed = measured[:CANDIDATES_MAX]
+    return Patches(name, mask, [one for one, _ in listed], [contour for _, contour in listed])
 
 
 def find_colour(hsv: Picture, colour: ColourRange) -> Picture:

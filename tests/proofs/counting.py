@@ -84,12 +84,12 @@ def count(seconds: float, seed: int) -> tuple[Counts, Counts]:
         flight.robot.bus.on_row("status", lambda _, __, record: told.append(Status.from_bytes(record)))
         flight.arm()
         flight.run(SETTLE)
-        before, board_before = flight.robot.conversation.statistics(), told[-1].frames_invalid
+        before, board_before = flight.robot.link.statistics(), told[-1].frames_invalid
         wire.share = SHARE
         flight.run(seconds)
         wire.share = 0.0
         flight.run(SETTLE)
-        after = flight.robot.conversation.statistics()
+        after = flight.robot.link.statistics()
         wire.to_host.invalid = after.frames_invalid - before.frames_invalid
         wire.to_host.missed = after.frames_missed - before.frames_missed
         wire.to_board.invalid = told[-1].frames_invalid - board_before

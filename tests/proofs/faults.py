@@ -162,7 +162,7 @@ def _held_down(swim: Swim) -> Wrong:
 
 
 def _no_picture(swim: Swim) -> Wrong:
-    camera, taken = swim.stage._camera, swim.supervisor.watch._vision
+    camera, taken = swim.stage._camera, swim.supervisor.detector._vision
     assert camera is not None
     assert taken is not None
 
@@ -261,7 +261,7 @@ def measure(row: Row, times: int, seed: int) -> Measured:
     measured = Measured()
     while len(measured.told) < times:
         with Swim(row.elf, row.more) as swim:
-            swim._performance._looks = "camera" in row.more
+            swim._performance._has_camera = "camera" in row.more
             for _ in range(1 if row.once else times):
                 _inject(swim, row, chance, measured)
     return measured

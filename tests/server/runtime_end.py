@@ -69,7 +69,7 @@ class RuntimeEnd:
         for block in blocks:
             name = block.topic.name if block.topic.kind is Kind.PICTURE else STREAM
             if name == STREAM:
-                self._cache.keep(block.data, {block.topic.name: block.following})
+                self._cache.add(block.data, {block.topic.name: block.following})
             self._messages.publish(name, block.data)
 
     def publish_bytes(self, data: bytes) -> None:

@@ -443,7 +443,7 @@ export interface Loop {
   controllers: ControllerChoice[];
 }
 
-/** How often the board sends a topic on this line: s between two samples. */
+/** The period, s, at which the board sends a topic at this baud rate. */
 export interface Pace {
   topic: string;
   period: number;
@@ -493,7 +493,7 @@ export interface TunableParameter {
   pending: boolean;
 }
 
-/** What counts as one colour: lowest and highest hue, saturation and value, both included.
+/** The range of one colour: lowest and highest hue, saturation and value, both included.
 
     A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
     where another one does.
@@ -560,7 +560,7 @@ export interface State {
   pilot_dropped: number;
 }
 
-/** What the vision node found in one picture: the largest patch of each wanted colour that it saw. */
+/** The result of searching one picture: the largest patch of the colour that was found. */
 export interface Detection {
   time: number;
   taken: number;
@@ -596,7 +596,7 @@ export interface Parameters {
   parameters: TunableParameter[];
 }
 
-/** How an experiment on a loop goes; sent at every change and twice a second, and once at its end. */
+/** The progress of an experiment on a loop; sent at every change, twice a second, and once at its end. */
 export interface Experiment {
   time: number;
   number: number;
@@ -610,7 +610,7 @@ export interface Experiment {
   text: string;
 }
 
-/** How the vision node looks now; sent at every change, and every ten seconds. */
+/** The vision settings in force; sent at every change and every ten seconds. */
 export interface VisionInForce {
   time: number;
   settings: VisionSettings;

@@ -1,4 +1,4 @@
-"""What may be tuned on the board while it runs; `make generate` writes the firmware's table from this.
+"""The board's tunable parameters; `make generate` writes the firmware's table from this.
 
 No limit that safety rests on is among them: how soon a command expires, how soon the fins stop flapping, and
 the watchdog are constants of the firmware. Where the hardware sets a limit, it is the range's end.

@@ -26,7 +26,7 @@ Fins = tuple[float, float, float, float]
 
 
 class DebugLevel(IntEnum):
-    """How much a line of debug text matters."""
+    """The severity of a line of debug text."""
 
     DEBUG = 0
     INFO = 1
@@ -35,7 +35,7 @@ class DebugLevel(IntEnum):
 
 
 class StatusFlag(IntFlag):
-    """What the board says of itself, one bit each."""
+    """Flags of the board's state, one bit each."""
 
     ARMED = 1
     HOST_ALIVE = 2

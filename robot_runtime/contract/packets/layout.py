@@ -1,4 +1,4 @@
-"""How the fields of a record lie in bytes: type, scale and unit of each, little-endian and packed.
+"""The layout of records in bytes: type, scale and unit of each field, little-endian and packed.
 
 A record is a frozen dataclass whose fields carry a `Wire` (a number, or a fixed array of numbers) or a
 `Text` (a byte that counts, then that many bytes of UTF-8; only as the last field). The same records travel
@@ -55,11 +55,11 @@ class Wire:
 
     @property
     def integral(self) -> bool:
-        """Whether values are whole counts, without a scale."""
+        """True if values are whole counts, without a scale."""
         return self.scale == 1 and self.code not in "fd"
 
     def counter(self) -> Callable[[float], float]:
-        """What turns a value into the nearest count that the code can hold; nothing for floating point."""
+        """The function that rounds a value to the nearest count of this type; None for floating point."""
         if self.code in "fd":
             return _unchanged
         scale, bits = self.scale, _LIMITS[self.code]

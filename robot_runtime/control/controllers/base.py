@@ -1,4 +1,4 @@
-"""What every controller is: from set point and measured value to a command between -1 and 1.
+"""Base class of the controllers: set point and measured value in, command between -1 and 1 out.
 
 A controller is one small class: a name, a title, its gains with their limits, and `step`.
 docs/develop/add-a-controller.md says how one is added.
@@ -13,7 +13,7 @@ from typing import ClassVar
 
 @dataclass(frozen=True, slots=True)
 class GainLimits:
-    """What a gain may be: its default, its least and its most."""
+    """Default, minimum and maximum of a gain, with its unit and meaning."""
 
     default: float
     minimum: float
@@ -30,16 +30,16 @@ class Controller(ABC):
     title: ClassVar[str]
     limits: ClassVar[Mapping[str, GainLimits]]
     averages: ClassVar[bool] = False
-    """Whether it sees the mean of what was measured since the last step, instead of the newest."""
-    feels: ClassVar[bool] = False
-    """Whether it wants to know `felt`."""
+    """True if it uses the mean of the values since the last step instead of the newest."""
+    needs_heave_acceleration: ClassVar[bool] = False
+    """True if it uses `heave_acceleration`."""
 
     def __init__(self) -> None:
-        self.down = 0.0
+        self.heave_command = 0.0
         """The command downwards that goes out with this one's, where that is for another axis."""
-        self.felt: float | None = None
+        self.heave_acceleration: float | None = None
         """m/s²: the mean acceleration downwards since the last step, for the depth, where it
-        `feels`; None where none came."""
+        `needs_heave_acceleration`; None where none came."""
         self.gains = {name: limits.default for name, limits in self.limits.items()}
 
     @classmethod
@@ -60,7 +60,7 @@ class Controller(ABC):
         self.gains |= {name: float(value) for name, value in gains.items()}
 
     def start(self) -> None:  # noqa: B027 - most controllers have no past
-        """Forget the past: called whenever the controller takes over."""
+        """Resets the state; called whenever the controller takes over."""
 
     @abstractmethod
     def step(self, set_point: float, measured: float, seconds: float) -> float:

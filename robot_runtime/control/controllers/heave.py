@@ -1,4 +1,4 @@
-"""What the craft's four fins do to its depth: the model by which `Predictive` thinks ahead.
+"""A model of heave motion driven by four fins, which `Predictive` uses for its predictions.
 
 Depth z (m) and its speed v (m/s) count downwards, forces are accelerations of the hull with the water that it
 takes along. The numbers are those of the simulated robot (docs/reference/simulation.md), which are as good as
@@ -45,13 +45,13 @@ class Motion(NamedTuple):
     amplitude: float = 0.0
 
     def pointing(self, side: float) -> bool:
-        """Whether the fins have turned to this side, 1 down and -1 up."""
+        """True if the fins point to this side, 1 down and -1 up."""
         return self.direction * side > DOWN - 1e-6
 
 
 @dataclass(slots=True)
 class Heave:
-    """The model with what is learnt of this craft; accelerations in m/s²."""
+    """The model with the parameters estimated for this craft; accelerations in m/s²."""
 
     thrust: float
     """Of all fins at full command."""
@@ -73,7 +73,7 @@ class Heave:
         depth, speed, direction, amplitude = motion
         count = max(round(seconds / step), 1)
         step = seconds / count
-        goal, wanted = copysign(DOWN, command) if command else direction, _AMPLITUDE * abs(command)
+        goal, goal_amplitude = copysign(DOWN, command) if command else direction, _AMPLITUDE * abs(command)
         pushed = across_blades = resisted = steepness = 0.0
         for _ in range(count):
             push = self.thrust * (1 - cos(amplitude)) / _FULL
@@ -91,7 +91,7 @@ class Heave:
             resistance = (_LINEAR + self.drag * abs(speed)) * speed
             pushed, across_blades, resisted = pushed + push, across_blades + blades, resisted + resistance
             steepness += _LINEAR + 2 * self.drag * abs(speed)
-            amplitude += _limit(wanted - amplitude, _AMPLITUDE_RATE * step)
+            amplitude += _limit(goal_amplitude - amplitude, _AMPLITUDE_RATE * step)
             before = speed
             speed += (
                 self.strength * push + self.blades * blades - self.hull * resistance + self.drift
@@ -105,7 +105,7 @@ class Heave:
         return self.hull * (_LINEAR + self.drag * abs(speed)) * speed
 
     def coast(self, speed: float, drift: float) -> float:
-        """How far a hull of this speed (m/s, above 0) goes on with resting fins in 3 s, m."""
+        """Returns the distance, m, of coasting for 3 s from this speed (m/s, above 0), fins at rest."""
         way = 0.0
         for _ in range(30):
             speed += (drift - self.resistance(speed)) * 0.1

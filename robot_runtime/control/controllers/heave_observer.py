@@ -1,4 +1,4 @@
-"""Where the hull is, how fast, and what kind of craft it is: an extended Kalman filter about `Heave`.
+"""An extended Kalman filter of depth, speed and the parameters of the `Heave` model.
 
 Its state is depth, speed, and four parameters of the model that no reading shows by itself: the strength of
 the fins, the resistance of blades and hull, and the drift (augmented state, A. Gelb, Applied Optimal
@@ -12,7 +12,7 @@ from robot_runtime.control.controllers.kalman import Matrix, dot, take_in
 LAG = 0.05
 """s from a command to when the fins have followed it."""
 AGE = 0.033
-"""s by which a reading is older than the tick that hears of it."""
+"""s by which a reading is older than the tick that uses it."""
 _STEP = 0.02
 """s of the model's steps."""
 _AWASH = 0.008
@@ -75,10 +75,10 @@ class HeaveObserver:
         first = heave.slopes
         motion = heave.advance(motion, command, seconds - lag, _STEP)
         pushed, paddled, resisted = (a + b for a, b in zip(first[:3], heave.slopes[:3], strict=True))
-        kept = first[3] * heave.slopes[3]
+        retained = first[3] * heave.slopes[3]
         self._earlier = command
-        to_speed = [0.0, kept, pushed, paddled, resisted, seconds]
-        to_depth = [1.0, seconds * (1 + kept) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
+        to_speed = [0.0, retained, pushed, paddled, resisted, seconds]
+        to_depth = [1.0, seconds * (1 + retained) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
         speed_noise = _CALM + _PUSHED * abs(pushed) / seconds + _PADDLED * abs(paddled)
         rows = [self._mixed(to_depth), self._mixed(to_speed), *self._covariance[2:]]
         self._covariance = [[dot(to_depth, row), dot(to_speed, row), *row[2:]] for row in rows]

@@ -1,4 +1,4 @@
-"""What Kalman filters of any state share: how a measurement changes what is known."""
+"""The measurement update of a Kalman filter with any state."""
 
 from collections.abc import Sequence
 from operator import mul

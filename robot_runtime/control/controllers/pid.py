@@ -36,8 +36,8 @@ class Pid(Controller):
         """kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
         error = set_point - measured
         self._speed.see(measured, seconds)
-        wanted = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed.value
-        limited = min(max(wanted, -1.0), 1.0)
-        if wanted == limited or (wanted > 0) != (error > 0):
+        command = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed.value
+        limited = min(max(command, -1.0), 1.0)
+        if command == limited or (command > 0) != (error > 0):
             self._integral = min(max(self._integral + self.gains["ki"] * error * seconds, -1.0), 1.0)
         return limited

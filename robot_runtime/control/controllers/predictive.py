@@ -68,7 +68,7 @@ class Predictive(Controller):
     name = "predictive"
     title = "Model-based"
     averages = True
-    feels = True
+    needs_heave_acceleration = True
     limits: ClassVar[Mapping[str, GainLimits]] = {
         "noise": GainLimits(0.0022, 0.0005, 0.05, "m", "standard deviation of the depth that a step is told"),
         "response": GainLimits(2.4, 0.5, 10.0, "1/s", "how fast the wanted speed is taken up"),
@@ -111,15 +111,15 @@ class Predictive(Controller):
         return self._command
 
     def _refine(self, measured: float, seconds: float) -> Motion:
-        """The motion as it was felt, where it was."""
+        """Returns the motion, corrected by the measured acceleration if there is one."""
         assert self._motion is not None
-        if self.felt is None or seconds <= 0:
+        if self.heave_acceleration is None or seconds <= 0:
             self._inertial = None
             return self._motion
         if self._inertial is None:
             self._inertial = InertialHeave(self._motion.depth, self._motion.speed)
             return self._motion
-        depth, speed = self._inertial.observe(self.felt, measured, self.gains["noise"], seconds)
+        depth, speed = self._inertial.observe(self.heave_acceleration, measured, self.gains["noise"], seconds)
         return self._motion._replace(depth=depth, speed=speed)
 
     def _find_goal(self, set_point: float, motion: Motion) -> float:
@@ -157,7 +157,7 @@ class Predictive(Controller):
         return self._swim(goal, motion, self._side)
 
     def _overshoots(self, left: float, motion: Motion, at_home: bool) -> bool:
-        """Whether a fast hull would go past unless the fins turn; `left` is seen towards home, m."""
+        """True if a fast hull would overshoot unless the fins turn; `left` counts towards home, m."""
         if not at_home:
             return -left > _NEAR
         return self._heave.coast(motion.speed * self._home, self._heave.drift * self._home) > left + _OVER
@@ -185,7 +185,7 @@ class Predictive(Controller):
         return _LONGER * abs(motion.depth - start)
 
     def _pays_away(self, goal: float, motion: Motion, at_home: bool) -> bool:
-        """Whether the best plan keeps the fins away from home now."""
+        """True if the best plan keeps the fins away from home now."""
         stay, before = self._cost(goal, motion, 0), inf
         for ticks in _AWAY_FROM_HOME if at_home else _AWAY_MORE:
             cost = self._cost(goal, motion, ticks)
@@ -223,9 +223,9 @@ class Predictive(Controller):
         left, speed, drift = (goal - motion.depth) * home, motion.speed * home, heave.drift * home
         if left >= 0:
             braking, drag = max(-drift, _DRIFT_LEAST) * _DRIFT_USED, heave.hull * heave.drag
-            wanted = min(sqrt(braking / drag * (exp(min(2 * drag * left, 6.0)) - 1)), _SPEED_MAX)
+            goal_speed = min(sqrt(braking / drag * (exp(min(2 * drag * left, 6.0)) - 1)), _SPEED_MAX)
             # Along that curve drag brakes by itself.
-            return self.gains["response"] * (wanted - speed) - drift - braking
+            return self.gains["response"] * (goal_speed - speed) - drift - braking
         braking = _BRAKING * heave.thrust * heave.strength
-        wanted = max(braked(left, braking, self.gains["approach"]), -_SPEED_MAX)
-        return self.gains["response"] * (wanted - speed) + heave.resistance(wanted) - drift
+        goal_speed = max(braked(left, braking, self.gains["approach"]), -_SPEED_MAX)
+        return self.gains["response"] * (goal_speed - speed) + heave.resistance(goal_speed) - drift

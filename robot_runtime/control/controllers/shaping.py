@@ -1,10 +1,10 @@
-"""What several controllers make of a measured value: how fast it changes, and how fast it should."""
+"""The rate of a measured value, and the speed that braking allows."""
 
 from math import copysign, sqrt
 
 
 class Rate:
-    """How fast a value changes, through a low-pass of so many s; 0 until two values were seen."""
+    """The rate of change of a value, low-pass filtered; 0 until two values were seen."""
 
     def __init__(self, time_constant: float) -> None:
         self.value = 0.0

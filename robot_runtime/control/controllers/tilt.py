@@ -52,17 +52,17 @@ class Tilt(Controller):
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """The yaw that tilts the fins as they should be."""
         self._rate.see(measured, seconds)
-        if abs(self.down) < _POINTING:
-            if self.down:
+        if abs(self.heave_command) < _POINTING:
+            if self.heave_command:
                 self._tilt = 0.0
             return 0.0
         most = self.gains["slew"] * seconds
-        self._tilt += min(max(self._wanted(set_point - measured) - self._tilt, -most), most)
-        return abs(self.down) * tan(self._tilt)
+        self._tilt += min(max(self._goal_tilt(set_point - measured) - self._tilt, -most), most)
+        return abs(self.heave_command) * tan(self._tilt)
 
-    def _wanted(self, left: float) -> float:
+    def _goal_tilt(self, left: float) -> float:
         rate = braked(left, self.gains["braking"], self.gains["approach"])
-        share = max((1 - cos(_AMPLITUDE * abs(self.down))) / (1 - cos(_AMPLITUDE)), _SHARE_LEAST)
+        share = max((1 - cos(_AMPLITUDE * abs(self.heave_command))) / (1 - cos(_AMPLITUDE)), _SHARE_LEAST)
         part = self.gains["response"] * (rate - self._rate.value) / (self.gains["torque"] * share)
         most = self.gains["tilt"]
         return min(max(asin(min(max(part, -1.0), 1.0)), -most), most)

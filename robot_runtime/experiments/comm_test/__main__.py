@@ -45,11 +45,11 @@ def main() -> int:
     stop = Cancellation()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
-    teller = EventWriter(sys.stdout)
+    writer = EventWriter(sys.stdout)
     try:
         tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
     except DocumentError as problem:
-        teller.tell("refused", problems=problem.problems)
+        writer.tell("refused", problems=problem.problems)
         return REFUSED
     lab: CommTestLab = EmulatedLab(arguments.build, stop)
     if arguments.where == "emulated":
@@ -60,7 +60,7 @@ def main() -> int:
         except ResetError as problem:
             sys.exit(f"comm_test: {problem}")
         lab = RobotLab(arguments.build, arguments.port, pull, arguments.reset == "dtr", stop)
-    return 0 if run_tests(tests, lab, teller, stop) else 1
+    return 0 if run_tests(tests, lab, writer, stop) else 1
 
 
 def _restore(arguments: argparse.Namespace) -> int:

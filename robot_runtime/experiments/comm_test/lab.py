@@ -138,27 +138,27 @@ def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation) -> None:
             print(f"{problem}; trying again", file=sys.stderr, flush=True)  # noqa: T201
 
 
-def run_tests(tests: Sequence[CommTest], lab: CommTestLab, teller: EventWriter, stop: Cancellation) -> bool:
+def run_tests(tests: Sequence[CommTest], lab: CommTestLab, writer: EventWriter, stop: Cancellation) -> bool:
     """Run tests one after the other up to the first that does not come to its end; whether all did."""
-    return all(_run_test(number, test, lab, teller, stop) for number, test in enumerate(tests))
+    return all(_run_test(number, test, lab, writer, stop) for number, test in enumerate(tests))
 
 
-def _run_test(number: int, test: CommTest, lab: CommTestLab, teller: EventWriter, stop: Cancellation) -> bool:
+def _run_test(number: int, test: CommTest, lab: CommTestLab, writer: EventWriter, stop: Cancellation) -> bool:
     state, problem = "complete", ""
     try:
         firmware, tools, host = lab.prepare()
-        teller.tell("started", test=number, firmware=firmware, tools=tools, host=host)
+        writer.tell("started", test=number, firmware=firmware, tools=tools, host=host)
         results = lab.run(
-            test, lambda cell, phase: teller.tell("phase", test=number, number=cell, phase=phase)
+            test, lambda cell, phase: writer.tell("phase", test=number, number=cell, phase=phase)
         )
         for cell, result in enumerate(results):
-            teller.tell("cell", test=number, number=cell, values=result.values)
+            writer.tell("cell", test=number, number=cell, values=result.values)
     except StoppedError:
         state = "cancelled"
     except TROUBLE as trouble:
         # A terminal interrupts the boards and tools of the lab as well, so their end is no failure then.
         state, problem = ("cancelled", "") if stop.is_set() else ("failed", str(trouble))
-    teller.tell("ended", test=number, state=state, problem=problem)
+    writer.tell("ended", test=number, state=state, problem=problem)
     return state == "complete"
 
 

@@ -94,7 +94,7 @@ class CommTestLine(ABC):
         """s until everything that was written is through the line."""
         return max(self._line_free - self.now, 0.0)
 
-    def disturb(self, faults: Faults) -> None:
+    def inject_faults(self, faults: Faults) -> None:
         """Let these befall the line from now on."""
         if faults == Faults(seed=faults.seed):
             return
@@ -104,7 +104,7 @@ class CommTestLine(ABC):
         self._moments = faults.moments(self.now)
         self._moment = next(self._moments, None)
 
-    def calm(self) -> None:
+    def clear_faults(self) -> None:
         """From now on nothing befalls the line any more."""
         if self._disturbed:
             self._wire().clean()
@@ -133,10 +133,10 @@ class CommTestLine(ABC):
             if pause - self.now > TIME_MIN:
                 self._pass(pause - self.now)
             while self._moment is not None and self._moment[0] - self.now <= TIME_MIN:
-                self._befall(self._moment)
+                self._apply_fault(self._moment)
                 self._moment = next(self._moments, None)
 
-    def _befall(self, moment: Moment) -> None:
+    def _apply_fault(self, moment: Moment) -> None:
         _, kind, seconds = moment
         if kind == "stall":
             self._wire().stall(seconds)

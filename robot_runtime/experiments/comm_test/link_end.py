@@ -62,7 +62,7 @@ class _LinkCell:
 
     def run(self) -> CellResult:
         self._line.wait(self._line.start_time)
-        self._line.disturb(self._test.faults)
+        self._line.inject_faults(self._test.faults)
         while self._answer is None and not self._hopeless():
             self._give()
             self._line.wait(self._pause())

@@ -86,7 +86,7 @@ class _FaultyWire:
 
     def rate(self, kind: RateKind, rate: float) -> None:
         for channel in self._line.channels.values():
-            channel.disturb(kind, rate)
+            channel.set_rate(kind, rate)
 
     def burst(self, rate: float, bits: int) -> None:
         for channel in self._line.channels.values():

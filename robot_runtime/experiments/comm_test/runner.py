@@ -100,7 +100,7 @@ def run_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
     framing = STREAM_FRAMINGS[test.framing]
     messages = [framing.message(number) for number in range(test.from_val, test.to_val)]
     line.wait(line.start_time)
-    line.disturb(test.faults)
+    line.inject_faults(test.faults)
     for message in messages if test.direction != "to_host" else messages[:1]:
         line.write(message)
         line.wait(cell.pi_delay)
@@ -149,7 +149,7 @@ def _let_the_board_finish(test: CommTest, cell: GridCell, line: CommTestLine, me
 def _ask(request: bytes, cell: GridCell, line: CommTestLine) -> tuple[Counts | None, int]:
     # On a line that is left alone, and whatever harmed bytes have made the chip answer before: so the answer
     # tells of the numbers.
-    line.calm()
+    line.clear_faults()
     before = len(line.heard)
     for _ in range(QUESTIONS):
         line.write(request)

@@ -68,7 +68,7 @@ class FaultyChannel:
             self._burst_left = 0
             self._faults = {kind: Recurrence(rate, self._random(kind)) for kind, rate in self._rates.items()}
 
-    def disturb(self, kind: Kind, rate: float) -> None:
+    def set_rate(self, kind: Kind, rate: float) -> None:
         """Let this happen to each bit (bit_errors) or byte with this probability. Raises ValueError."""
         self._set(kind, rate)
 

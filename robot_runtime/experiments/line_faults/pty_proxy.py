@@ -176,7 +176,7 @@ def _disturb(line: PtyProxy, direction: Direction, words: list[str]) -> None:
     channel = line.channels[direction]
     match words:
         case [("bit_errors" | "drop" | "double" | "insert") as kind, rate]:
-            channel.disturb(kind, float(rate))
+            channel.set_rate(kind, float(rate))
         case ["burst", rate, bits]:
             channel.burst(float(rate), int(bits))
         case ["stall", seconds]:
@@ -198,7 +198,7 @@ def main() -> None:
         with PtyProxy(arguments.port, arguments.baud, arguments.link, arguments.seed) as line:
             for name in [arguments.direction] if arguments.direction else DIRECTIONS:
                 for kind in KINDS:
-                    line.channels[name].disturb(kind, getattr(arguments, kind))
+                    line.channels[name].set_rate(kind, getattr(arguments, kind))
                 line.channels[name].burst(arguments.burst[0], int(arguments.burst[1]))
             _serve(line)
             sys.exit(f"fault line: {line.failure}")

@@ -53,7 +53,7 @@ class SimulatedRobot(Core):
                 camera=scenario.vision.camera, rate=scenario.vision.rate, colour=scenario.vision.colour
             ),
         )
-        self.conversation = LinkDriver(
+        self.link = LinkDriver(
             "simulated",
             baud,
             clock,
@@ -70,7 +70,7 @@ class SimulatedRobot(Core):
             config,
             clock,
             number.hexdigest()[:16],
-            self.conversation,
+            self.link,
             Outbox(publish, lambda _: False),
             watched=lambda _: False,
             open_camera=open_camera,
@@ -100,9 +100,9 @@ class ScenarioRig:
         self._broken: frozenset[str] = frozenset()
         self._camera: Camera | None = None
         self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera)
-        self.board = make_board(self._feel)
+        self.board = make_board(self._advance_water)
         self.board.seed_line(scenario.seed)
-        self.robot.conversation.open(self.board.write)
+        self.robot.link.open(self.board.write)
 
     def __enter__(self) -> Self:
         return self
@@ -122,14 +122,14 @@ class ScenarioRig:
 
     def break_devices(self) -> None:
         """Let the board's devices fail that the sensors' faults ask for, and the others answer again."""
-        wanted = self.simulator.broken_devices
-        for device in sorted(wanted - self._broken):
+        devices = self.simulator.broken_devices
+        for device in sorted(devices - self._broken):
             self.board.fault(device, "absent")
-        for device in sorted(self._broken - wanted):
+        for device in sorted(self._broken - devices):
             self.board.fault(device, "none")
-        self._broken = wanted
+        self._broken = devices
 
-    def _feel(self, fins: FinMotion) -> Reading:
+    def _advance_water(self, fins: FinMotion) -> Reading:
         if self._period < 0:
             if self._period < _NOISY:
                 return self._at_surface
@@ -159,7 +159,9 @@ class ScenarioRig:
                 problem = str(error)
             if problem is not None:
                 words = f"Camera: the scene cannot be rendered: {problem}. A drawn card stands in."
-                self.robot.tell(Event(time=self.clock.now(), kind="camera", severity="caution", text=words))
+                self.robot.publish_event(
+                    Event(time=self.clock.now(), kind="camera", severity="caution", text=words)
+                )
         return self._camera
 
 

@@ -50,7 +50,7 @@ class _PeriodicTask:
         self._period = period
         self._action = action
 
-    def keep(self, now: float) -> None:
+    def run_if_due(self, now: float) -> None:
         """Do it where it is due."""
         if now >= self.due - _SAME_TIME:
             self.due = max(self.due + self._period, now)
@@ -60,11 +60,11 @@ class _PeriodicTask:
 class ScenarioRun:
     """One run of a scenario on this kind of board; `perform` does it all."""
 
-    def __init__(self, scenario: Scenario, make_board: MakeBoard, teller: RunListener) -> None:
+    def __init__(self, scenario: Scenario, make_board: MakeBoard, listener: RunListener) -> None:
         self._scenario = scenario
         self._make_board = make_board
-        self._teller = teller
-        self._performance: _RunLoop | None = None
+        self._listener = listener
+        self._run_loop: _RunLoop | None = None
         self._cancelled = False
 
     def cancel(self) -> None:
@@ -76,50 +76,50 @@ class ScenarioRun:
 
         Raises BoardError where there is no board, or it goes away.
         """
-        with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE) as stage:
-            performance = _RunLoop(stage, self._teller, lambda: self._cancelled)
-            performance.wait_for_start()
-            self._teller.event("started", time=0.0, **describe(stage.board.firmware))
-            self._performance = performance
-            performance.play()
-            performance.finish(cancelled=self._cancelled)
+        with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE) as rig:
+            run_loop = _RunLoop(rig, self._listener, lambda: self._cancelled)
+            run_loop.wait_for_start()
+            self._listener.event("started", time=0.0, **describe(rig.board.firmware))
+            self._run_loop = run_loop
+            run_loop.play()
+            run_loop.finish(cancelled=self._cancelled)
 
     def _send(self, data: bytes) -> None:
-        if self._performance is not None:
-            self._teller.blocks(data)
+        if self._run_loop is not None:
+            self._listener.blocks(data)
 
 
 class _RunLoop:
     """What happens on the stage, from the prelude on; `stopped` tells whether it is to end early."""
 
-    def __init__(self, stage: ScenarioRig, teller: RunListener, stopped: Callable[[], bool]) -> None:
-        self._stage = stage
-        self._teller = teller
+    def __init__(self, rig: ScenarioRig, listener: RunListener, stopped: Callable[[], bool]) -> None:
+        self._rig = rig
+        self._listener = listener
         self._stopped = stopped
-        self._commands = Commands(stage.robot).do
-        self._changes = changes(stage.simulator)
+        self._commands = Commands(rig.robot).do
+        self._changes = changes(rig.simulator)
         self._remarks: list[str] = []
         self._arming: tuple[Arming, Arm] | None = None
         self._ask_again = 0.0
         self._heard = b""
-        self._look_at = now = stage.clock.now()
-        self._rhythms = [
-            _PeriodicTask(now, 1 / stage.scenario.control.rate, stage.robot.control_tick),
-            _PeriodicTask(now, PUBLISH_EVERY, stage.robot.publish_tick),
+        self._look_at = now = rig.clock.now()
+        self._tasks = [
+            _PeriodicTask(now, 1 / rig.scenario.control.rate, rig.robot.control_tick),
+            _PeriodicTask(now, PUBLISH_EVERY, rig.robot.publish_tick),
         ]
-        self._looks = needs_camera(stage.scenario)
+        self._has_camera = needs_camera(rig.scenario)
 
     def wait_for_start(self) -> None:
         """Let the prelude pass."""
         self._until(0.0)
-        robot = self._stage.robot
+        robot = self._rig.robot
         robot.outbox.flush()
         robot.announce()
-        self._rhythms.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._tell_progress))
+        self._tasks.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._tell_progress))
 
     def play(self) -> None:
         """Let everything happen, until the end or until it is stopped."""
-        scenario = self._stage.scenario
+        scenario = self._rig.scenario
         for event in scenario.events:
             self._until(event.at)
             if self._stopped():
@@ -129,14 +129,14 @@ class _RunLoop:
 
     def finish(self, *, cancelled: bool) -> None:
         """Disarm, watch that, and say how it ended."""
-        robot, clock = self._stage.robot, self._stage.clock
+        robot, clock = self._rig.robot, self._rig.clock
         if robot.supervisor.armed:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
         self._stopped = lambda: False
         self._until(clock.now() + AFTERWARDS)
         self._take_in()
         robot.publish_tick()
-        self._teller.event(
+        self._listener.event(
             "ended",
             time=_tidy(clock.now()),
             state="cancelled" if cancelled else "complete",
@@ -145,23 +145,23 @@ class _RunLoop:
 
     def _until(self, end: float) -> None:
         """Let time pass up to `end` (s), or until it is stopped."""
-        stage = self._stage
-        while (now := stage.clock.now()) < end - _SAME_TIME and not self._stopped():
+        rig = self._rig
+        while (now := rig.clock.now()) < end - _SAME_TIME and not self._stopped():
             self._converse(now)
-            for rhythm in self._rhythms:
-                rhythm.keep(now)
-            due = [end, self._look_at, stage.robot.pilot_tick(), *(rhythm.due for rhythm in self._rhythms)]
+            for task in self._tasks:
+                task.run_if_due(now)
+            due = [end, self._look_at, rig.robot.pilot_tick(), *(task.due for task in self._tasks)]
             if self._arming is not None:
                 self._go_on_arming(now)
                 due.append(self._ask_again)
-            if self._looks and now > -_SAME_TIME:
-                due.append(now + stage.robot.vision.tick())
+            if self._has_camera and now > -_SAME_TIME:
+                due.append(now + rig.robot.vision.tick())
             periods = max(round((min(due) - now) / PERIOD), 1)
-            self._heard += stage.run(periods)
+            self._heard += rig.run(periods)
 
     def _converse(self, now: float) -> None:
         """What the connection's thread does in real time: let bytes gather, take them, say what is due."""
-        line = self._stage.robot.conversation
+        line = self._rig.robot.link
         if now < self._look_at - _SAME_TIME and (line.gathering or not self._heard):
             return
         self._take_in()
@@ -172,10 +172,10 @@ class _RunLoop:
     def _take_in(self) -> None:
         if self._heard:
             heard, self._heard = self._heard, b""
-            self._stage.robot.conversation.receive(heard)
+            self._rig.robot.link.receive(heard)
 
     def _happen(self, event: Event) -> None:
-        now = self._stage.clock.now()
+        now = self._rig.clock.now()
         try:
             self._do(event, now)
         except (RefusedError, ValueError) as problem:
@@ -185,24 +185,24 @@ class _RunLoop:
                 self._mark(event.words)
 
     def _do(self, event: Event, now: float) -> None:
-        stage = self._stage
+        rig = self._rig
         if isinstance(event, Arm):
-            self._arming = stage.robot.supervisor.begin_arming(alone=event.alone), event
+            self._arming = rig.robot.supervisor.begin_arming(alone=event.alone), event
             self._ask_again = now + ARM_WAIT
         elif isinstance(event, Line):
-            stage.board.line(event.command)
+            rig.board.line(event.command)
         elif event.to == "runtime":
             self._commands[event.do](event.question)
         elif event.to == "simulator":
             self._changes[event.do](_as_asked(event.question))
-            stage.break_devices()
+            rig.break_devices()
         elif not isinstance(event, Mark):
             raise ValueError(f"{event.do} cannot be done in simulated time")
 
     def _go_on_arming(self, now: float) -> None:
         assert self._arming is not None
         arming, event = self._arming
-        supervisor = self._stage.robot.supervisor
+        supervisor = self._rig.robot.supervisor
         if not arming.over and (supervisor.board_armed or now >= self._ask_again - _SAME_TIME):
             self._ask_again = now + ARM_WAIT
             supervisor.go_on_arming()
@@ -220,10 +220,10 @@ class _RunLoop:
         self._mark(words)
 
     def _mark(self, words: str) -> None:
-        self._teller.event("marker", time=_tidy(self._stage.clock.now()), text=words)
+        self._listener.event("marker", time=_tidy(self._rig.clock.now()), text=words)
 
     def _tell_progress(self) -> None:
-        self._teller.event("progress", time=_tidy(self._stage.clock.now()))
+        self._listener.event("progress", time=_tidy(self._rig.clock.now()))
 
 
 def _as_asked(question: Mapping[str, Any]) -> dict[str, Any]:

@@ -86,13 +86,13 @@ class UnderwaterOptics:
         distance = depth * self._stretch
         planes = []
         for colour, beta, own in zip(cv2.split(picture), water.attenuation, water.glow, strict=True):
-            kept = _floats(cv2.exp(distance * np.float32(-beta)))
+            transmission = _floats(cv2.exp(distance * np.float32(-beta)))
             behind = glow * np.float32(own)
             plane = _floats(cv2.multiply(colour, light, dtype=cv2.CV_32F))
             if sky is not None:
                 plane += (np.float32(SKY) - plane) * sky
             plane -= behind
-            plane *= kept
+            plane *= transmission
             plane += behind
             planes.append(plane)
         # The lens, which also takes the steps from slanting edges.

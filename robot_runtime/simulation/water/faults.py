@@ -42,11 +42,11 @@ class SimulatedFault:
     def __post_init__(self) -> None:
         if self.kind not in get_args(Kind):
             raise ValueError(f"there is no fault {self.kind!r}; there are {', '.join(get_args(Kind))}")
-        wanted = _NUMBERS.get(self.kind, ())
+        allowed = _NUMBERS.get(self.kind, ())
         for name in ("share", "size", "speed"):
             value = getattr(self, name)
-            if (value is not None) != (name in wanted):
-                takes = " and ".join(wanted) or "no numbers"
+            if (value is not None) != (name in allowed):
+                takes = " and ".join(allowed) or "no numbers"
                 raise ValueError(f"the fault {self.kind} takes {takes}")
             if value is not None and not isfinite(value):
                 raise ValueError(f"a fault's {name} is {value}; it must be finite")

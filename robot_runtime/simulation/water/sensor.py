@@ -37,20 +37,20 @@ class Sensor:
         self.holds = False
         """Whether its newest reading never came, so that it shows an older one."""
 
-    def break_(self, fault: SimulatedFault, time: float) -> None:
+    def set_fault(self, fault: SimulatedFault, time: float) -> None:
         """Have this fault, and no other, from `time` (s) on."""
         self._fault = fault
         self._since = time
         self.holds = False
 
-    def read(self, time: float, felt: Numbers) -> Numbers:
+    def read(self, time: float, actual: Numbers) -> Numbers:
         """What it shows at this time (s), having felt this. A first reading is there at once."""
         if time > self._due - SAME_TIME:
             self._due = max(self._due + self._interval, time)
-            reading = self._spoilt(time, self._noisy(time, felt))
+            reading = self._apply_fault(time, self._add_noise(time, actual))
             self.holds = reading is None
             if self._shown is None:
-                self._shown = reading or felt
+                self._shown = reading or actual
             elif reading is not None and self._latency == 0:
                 self._shown = reading
             elif reading is not None:
@@ -58,18 +58,18 @@ class Sensor:
         coming = self._coming
         while coming and coming[0][0] < time + SAME_TIME:
             self._shown = coming.popleft()[1]
-        return self._shown if self._shown is not None else felt
+        return self._shown if self._shown is not None else actual
 
-    def _noisy(self, time: float, felt: Numbers) -> Numbers:
+    def _add_noise(self, time: float, actual: Numbers) -> Numbers:
         gauss, noise = self._gauss, self._noise
         while time > self._wanders - SAME_TIME:
             self._wanders += WANDERING
             self._offset = [offset + gauss(0, self._walk) for offset in self._offset]
         return tuple(
-            [value + offset + gauss(0, noise) for value, offset in zip(felt, self._offset, strict=True)]
+            [value + offset + gauss(0, noise) for value, offset in zip(actual, self._offset, strict=True)]
         )
 
-    def _spoilt(self, time: float, reading: Numbers) -> Numbers | None:
+    def _apply_fault(self, time: float, reading: Numbers) -> Numbers | None:
         """The reading as it comes out in steps; None where it is lost."""
         fault = self._fault
         if fault is not NO_FAULT:

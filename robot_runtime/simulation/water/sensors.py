@@ -51,14 +51,14 @@ class Sensors:
             for name, (quality, axes) in _qualities(self._parameters).items()
         }
         for name, fault in self.faults.items():
-            self._sensors[name].break_(fault, 0.0)
+            self._sensors[name].set_fault(fault, 0.0)
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
-    def break_(self, sensor: str, fault: SimulatedFault, time: float) -> None:
+    def set_fault(self, sensor: str, fault: SimulatedFault, time: float) -> None:
         """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
         check_sensor(sensor, fault)
         self.faults[sensor] = fault
-        self._sensors[sensor].break_(fault, time)
+        self._sensors[sensor].set_fault(fault, time)
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
         """Have light beacons here (m) and nowhere else. Raises ValueError; see `check_beacons`."""
@@ -75,9 +75,9 @@ class Sensors:
         parameters, sensors = self._parameters, self._sensors
         matrix = rotation(state.attitude)
         north, east, down = acceleration
-        felt = to_body(matrix, (north, east, down - parameters.gravity))
+        force = to_body(matrix, (north, east, down - parameters.gravity))
         pressure = sensors["pressure"].read(time, (self._pressure(time, state, matrix),))
-        fx, fy, fz = sensors["accelerometer"].read(time, felt)
+        fx, fy, fz = sensors["accelerometer"].read(time, force)
         p, q, r = sensors["gyroscope"].read(time, state.rate)
         right, left = self._seen(state, matrix)
         first, second, third, fourth = [_encoder_error(encoder, time) for encoder in self._encoders]

@@ -132,7 +132,7 @@ class Simulator:
     def set_fault(self, sensor: str, fault: SimulatedFault) -> None:
         """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
         with self._lock:
-            self._sensors.break_(sensor, fault, self._body.time)
+            self._sensors.set_fault(sensor, fault, self._body.time)
 
     def surroundings(self) -> SimulationSetup:
         """Everything that can be set, as it is now."""

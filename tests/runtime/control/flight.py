@@ -58,7 +58,7 @@ class Flight:
         end = self.now + seconds
         while self.now < end - 1e-6:
             if self.server:
-                self.supervisor.watch.see_server()
+                self.supervisor.detector.see_server()
             if self.sticks is not None and self._sequence * PUSH_EVERY <= self.now:
                 self.push(self.sticks)
             self._performance._until(min(self.now + STEP, end))

@@ -38,7 +38,7 @@ class Arming(RuleBasedStateMachine):
         end = self.rig.clock.now() + seconds
         while self.rig.clock.now() < end:
             self.rig.clock.forward(0.05)
-            watch = self.supervisor.watch
+            detector = self.supervisor.detector
             if self.speaks:
                 self.rig.report()
                 if self.depth and self.imu:
@@ -48,7 +48,7 @@ class Arming(RuleBasedStateMachine):
                 elif self.imu:
                     self.rig.feel_attitude()
             if self.server:
-                watch.see_server()
+                detector.see_server()
             if self.pilot:
                 self.supervisor.pilot.taken = self.rig.clock.now()
             self._age(0.05)

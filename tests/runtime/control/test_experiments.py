@@ -86,8 +86,8 @@ def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
         assert progress == sorted(progress)
         assert lab.set_points[-2:] == [STEP["target"], 0.6]
         flight.run(0.2)
-        assert flight.robot.control.depth.wanted == 0.6
-        assert flight.robot.control.depth.lent is None
+        assert flight.robot.control.depth.set_point_in_force == 0.6
+        assert flight.robot.control.depth.override is None
 
 
 def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
@@ -96,8 +96,8 @@ def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
     experiment = StepExperiment(wanted, clock)
     set_points = []
     for tick in range(60):
-        experiment.look(0.4 + 0.05 * (-1) ** tick)
-        set_points.append(experiment.loan.set_point)
+        experiment.observe(0.4 + 0.05 * (-1) ** tick)
+        set_points.append(experiment.override.set_point)
         clock.forward(0.1)
     assert set_points.index(0.7) == pytest.approx(50, abs=1)
 
@@ -127,7 +127,7 @@ def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
     experiment = RelayExperiment(wanted, clock)
     position, speed = 0.9, 0.0
     while not experiment.over:
-        experiment.look(position)
+        experiment.observe(position)
         output = experiment.command(1.0 - position)
         for _ in range(10):
             speed += 0.005 * (output - load - 2.0 * speed)

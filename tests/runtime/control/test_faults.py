@@ -23,7 +23,7 @@ def live(rig: Rig, seconds: float, feel: Callable[[], None]) -> None:
 
 
 def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
-    return set(rig.supervisor.watch.wrong(mode, []))
+    return set(rig.supervisor.detector.wrong(mode, []))
 
 
 def all_but(rig: Rig, missing: str) -> Callable[[], None]:
@@ -97,7 +97,7 @@ def test_a_depth_that_cannot_be_is_soon_a_fault_and_one_jump_is_not(rig: Rig, de
     assert wrong(rig) == set()
     live(rig, 0.04, lambda: rig.feel(depth))
     assert wrong(rig) == {"depth_range"}
-    assert f"{depth:.1f} m" in rig.supervisor.watch.depth_refusals()[0]
+    assert f"{depth:.1f} m" in rig.supervisor.detector.depth_refusals()[0]
     rig.feel(20.0)
     assert wrong(rig) == set()
 
@@ -111,10 +111,10 @@ def test_a_tilt_counts_once_it_lasts(rig: Rig, tilt: float, faults: set[str]) ->
 
 
 def test_a_camera_counts_from_its_first_picture_on(rig: Rig) -> None:
-    watch = rig.supervisor.watch
+    detector = rig.supervisor.detector
     live(rig, 2.0, rig.feel)
     assert wrong(rig) == set()
-    watch.see_picture(rig.clock.now())
+    detector.see_picture(rig.clock.now())
     live(rig, 0.88, rig.feel)
     assert wrong(rig) == set()
     live(rig, 0.04, rig.feel)
@@ -126,17 +126,17 @@ def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
     rig.board.flags = StatusFlag.BATTERY_LOW
     rig.board.faults = SensorFault.FIN_FRONT_LEFT | SensorFault.FIN_BACK_RIGHT
     rig.report()
-    found = rig.supervisor.watch.wrong("automatic", [])
+    found = rig.supervisor.detector.wrong("automatic", [])
     assert found == {"battery_low": "", "fin_failing": "(back right, front left)"}
-    assert rig.supervisor.watch.wrong("disarmed", []) == {"battery_low": ""}
-    assert set(rig.supervisor.watch.wrong("disarmed", ["fin_failing"])) == {"battery_low", "fin_failing"}
+    assert rig.supervisor.detector.wrong("disarmed", []) == {"battery_low": ""}
+    assert set(rig.supervisor.detector.wrong("disarmed", ["fin_failing"])) == {"battery_low", "fin_failing"}
 
 
 def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:
     live(rig, 4.1, rig.feel)
     assert wrong(rig) == {"server_silent"}
     assert wrong(rig, "disarmed") == set()
-    rig.supervisor.watch.see_server()
+    rig.supervisor.detector.see_server()
     assert wrong(rig) == set()
 
 

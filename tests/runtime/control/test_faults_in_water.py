@@ -52,7 +52,7 @@ def test_so_it_is_on_the_emulated_chip(name: str, break_: Break) -> None:
 def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
     """The robot is armed, breaks, is stopped in time, and wants to be acknowledged."""
     flight.arm()
-    flight.supervisor.watch.server_patience = 4.0
+    flight.supervisor.detector.server_patience = 4.0
     flight.run(3.0)
     assert flight.supervisor.mode == "automatic"
     break_(flight)

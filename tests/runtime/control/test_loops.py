@@ -128,9 +128,9 @@ def test_the_depths_loop_is_told_the_mean_acceleration_downwards() -> None:
     rig.feel(1.0, 0.3 - GRAVITY, 2.0)
     rig.feel(3.0, 0.1 - GRAVITY, -1.0)
     rig.tick()
-    assert rig.node.depth.felt == pytest.approx(0.2, abs=0.002)
+    assert rig.node.depth.heave_acceleration == pytest.approx(0.2, abs=0.002)
     rig.tick()
-    assert rig.node.depth.felt is None
+    assert rig.node.depth.heave_acceleration is None
 
 
 def test_the_way_to_a_light_has_the_yaw_to_itself() -> None:
@@ -220,7 +220,7 @@ def test_the_pilots_input_goes_out_at_once_with_what_is_held() -> None:
 
 def test_a_loan_steers_until_the_mode_changes() -> None:
     rig = Rig("automatic")
-    rig.node.heading.lent = LoopOverride(BangBang(), set_point=-1.0)
+    rig.node.heading.override = LoopOverride(BangBang(), set_point=-1.0)
     command = rig.tick()
     assert command is not None
     assert command.yaw == -1.0

@@ -8,7 +8,7 @@ import pytest
 from bench.control import BEST, THESIS, crossing_ratio, perform, variants
 from robot_runtime.control.controllers import Predictive
 from robot_runtime.control.controllers.heave import DOWN, TURNING_ROUND, Heave, Motion
-from robot_runtime.control.controllers.heave_inertial import FELT_AGE, InertialHeave
+from robot_runtime.control.controllers.heave_inertial import ACCELERATION_AGE, InertialHeave
 from robot_runtime.control.controllers.heave_observer import AGE, LAG, HeaveObserver
 
 SECONDS = 0.1
@@ -84,13 +84,14 @@ def test_every_stroke_is_felt_whatever_the_accelerometer_shows_too_much(bias: fl
     for tick in range(1, 301):
         now = tick * SECONDS
         began, ended = (
-            sway / 2 * cos(sway * (time - FELT_AGE)) - 0.25 / stroke * cos(stroke * (time - FELT_AGE))
+            sway / 2 * cos(sway * (time - ACCELERATION_AGE))
+            - 0.25 / stroke * cos(stroke * (time - ACCELERATION_AGE))
             for time in (now - SECONDS, now)
         )
         middle = now - SECONDS / 2 - AGE
         depth = 1 + sin(sway * middle) / 2 - 0.25 / stroke**2 * sin(stroke * middle)
-        felt = (ended - began) / SECONDS + bias
-        _, speed = inertial.observe(felt, depth + chance.gauss(0, 0.002), 0.002, SECONDS)
+        acceleration = (ended - began) / SECONDS + bias
+        _, speed = inertial.observe(acceleration, depth + chance.gauss(0, 0.002), 0.002, SECONDS)
         wrong.append(abs(speed - sway / 2 * cos(sway * now) + 0.25 / stroke * cos(stroke * now)))
     assert max(wrong[50:]) < 0.01
     # Without the strokes it would be as wrong as they are fast.
@@ -100,11 +101,11 @@ def test_every_stroke_is_felt_whatever_the_accelerometer_shows_too_much(bias: fl
 def test_what_it_feels_counts_from_the_second_time_on_after_a_gap() -> None:
     blind, feeling = Predictive(), Predictive()
     for tick in range(61):
-        feeling.felt = 3.0 if tick % 2 else None
+        feeling.heave_acceleration = 3.0 if tick % 2 else None
         assert feeling.step(0.3, 0.3, SECONDS) == blind.step(0.3, 0.3, SECONDS)
     commands = []
-    for one, felt in ((blind, None), (feeling, 1.0)):
-        one.felt = felt
+    for one, acceleration in ((blind, None), (feeling, 1.0)):
+        one.heave_acceleration = acceleration
         commands.append([one.step(0.3, 0.3, SECONDS) for _ in range(3)])
     assert commands[0][0] == commands[1][0]
     assert commands[0][1:] != commands[1][1:]

@@ -85,7 +85,7 @@ class Rig:
             debug_lost=0,
             stack_free=500,
         )
-        self.supervisor.watch.see_messages()
+        self.supervisor.detector.see_messages()
         self.supervisor.see_status(status)
 
     def feel(self, depth: float = 0.3, tilt: float = 0.0, *, frozen: bool = False) -> None:
@@ -95,13 +95,13 @@ class Rig:
 
     def feel_depth(self, depth: float = 0.3, *, frozen: bool = False) -> None:
         self._pressure += not frozen
-        self.supervisor.watch.see_messages()
+        self.supervisor.detector.see_messages()
         reading = Depth(time=0, depth=depth, pressure=self._pressure, temperature=20.0)
-        self.supervisor.watch.see_depth(reading)
+        self.supervisor.detector.see_depth(reading)
 
     def feel_attitude(self, tilt: float = 0.0) -> None:
-        self.supervisor.watch.see_messages()
-        self.supervisor.watch.see_imu(imu(tilt))
+        self.supervisor.detector.see_messages()
+        self.supervisor.detector.see_imu(imu(tilt))
 
     def ready(self) -> None:
         self.report()

@@ -50,7 +50,7 @@ set_point = {radians(90)}
 @pytest.mark.parametrize("down", [0.2, -0.2, 1.0])
 def test_fins_are_tilted_slowly_and_never_far_whichever_way_they_push(down: float) -> None:
     controller = Tilt()
-    controller.down = down
+    controller.heave_command = down
     controller.step(3.0, 0.0, 0.0)
     yaws = [controller.step(3.0, 0.0, SECONDS) for _ in range(30)]
     assert yaws[0] == pytest.approx(abs(down) * tan(0.1))
@@ -62,7 +62,7 @@ def test_the_harder_the_fins_push_the_less_they_are_tilted() -> None:
     ratios = []
     for down in (0.2, 0.4, 1.0):
         controller = Tilt()
-        controller.down = down
+        controller.heave_command = down
         controller.step(0.3, 0.0, 0.0)
         ratios.append([controller.step(0.3, 0.0, SECONDS) for _ in range(30)][-1] / down)
     assert ratios[0] > ratios[1] > ratios[2] > 0
@@ -70,15 +70,15 @@ def test_the_harder_the_fins_push_the_less_they_are_tilted() -> None:
 
 def test_it_waits_while_the_fins_rest_and_begins_upright_once_they_have_turned_round() -> None:
     controller = Tilt()
-    controller.down = 0.2
+    controller.heave_command = 0.2
     tilted = [controller.step(3.0, 0.0, SECONDS) for _ in range(5)][-1]
-    controller.down = 0.0
+    controller.heave_command = 0.0
     assert [controller.step(3.0, 0.0, SECONDS) for _ in range(20)] == [0.0] * 20
-    controller.down = 0.2
+    controller.heave_command = 0.2
     assert tilted < controller.step(3.0, 0.0, SECONDS) < 2 * tilted
-    controller.down = -1 / 127
+    controller.heave_command = -1 / 127
     assert controller.step(3.0, 0.0, SECONDS) == 0.0
-    controller.down = -0.2
+    controller.heave_command = -0.2
     assert controller.step(3.0, 0.0, SECONDS) == pytest.approx(0.2 * tan(0.1))
 
 

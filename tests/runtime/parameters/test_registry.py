@@ -18,7 +18,7 @@ class Box:
 
     def __init__(self) -> None:
         self.armed = False
-        self.between_ticks = threading.RLock()
+        self.tick_lock = threading.RLock()
         self.held: dict[str, Any] = {"a": 1.0, "b": 2.0, "count": 3, "kind": "x", "on": False, "rest": 0.0}
         self.registry = Registry(
             [
@@ -30,7 +30,7 @@ class Box:
                 Entry(name="on", type="switch", meaning="", **self._ways("on")),
             ],
             armed=lambda: self.armed,
-            between_ticks=self.between_ticks,
+            tick_lock=self.tick_lock,
         )
 
     def _number(self, name: str, *, while_armed: bool = True) -> Entry:
@@ -144,7 +144,7 @@ def test_a_change_waits_for_the_tick_that_runs() -> None:
         box.registry.apply({"a": 4, "b": 4})
         changed.set()
 
-    with box.between_ticks:
+    with box.tick_lock:
         thread = threading.Thread(target=change)
         thread.start()
         seen = [(box.held["a"], box.held["b"]) for _ in range(1000)]

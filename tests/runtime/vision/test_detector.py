@@ -137,7 +137,7 @@ def test_filters_let_through_what_has_the_shape(
     sight = look(patched(BAR, SQUARE), **filters)
     assert sight.patch is not None
     assert sight.patch.box.x == x
-    refused = [one.refused for one in sight.wanted.candidates if one.refused]
+    refused = [one.refused for one in sight.target_patches.candidates if one.refused]
     assert refused == ([reason] if reason else [])
 
 
@@ -147,7 +147,7 @@ def test_a_cross_fills_less_of_its_box_than_a_square() -> None:
     assert look(square, fill_min=0.95).patch is not None
     refused = look(cross, fill_min=0.95)
     assert refused.patch is None
-    (candidate,) = refused.wanted.candidates
+    (candidate,) = refused.target_patches.candidates
     assert candidate.refused == "fills too little of its box"
     assert candidate.fill == pytest.approx((80 * 20 * 2 - 400) / 6400, abs=0.02)
 
@@ -155,8 +155,8 @@ def test_a_cross_fills_less_of_its_box_than_a_square() -> None:
 def test_a_disc_is_round_and_a_square_is_less_so() -> None:
     picture = patched()
     cv2.circle(picture, (100, 50), 40, YELLOW, cv2.FILLED)
-    (disc,) = look(picture).wanted.candidates
-    (square,) = look(patched((50, 10, 80, 80, YELLOW))).wanted.candidates
+    (disc,) = look(picture).target_patches.candidates
+    (square,) = look(patched((50, 10, 80, 80, YELLOW))).target_patches.candidates
     assert disc.circularity > 0.87
     assert square.circularity == pytest.approx(np.pi / 4, abs=0.01)
     assert (disc.aspect, square.aspect) == (1.0, 1.0)
@@ -170,7 +170,7 @@ def test_opening_removes_what_is_smaller_than_it() -> None:
 
 def test_no_more_candidates_are_told_than_can_be_looked_at() -> None:
     specks = patched(*((x, y, 8, 8, YELLOW) for x in range(0, 200, 14) for y in range(0, 100, 14)))
-    assert len(look(specks).wanted.candidates) == 5
+    assert len(look(specks).target_patches.candidates) == 5
 
 
 def test_what_is_seen_has_its_own_set_point() -> None:
@@ -233,7 +233,7 @@ def test_the_drawn_card_carries_the_marker() -> None:
 class TestMask:
     def test_shows_what_counts_what_does_not_and_their_outlines(self) -> None:
         sight = look(patched(SQUARE, BAR, (5, 5, 2, 2, YELLOW)), aspect=(0.5, 2.0))
-        mask = draw_mask(sight.wanted)
+        mask = draw_mask(sight.target_patches)
         assert mask.shape == (100, 200, 3)
         assert tuple(mask[40, 150]) == COUNTED
         assert tuple(mask[50, 60]) == tuple(mask[5, 5]) == DROPPED
@@ -242,7 +242,7 @@ class TestMask:
         assert tuple(mask[40, 60]) == OUTLINE_REFUSED
 
     def test_of_nothing_is_empty(self) -> None:
-        assert (draw_mask(look(patched()).wanted) == GROUND).all()
+        assert (draw_mask(look(patched()).target_patches) == GROUND).all()
 
 
 class TestWhiteBalance:

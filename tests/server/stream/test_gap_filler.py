@@ -27,7 +27,7 @@ class Sender:
     def send(self, count: int = 5) -> Block:
         block = depth_block(self.next, count)
         self.next = block.following
-        self.cache.keep(block.data, {"depth": self.next, "debug": 0})
+        self.cache.add(block.data, {"depth": self.next, "debug": 0})
         return block
 
 

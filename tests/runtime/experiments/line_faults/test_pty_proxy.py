@@ -47,7 +47,7 @@ def test_a_clean_channel_harms_nothing(channel: FaultyChannel) -> None:
 
 @pytest.mark.parametrize("rate", [0.0005, 0.02, 0.5, 1.0])
 def test_as_many_bits_are_wrong_as_are_counted(channel: FaultyChannel, rate: float) -> None:
-    channel.disturb("bit_errors", rate)
+    channel.set_rate("bit_errors", rate)
     wrong = wrong_bits(DATA, channel.carry(DATA))
     assert wrong == channel.counts["bit_errors"]
     bits = 8 * len(DATA)
@@ -55,7 +55,7 @@ def test_as_many_bits_are_wrong_as_are_counted(channel: FaultyChannel, rate: flo
 
 
 def test_dropped_bytes_are_missing(channel: FaultyChannel) -> None:
-    channel.disturb("drop", 0.1)
+    channel.set_rate("drop", 0.1)
     arrived = channel.carry(DATA)
     assert len(DATA) - len(arrived) == channel.counts["drops"]
     assert 1800 < channel.counts["drops"] < 2200
@@ -64,7 +64,7 @@ def test_dropped_bytes_are_missing(channel: FaultyChannel) -> None:
 
 @pytest.mark.parametrize(("kind", "count"), [("double", "doubles"), ("insert", "inserts")])
 def test_there_are_more_bytes_as_counted(channel: FaultyChannel, kind: Kind, count: str) -> None:
-    channel.disturb(kind, 0.1)
+    channel.set_rate(kind, 0.1)
     arrived = channel.carry(DATA)
     assert len(arrived) - len(DATA) == channel.counts[count]
     assert 1800 < channel.counts[count] < 2200
@@ -72,7 +72,7 @@ def test_there_are_more_bytes_as_counted(channel: FaultyChannel, kind: Kind, cou
 
 
 def test_doubled_bytes_come_twice_in_a_row(channel: FaultyChannel) -> None:
-    channel.disturb("double", 1.0)
+    channel.set_rate("double", 1.0)
     assert channel.carry(b"abc") == b"aabbcc"
 
 
@@ -91,15 +91,15 @@ def test_bursts_hit_half_of_their_bits(channel: FaultyChannel) -> None:
 
 
 def test_a_dropped_byte_is_not_doubled_as_well(channel: FaultyChannel) -> None:
-    channel.disturb("drop", 1.0)
-    channel.disturb("double", 1.0)
+    channel.set_rate("drop", 1.0)
+    channel.set_rate("double", 1.0)
     assert channel.carry(b"abc") == b""
     assert (channel.counts["drops"], channel.counts["doubles"]) == (3, 0)
 
 
 def test_a_bit_in_a_burst_is_harmed_by_nothing_else(channel: FaultyChannel) -> None:
     channel.burst(1.0, 100)
-    channel.disturb("bit_errors", 1.0)
+    channel.set_rate("bit_errors", 1.0)
     wrong = wrong_bits(DATA, channel.carry(DATA))
     assert wrong == channel.counts["burst_errors"]
     assert channel.counts["bit_errors"] == 0
@@ -116,7 +116,7 @@ def test_a_cut_channel_loses_everything(channel: FaultyChannel) -> None:
 def everything(seed: int, portion: int, name: str = "to_board") -> bytes:
     channel = FaultyChannel(name, seed)
     for kind in KINDS:
-        channel.disturb(kind, 0.01)
+        channel.set_rate(kind, 0.01)
     channel.burst(0.001, 30)
     return b"".join(channel.carry(DATA[i : i + portion]) for i in range(0, len(DATA), portion))
 
@@ -129,7 +129,7 @@ def test_a_seed_decides_and_the_portions_do_not() -> None:
 
 
 def test_seeding_anew_repeats_it(channel: FaultyChannel) -> None:
-    channel.disturb("drop", 0.1)
+    channel.set_rate("drop", 0.1)
     channel.seed(9)
     first = channel.carry(DATA)
     channel.seed(9)
@@ -137,7 +137,7 @@ def test_seeding_anew_repeats_it(channel: FaultyChannel) -> None:
 
 
 def test_clean_ends_it_all_and_the_counts_stay(channel: FaultyChannel) -> None:
-    channel.disturb("drop", 1.0)
+    channel.set_rate("drop", 1.0)
     channel.burst(1.0, 10_000)
     channel.carry(b"lost")
     channel.cut(True)
@@ -205,9 +205,9 @@ def test_it_carries_every_byte_as_it_is(ends: Ends, direction: Direction) -> Non
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_it_harms_one_direction_as_its_channel_does(ends: Ends, direction: Direction) -> None:
-    ends.line.channels[direction].disturb("bit_errors", 0.01)
+    ends.line.channels[direction].set_rate("bit_errors", 0.01)
     twin = FaultyChannel(direction, seed=1)
-    twin.disturb("bit_errors", 0.01)
+    twin.set_rate("bit_errors", 0.01)
     expected = twin.carry(DATA[:3000])
     ends.send(direction, DATA[:3000])
     assert ends.receive(direction, 3000) == expected != DATA[:3000]
@@ -331,7 +331,7 @@ def test_it_runs_as_a_program(tmp_path: Path) -> None:
     options = ("--seed", "1", "--bit-errors", "0.01", "--direction", "to_board")
     with run(tmp_path, *options) as program:
         twin = FaultyChannel("to_board", seed=1)
-        twin.disturb("bit_errors", 0.01)
+        twin.set_rate("bit_errors", 0.01)
         host = os.open(tmp_path / "link", os.O_RDWR | os.O_NOCTTY)
         os.write(host, DATA[:1000])
         assert read(end.master, 1000) == twin.carry(DATA[:1000])

@@ -75,7 +75,7 @@ def patiently(ask: Callable[[], Any]) -> Any:
 
 
 @contextmanager
-def conversation() -> Iterator[Ends]:
+def link() -> Iterator[Ends]:
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
         endpoint = f"unixsock-stream/{folder}/zenoh"
         with (
@@ -94,7 +94,7 @@ def conversation() -> Iterator[Ends]:
 
 @rendered
 def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
-    with conversation() as ends:
+    with link() as ends:
         with pytest.raises(RefusedError, match="not told yet where the robot is"):
             ends.picture()
         ends.tell(12.5, truth((0.0, 0.0, 1.0)))
@@ -109,7 +109,7 @@ def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
 @rendered
 def test_floor_walls_and_beacons_are_the_simulators() -> None:
     simulator = Simulator(SimulationParameters(), 1)
-    with conversation() as ends:
+    with link() as ends:
         for name, change in changes(simulator).items():
             ends.other.answer(f"simulator/{name}", change)
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
@@ -126,7 +126,7 @@ def test_floor_walls_and_beacons_are_the_simulators() -> None:
 
 @rendered
 def test_targets_and_water_change_what_is_seen() -> None:
-    with conversation() as ends:
+    with link() as ends:
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.ask("targets", {"targets": []})
         empty = ends.picture().pixels
@@ -138,7 +138,7 @@ def test_targets_and_water_change_what_is_seen() -> None:
 
 
 def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
-    with conversation() as ends:
+    with link() as ends:
         target = {"colour": "red", "position": [0.8, 0.0, 1.0], "size": 0.2, "shape": "box"}
         wanted: dict[str, dict[str, Any]] = {
             "world": {"kind": "pool", "turbidity": 0.5},
@@ -165,7 +165,7 @@ def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
     ],
 )
 def test_bad_questions_are_refused_in_words(name: str, question: dict[str, Any], words: str) -> None:
-    with conversation() as ends, pytest.raises(RefusedError, match=words):
+    with link() as ends, pytest.raises(RefusedError, match=words):
         ends.ask(name, question)
 
 
@@ -194,7 +194,7 @@ def test_what_is_no_picture_is_refused(size: int) -> None:
 
 @rendered
 def test_a_client_that_goes_away_harms_nobody() -> None:
-    with conversation() as ends:
+    with link() as ends:
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
         with pytest.raises(NoAnswerError):
@@ -206,7 +206,7 @@ def test_a_client_that_goes_away_harms_nobody() -> None:
 @rendered
 def test_a_bystander_is_drawn_only_while_somebody_watches() -> None:
     seen: list[Block] = []
-    with conversation() as ends:
+    with link() as ends:
         ends.tell(5.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
         assert ends.process._observer_number == 0
@@ -259,7 +259,7 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
 
 @rendered
 def test_the_vision_node_sees_the_card_in_the_scene() -> None:
-    with conversation() as ends:
+    with link() as ends:
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
         events = look(ends.other, lambda vision: "rendered" in vision.text, VisionConfig(camera="scene"))
@@ -268,7 +268,7 @@ def test_the_vision_node_sees_the_card_in_the_scene() -> None:
 
 def test_without_mujoco_a_drawn_card_stands_in_and_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(process_module, "missing", lambda: "MuJoCo is not installed; do this")
-    with conversation() as ends:
+    with link() as ends:
         ends.ask("ready", {})
         ends.tell(1.0, truth())
         with pytest.raises(RefusedError, match="do this"):

@@ -17,9 +17,9 @@ def made(quality: SensorQuality, name: str = "pressure", axes: int = 1, seed: in
     return Sensor(name, quality, axes, seed)
 
 
-def series(sensor: Sensor, count: int, felt: Numbers = (0.0,), first: int = 1) -> list[float]:
+def series(sensor: Sensor, count: int, actual: Numbers = (0.0,), first: int = 1) -> list[float]:
     """Its first axis, asked every 5 ms."""
-    return [sensor.read((first + index) * PERIOD, felt)[0] for index in range(count)]
+    return [sensor.read((first + index) * PERIOD, actual)[0] for index in range(count)]
 
 
 def ramp(sensor: Sensor, count: int) -> list[float]:
@@ -67,7 +67,7 @@ def test_offset_wanders_with_the_root_of_time(seconds: int) -> None:
 
 
 def test_readings_come_in_steps() -> None:
-    assert [made(SensorQuality(step=0.5)).read(PERIOD, (felt,))[0] for felt in (0.2, 0.3, -0.8, 7.0)] == [
+    assert [made(SensorQuality(step=0.5)).read(PERIOD, (actual,))[0] for actual in (0.2, 0.3, -0.8, 7.0)] == [
         0,
         0.5,
         -1,
@@ -104,7 +104,7 @@ def broken(fault: SimulatedFault, count: int = 1000, quality: SensorQuality | No
     shown = []
     for index in range(1, count + 1):
         if index == 201:
-            sensor.break_(fault, 200 * PERIOD)
+            sensor.set_fault(fault, 200 * PERIOD)
         shown.append(sensor.read(index * PERIOD, (index * PERIOD,))[0])
     return shown
 
@@ -117,7 +117,7 @@ def test_stuck_shows_the_last_reading_for_ever() -> None:
 
 def test_stuck_from_the_beginning_shows_what_it_felt_first() -> None:
     sensor = made(SensorQuality())
-    sensor.break_(SimulatedFault(kind="stuck"), 0.0)
+    sensor.set_fault(SimulatedFault(kind="stuck"), 0.0)
     assert ramp(sensor, 3) == [PERIOD, PERIOD, PERIOD]
 
 
@@ -158,9 +158,9 @@ def test_a_mended_sensor_goes_on_as_if_it_had_never_been_broken(fault: Simulated
     quality = SensorQuality(noise=1.0, bias=1.0, walk=1.0)
     sound, mended = made(quality), made(quality)
     series(sound, 500)
-    mended.break_(fault, 0.0)
+    mended.set_fault(fault, 0.0)
     series(mended, 500)
-    mended.break_(NO_FAULT, 2.5)
+    mended.set_fault(NO_FAULT, 2.5)
     assert series(mended, 500, first=501) == series(sound, 500, first=501)
 
 

@@ -53,7 +53,7 @@ class Wreck:
         for block in blocks:
             name = "simulator" if block.topic.name == "truth" else "runtime"
             self.following[name][block.topic.name] = block.following
-            self.kept[name].keep(block.data, self.following[name])
+            self.kept[name].add(block.data, self.following[name])
             if heard:
                 self.before.recorder.add(replace(block, run=self.runs[name]))
 

@@ -1,0 +1,102 @@
+"""Names and docstrings of the Python packages: unique classes, plain first sentences, terms of the field."""
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+PACKAGES = ("robot_runtime", "server", "migrations")
+RIDDLES = frozenset({"What", "Whatever", "Who", "Whoever", "Whom", "Whose", "Whether", "How", "Let", "That"})
+"""Words that begin a clause without a subject."""
+DIALECT = frozenset({"befall", "felt", "kept", "lent", "told", "wanted"})
+"""Participles of the project's old private English: say set point, requested, reported, override, backlog."""
+STORED_NAMES = frozenset({("robot_runtime/contract/packets/definitions.py", "wanted")})
+"""Fields of packets and documents: they are in recordings, and stay."""
+PENDING_DOCSTRINGS: tuple[str, ...] = ("server/", "migrations/", "robot_runtime/")
+PENDING_DIALECT: tuple[str, ...] = ("server/", "robot_runtime/")
+"""Folders that are not yet rewritten."""
+PENDING_CLASSES = frozenset(
+    {
+        "Acknowledge",
+        "Alarms",
+        "Card",
+        "ColourRange",
+        "Control",
+        "Controller",
+        "Event",
+        "History",
+        "Kind",
+        "Left",
+        "Line",
+        "Mark",
+        "Moment",
+        "Range",
+        "Run",
+        "Runs",
+        "SensorFault",
+        "SetPoints",
+        "SimulatedClock",
+        "Source",
+        "Start",
+        "Stop",
+        "Topic",
+        "VisionInForce",
+        "VisionSettings",
+    }
+)
+"""Classes still named twice."""
+
+Modules = dict[str, ast.Module]
+
+
+def find_bad_names(root: Path) -> list[str]:
+    """One line for each name or docstring against the rules: place, name and what to do."""
+    modules = _parse(root)
+    return [*_repeated_classes(modules), *_riddles(modules), *_dialect(modules)]
+
+
+def _parse(root: Path) -> Modules:
+    files = sorted(file for package in PACKAGES for file in (root / package).rglob("*.py"))
+    return {file.relative_to(root).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
+
+
+def _repeated_classes(modules: Modules) -> Iterator[str]:
+    places: defaultdict[str, list[str]] = defaultdict(list)
+    for place, module in modules.items():
+        for node in ast.walk(module):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places[node.name].append(place)
+    for name, found in sorted(places.items()):
+        if len(found) > 1 and name not in PENDING_CLASSES:
+            yield f"class {name} is defined {len(found)} times, in {', '.join(found)}; rename all but one"
+
+
+def _riddles(modules: Modules) -> Iterator[str]:
+    for place, module in modules.items():
+        for node in ast.walk(module) if not place.startswith(PENDING_DOCSTRINGS) else ():
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+                words = (ast.get_docstring(node) or "").split()
+                if words and words[0].strip(",.:;") in RIDDLES:
+                    line = 1 if isinstance(node, ast.Module) else node.lineno
+                    yield f"{place}:{line}: the docstring begins with {words[0]}; say what it is or does"
+
+
+def _dialect(modules: Modules) -> Iterator[str]:
+    for place, module in modules.items():
+        for node in ast.walk(module) if not place.startswith(PENDING_DIALECT) else ():
+            name = _bound_name(node)
+            if not DIALECT.isdisjoint(name.lower().split("_")) and (place, name) not in STORED_NAMES:
+                yield f"{place}:{getattr(node, 'lineno', 1)}: {name} is private dialect; see the glossary"
+
+
+def _bound_name(node: ast.AST) -> str:
+    """The name that a node binds; empty where it binds none."""
+    if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+        return node.name
+    if isinstance(node, ast.arg):
+        return node.arg
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+        return node.id
+    if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+        return node.attr
+    return ""
