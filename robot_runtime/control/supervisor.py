@@ -138,7 +138,7 @@ class Supervisor:
                 raise RefusedError(arming.refusal)
 
     def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
-        """Asks the board to arm; `go_on_arming` completes it. Raises RefusedError with every reason against it.
+        """Asks the board to arm; `go_on_arming` completes it. Raises RefusedError with all reasons.
 
         `alone` are the s for which the robot may go on without the server.
         """
@@ -178,7 +178,7 @@ class Supervisor:
                 self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
     def change_mode(self, mode: Mode) -> None:
-        """Changes between manual and automatic while armed. Raises RefusedError with every reason against it."""
+        """Changes between manual and automatic while armed. Raises RefusedError with all reasons against it."""
         with self._changed:
             if self.mode == mode:
                 return
