@@ -178,7 +178,7 @@ class Supervisor:
                 self._end_arming("The board did not arm; the console says why. Try again in a moment.")
 
     def change_mode(self, mode: Mode) -> None:
-        """Changes between manual and automatic while armed. Raises RefusedError with all reasons against it."""
+        """Changes between manual and automatic while armed. Raises RefusedError with all reasons."""
         with self._changed:
             if self.mode == mode:
                 return
