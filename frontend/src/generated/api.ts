@@ -3037,7 +3037,7 @@ export interface components {
         };
         /**
          * Pace
-         * @description How often the board sends a topic on this line: s between two samples.
+         * @description The period, s, at which the board sends a topic at this baud rate.
          */
         Pace: {
             /** Period */
