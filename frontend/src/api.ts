@@ -6,14 +6,14 @@ import { command, download, request, send, upload, type Answer } from './http';
 export type { Answer, Downloaded } from './http';
 
 type Schemas = components['schemas'];
-export type Identity = Schemas['Known'];
+export type Identity = Schemas['Identity'];
 export type Role = Identity['role'];
 export type Me = Schemas['Me'];
 export type Device = Schemas['DeviceShape'];
 export type Invitation = Schemas['MadeCode'];
 export type Token = Schemas['MadeToken'];
 export type Part = Schemas['PartHealth'];
-export type LinkFrame = Schemas['LinkFrame'];
+export type LinkFrame = Schemas['Dissection'];
 export type LinkFrames = Schemas['LinkFrames'];
 export type Session = Schemas['Session'];
 export type SessionDetail = Schemas['SessionDetail'];

@@ -15,10 +15,13 @@ _CRC = Struct("<I")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dissection:
-    """A frame's parts. Where `problem` is not empty the frame was thrown away, and the rest is a guess.
+    """The parts of one frame. Where `problem` is not empty, the frame was discarded and the rest is a guess.
 
-    `bytes` is what was on the line, in hexadecimal, with the closing zero; `number` and `acknowledged` are
-    None where the frame is too damaged to have any.
+    `time` (s, steady clock) is when it was handed to the line or taken from it; `sent` means to the board.
+    `bytes` is the frame on the line with its closing zero, in hexadecimal; `kinds` names its messages.
+    A `reliable` frame is repeated until it is acknowledged; an `open` one belongs to no session. `number` is
+    its own, of 16 reliable or 4096 unreliable ones, and `acknowledged` the reliable frame that its sender
+    waits for; both are null where the frame is too damaged to have any.
     """
 
     time: float

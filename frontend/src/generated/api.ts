@@ -2035,7 +2035,7 @@ export interface components {
              */
             duration: number;
             /** Events */
-            events: components["schemas"]["Told"][];
+            events: components["schemas"]["Moment"][];
             /** Figures */
             figures: {
                 [key: string]: components["schemas"]["Figure"];
@@ -2043,7 +2043,7 @@ export interface components {
             /** Id */
             id: number;
             /** Markers */
-            markers: components["schemas"]["Told"][];
+            markers: components["schemas"]["Moment"][];
             /** Name */
             name: string;
             /**
@@ -2222,6 +2222,36 @@ export interface components {
              * @description one for each session; empty where it has no such thing
              */
             values: string[];
+        };
+        /**
+         * Dissection
+         * @description The parts of one frame. Where `problem` is not empty, the frame was thrown away and the rest is a guess.
+         *
+         *     `time` (s, steady clock) is when it was handed to the line or taken from it; `sent` means to the board.
+         *     `bytes` is the frame on the line with its closing zero, in hexadecimal; `kinds` names its messages.
+         *     A `reliable` frame is repeated until it is acknowledged; an `open` one belongs to no session. `number` is
+         *     its own, of 16 reliable or 4096 unreliable ones, and `acknowledged` the reliable frame that its sender
+         *     waits for; both are null where the frame is too damaged to have any.
+         */
+        Dissection: {
+            /** Acknowledged */
+            acknowledged: number | null;
+            /** Bytes */
+            bytes: string;
+            /** Kinds */
+            kinds: string[];
+            /** Number */
+            number: number | null;
+            /** Open */
+            open: boolean;
+            /** Problem */
+            problem: string;
+            /** Reliable */
+            reliable: boolean;
+            /** Sent */
+            sent: boolean;
+            /** Time */
+            time: number;
         };
         /**
          * DocumentText
@@ -2469,6 +2499,26 @@ export interface components {
             start: number;
         };
         /**
+         * Identity
+         * @description Who asks. `device` is the number of the browser or program that was paired; 0 is the shell.
+         */
+        Identity: {
+            /** Device */
+            device: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "browser" | "program" | "shell";
+            /** Name */
+            name: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "viewer" | "operator";
+        };
+        /**
          * Imported
          * @description A profile from a file, and those of its parameters that this robot does not know.
          */
@@ -2541,26 +2591,6 @@ export interface components {
              * Format: date-time
              */
             saved: string;
-        };
-        /**
-         * Known
-         * @description Somebody who is signed in; device 0 is the shell of the robot's computer.
-         */
-        Known: {
-            /** Device */
-            device: number;
-            /**
-             * Kind
-             * @enum {string}
-             */
-            kind: "browser" | "program" | "shell";
-            /** Name */
-            name: string;
-            /**
-             * Role
-             * @enum {string}
-             */
-            role: "viewer" | "operator";
         };
         /**
          * LayoutDocument
@@ -2659,63 +2689,12 @@ export interface components {
          */
         LinkFault: {
             /** Frames */
-            frames: components["schemas"]["LinkFrame"][];
+            frames: components["schemas"]["Dissection"][];
             /** Text */
             text: string;
             /**
              * Time
              * @description s, steady clock
-             */
-            time: number;
-        };
-        /**
-         * LinkFrame
-         * @description One frame; where `problem` is not empty it was thrown away, and what it seems to hold is a guess.
-         */
-        LinkFrame: {
-            /**
-             * Acknowledged
-             * @description the reliable frame that its sender waits for
-             */
-            acknowledged: number | null;
-            /**
-             * Bytes
-             * @description as on the line with the closing zero, hexadecimal
-             */
-            bytes: string;
-            /**
-             * Kinds
-             * @description names of its messages
-             */
-            kinds: string[];
-            /**
-             * Number
-             * @description its own, of 16 reliable or 4096 unreliable ones
-             */
-            number: number | null;
-            /**
-             * Open
-             * @description belongs to no session
-             */
-            open: boolean;
-            /**
-             * Problem
-             * @description why it was thrown away; empty where it was valid
-             */
-            problem: string;
-            /**
-             * Reliable
-             * @description repeated until it is acknowledged
-             */
-            reliable: boolean;
-            /**
-             * Sent
-             * @description to the board; else from it
-             */
-            sent: boolean;
-            /**
-             * Time
-             * @description s, steady clock: handed to the line, or taken from it
              */
             time: number;
         };
@@ -2727,7 +2706,7 @@ export interface components {
             /** @description null where there was none since the runtime started */
             fault: components["schemas"]["LinkFault"] | null;
             /** Frames */
-            frames: components["schemas"]["LinkFrame"][];
+            frames: components["schemas"]["Dissection"][];
             /**
              * Time
              * @description now, s, steady clock
@@ -2840,7 +2819,7 @@ export interface components {
          * @description Who asks, as far as the server knows; `pairing_open` says whether some code is valid now.
          */
         Me: {
-            identity: components["schemas"]["Known"] | null;
+            identity: components["schemas"]["Identity"] | null;
             /**
              * Operators Only
              * @description operations that viewers are refused, by their names
@@ -2855,7 +2834,7 @@ export interface components {
         };
         /**
          * Moment
-         * @description An event: something that happened, in words.
+         * @description Something that happened; `time` in s since the session's start, `kind` one word for programs.
          */
         Moment: {
             /** Kind */
@@ -2867,10 +2846,7 @@ export interface components {
             severity: "info" | "caution" | "alarm";
             /** Text */
             text: string;
-            /**
-             * Time
-             * @description s since the session's start
-             */
+            /** Time */
             time: number;
         };
         /**
@@ -4173,20 +4149,6 @@ export interface components {
              * @enum {string}
              */
             state: "recording" | "complete" | "interrupted";
-        };
-        /**
-         * Told
-         * @description An event or a marker; `time` in s since the session's start.
-         */
-        Told: {
-            /** Kind */
-            kind: string;
-            /** Severity */
-            severity: string;
-            /** Text */
-            text: string;
-            /** Time */
-            time: number;
         };
         /**
          * TunableParameter

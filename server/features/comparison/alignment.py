@@ -4,7 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.features.comparison.moments import History, Moment
+from server.features.comparison.moments import History
+from server.features.sessions.timeline import Moment
 
 
 class Align(BaseModel):

@@ -23,12 +23,11 @@ from server.features.comparison.figures import (
     measure,
 )
 from server.features.comparison.history import (
-    read_events,
     read_history,
     read_markers,
     set_point_steps,
 )
-from server.features.comparison.moments import History, Moment, Span
+from server.features.comparison.moments import History, Span
 from server.features.comparison.result_cache import Kept
 from server.features.comparison.samples import Samples
 from server.features.comparison.schemas import (
@@ -39,7 +38,6 @@ from server.features.comparison.schemas import (
     Lines,
     NoSessionError,
     TimeRange,
-    Told,
     WantedComparison,
     WantedLines,
 )
@@ -48,9 +46,11 @@ from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
+from server.features.sessions.timeline import Moment, read_events
 from server.platform.models import SessionRow
 from server.platform.store import Reader
 
+EVENTS_MAX = 500
 THREADS = 2
 """Decompression and SQLite let others run, Python itself does not: more are of no use."""
 
@@ -152,8 +152,8 @@ class Comparer:
             problem=one.problem,
             armed=[(span.start, span.end) for span in one.history.armed],
             set_point_steps=len(one.steps),
-            events=[_told(event) for event in read_events(one.recording)],
-            markers=[_told(marker) for marker in one.markers],
+            events=read_events(one.recording, EVENTS_MAX),
+            markers=one.markers,
             series=self._draw(one, wanted),
             range=[(span.start, span.end) for span in taken.spans],
             figures=self._measure(one, taken, wanted),
@@ -210,10 +210,6 @@ def _wanted_signals(names: Sequence[str], laid: Sequence[_Laid]) -> list[Signal]
         for signal in list_signals(one.recording, topics):
             known.setdefault(signal.name, signal)
     return [known[name] for name in names if name in known]
-
-
-def _told(moment: Moment) -> Told:
-    return Told(time=moment.time, kind=moment.kind, severity=moment.severity, text=moment.text)
 
 
 def _rounded(values: Floats, digits: int) -> list[float]:

@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 from sqlmodel import col, select
 
-from server.features.comparison.moments import Control, History, Moment, Span, Tuned
+from server.features.comparison.moments import Control, History, Span, Tuned
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
 from server.features.sessions.recording import Recording
+from server.features.sessions.timeline import Moment
 from server.platform.models import Gap, Marker
 from server.platform.store import Reader
 
 ARMED_FLAG = 1
 """In status.flags, see robot_runtime.contract.packets.StatusFlag."""
-EVENTS_MAX = 500
 STEP_LEAST = 0.001
 """m by which a set point changes; less is rounding."""
 
@@ -61,21 +61,6 @@ def read_markers(store: Reader, recording: Recording) -> list[Moment]:
         return [
             Moment(one.time - row.started_steady, "marker", "info", one.text) for one in database.exec(query)
         ]
-
-
-def read_events(recording: Recording) -> list[Moment]:
-    """What runtime and server told, in the order of time; the first few hundred. Raises StoreError."""
-    origin = recording.row.started_steady
-    found: list[Moment] = []
-    for topic in ("event", "notice"):
-        if topic not in recording.topics:
-            continue
-        for document in recording.documents(topic):
-            words = (str(document.get(key, "")) for key in ("kind", "severity", "text"))
-            found.append(Moment(document["time"] - origin, *words))
-            if len(found) >= EVENTS_MAX:
-                break
-    return sorted(found, key=lambda one: one.time)[:EVENTS_MAX]
 
 
 def read_gaps(store: Reader, recording: Recording) -> list[Gap]:

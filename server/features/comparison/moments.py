@@ -1,4 +1,4 @@
-"""Moments and spans of a session; times are s since its start."""
+"""Spans and settings of a session; times are s since its start."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,16 +10,6 @@ class Span:
 
     start: float
     end: float
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """Something that happened; `kind` is one word, severity as in events."""
-
-    time: float
-    kind: str
-    severity: str
-    text: str
 
 
 @dataclass(frozen=True, slots=True)

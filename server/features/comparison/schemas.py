@@ -8,6 +8,7 @@ from server.features.comparison.alignment import Align
 from server.features.comparison.differences import Difference
 from server.features.comparison.signals import Signal
 from server.features.metrics.figure import Figure, FigureMeaning
+from server.features.sessions.timeline import Moment
 from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
@@ -57,15 +58,6 @@ class Line(BaseModel):
     high: list[float | None]
 
 
-class Told(BaseModel):
-    """An event or a marker; `time` in s since the session's start."""
-
-    time: float
-    kind: str
-    severity: str
-    text: str
-
-
 class Drawn(BaseModel):
     """One session's lines."""
 
@@ -84,8 +76,8 @@ class Compared(Drawn):
     state: str
     armed: list[tuple[float, float]] = Field(description="from and to, s since its start")
     set_point_steps: int = Field(description="how often the set point changed while armed")
-    events: list[Told]
-    markers: list[Told]
+    events: list[Moment]
+    markers: list[Moment]
     range: list[tuple[float, float]] = Field(description="what the figures are taken over")
     figures: dict[str, Figure]
 

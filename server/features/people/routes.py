@@ -9,7 +9,6 @@ from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
     DeviceChanges,
     DeviceShape,
-    Known,
     MadeCode,
     MadeToken,
     Me,
@@ -168,18 +167,15 @@ def _called(request: Request) -> str:
 
 
 def _me(request: Request, settings: Settings, access: Access, identity: Identity | None) -> Me:
-    known = None
-    if identity is not None:
-        known = Known(device=identity.device, name=identity.name, role=identity.role, kind=identity.kind)
     return Me(
         signed_in=identity is not None,
         robot=settings.robot,
-        identity=known,
+        identity=identity,
         pairing_open=access.codes.any_valid,
         operators_only=[
             name
             for name, need in list_needs(request.app.routes).items()
-            if known and need is not None and need >= Need.OPERATOR
+            if identity and need is not None and need >= Need.OPERATOR
         ],
     )
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from server.http.sign_in.identity import Kind, Role
+from server.http.sign_in.identity import Identity, Kind, Role
 
 NAME_LENGTH_MAX = 40
 
@@ -19,21 +19,12 @@ def _check_name(name: str) -> str:
 Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(_check_name)]
 
 
-class Known(BaseModel):
-    """Somebody who is signed in; device 0 is the shell of the robot's computer."""
-
-    device: int
-    name: str
-    role: Role
-    kind: Kind
-
-
 class Me(BaseModel):
     """Who asks, as far as the server knows; `pairing_open` says whether some code is valid now."""
 
     signed_in: bool
     robot: str
-    identity: Known | None
+    identity: Identity | None
     pairing_open: bool
     operators_only: list[str] = Field(description="operations that viewers are refused, by their names")
 

@@ -1,13 +1,14 @@
 """What a session's seek bar shows: events, markers, and where nothing was recorded."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
-from itertools import chain, pairwise
-from typing import Literal
+from itertools import chain, islice, pairwise
 
 from pydantic import BaseModel, Field
 from sqlmodel import col, select
 
+from robot_runtime.contract.documents import Severity
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import Mark, State, from_row
@@ -18,12 +19,13 @@ HOLE_SECONDS = 3.0
 """The robot's state is told once a second at least; this long without it, nothing of the robot came."""
 
 
-class Moment(BaseModel):
-    """An event: something that happened, in words."""
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Something that happened; `time` in s since the session's start, `kind` one word for programs."""
 
-    time: float = Field(description="s since the session's start")
+    time: float
     kind: str
-    severity: Literal["info", "caution", "alarm"]
+    severity: Severity
     text: str
 
 
@@ -64,24 +66,22 @@ def read_timeline(recording: Recording) -> Timeline:
         started=session.started,
         started_steady=row.started_steady,
         duration=session.duration,
-        events=_events(recording),
+        events=read_events(recording, EVENTS_MAX),
         markers=show_marks(markers, row.started_steady),
         holes=_holes(stretches, row.started_steady, row.duration),
     )
 
 
-def _events(recording: Recording) -> list[Moment]:
-    told = [name for name in ("event", "notice") if name in recording.topics]
+def read_events(recording: Recording, most: int) -> list[Moment]:
+    """Events of runtime and server in the order of time, the first `most`. Raises StoreError."""
+    origin = recording.row.started_steady
+    topics = [topic for topic in ("event", "notice") if topic in recording.topics]
+    documents = (islice(recording.documents(topic), most) for topic in topics)
     found = [
-        Moment(
-            time=document["time"] - recording.row.started_steady,
-            kind=document["kind"],
-            severity=document["severity"],
-            text=document["text"],
-        )
-        for document in chain.from_iterable(recording.documents(name) for name in told)
+        Moment(one["time"] - origin, one["kind"], one["severity"], one["text"])
+        for one in chain.from_iterable(documents)
     ]
-    return sorted(found, key=lambda one: one.time)[:EVENTS_MAX]
+    return sorted(found, key=lambda one: one.time)[:most]
 
 
 def _holes(stretches: Sequence[tuple[float, float]], start: float, duration: float) -> list[Hole]:

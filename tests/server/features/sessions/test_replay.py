@@ -288,7 +288,7 @@ def test_the_timeline_has_events_markers_and_holes(store: Store, settings: Setti
     asyncio.run(store.write(mark))
     timeline = read_timeline(read(store, session))
     (one,) = timeline.events
-    assert asdict(event) == {**one.model_dump(), "time": 102.0}
+    assert asdict(event) == {**asdict(one), "time": 102.0}
     assert one.time == 102.0 - STARTED_STEADY
     assert [(mark.time, mark.text) for mark in timeline.markers] == [(105.5 - STARTED_STEADY, "here")]
     assert timeline.holes == [Hole(start=101 - STARTED_STEADY, end=111 - STARTED_STEADY)]
