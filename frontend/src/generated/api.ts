@@ -2225,7 +2225,7 @@ export interface components {
         };
         /**
          * Dissection
-         * @description The parts of one frame. Where `problem` is not empty, the frame was thrown away and the rest is a guess.
+         * @description The parts of one frame. Where `problem` is not empty, the frame was discarded and the rest is a guess.
          *
          *     `time` (s, steady clock) is when it was handed to the line or taken from it; `sent` means to the board.
          *     `bytes` is the frame on the line with its closing zero, in hexadecimal; `kinds` names its messages.
