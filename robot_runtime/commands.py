@@ -1,4 +1,4 @@
-"""What the other processes may ask of the robot: each command is checked here, then done or refused."""
+"""Commands of other processes to the robot: each is checked here, then executed or refused."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -63,7 +63,7 @@ class Commands:
         return handle
 
     def _tuning(self, handler: Command) -> Command:
-        """What changes parameters happens between two control ticks, and answers which it changed."""
+        """Wraps a command that changes parameters: it runs between two ticks and returns the changes."""
 
         def handle(question: Mapping[str, Any]) -> Mapping[str, Any]:
             with self._robot.parameters.changing() as changed:
@@ -157,7 +157,7 @@ class Commands:
 
 
 def read_arming(question: Mapping[str, Any]) -> tuple[Mode, float]:
-    """How the robot is to be armed, and for how many s it may go on without the server.
+    """Returns the mode to arm in, and the s for which the robot may go on without the server.
 
     Raises RefusedError.
     """

@@ -1,1 +1,1 @@
-"""The serial line to the board: frames, session, port, and the connection that keeps them alive."""
+"""The serial link to the board: frames, session, port, and the thread that keeps the link alive."""

@@ -53,7 +53,7 @@ class BoardTime:
         return board + self._fitted(board) + early
 
     def _slope(self, board: float) -> float:
-        """What the drift adds between the window's least delayed packet and this one."""
+        """The drift between the window's least delayed packet and this one."""
         return self.drift * (board - self._window_least[0]) if self._window_least else 0.0
 
     def _fitted(self, board: float) -> float:

@@ -72,7 +72,7 @@ _NEVER = float("inf")
 
 @dataclass(slots=True)
 class Counters:
-    """What passed, since the port was opened."""
+    """Counters since the port was opened."""
 
     bytes_sent: int = 0
     bytes_delivered: int = 0
@@ -138,12 +138,12 @@ class Channel:
 
     @property
     def free_at(self) -> float:
-        """When the line will have carried what was handed to it."""
+        """The time at which the line will have sent all written bytes."""
         return self._line_free
 
     @property
     def urgent(self) -> bool:
-        """Whether the other end should be listened to closely now."""
+        """True if an acknowledgement is due in either direction."""
         return bool(self._flights or self._waiting) or self._acknowledge_at < _NEVER
 
     def pending(self) -> list[bytes]:
@@ -159,7 +159,7 @@ class Channel:
         self._latest[message[0]] = (message, now)
 
     def replace(self, old: bytes, new: bytes) -> None:
-        """Let every unacknowledged copy of one message be another of the same length from now on."""
+        """Replaces every unacknowledged copy of a message by another of the same length."""
         self._waiting = deque(new if one == old else one for one in self._waiting)
         for flight in self._flights:
             flight.messages = [new if one == old else one for one in flight.messages]
@@ -169,7 +169,7 @@ class Channel:
         return self.round_trip.timeout(self._in_flight() * self._second_per_byte)
 
     def due(self) -> float:
-        """When `poll` has something to do, where nothing else happens; never is infinite."""
+        """Returns the time of the next `poll` if nothing else happens; infinity for none."""
         if self._latest or self._may_send_new():
             return self._line_free
         if self._ready and any(flight.lost for flight in self._flights):
@@ -179,7 +179,7 @@ class Channel:
         return max(min(self._acknowledge_at, *timers, _NEVER), self._line_free)
 
     def receive(self, frame: Frame, now: float) -> list[tuple[int, bytes]]:
-        """The messages that this frame of the session lets through, in order."""
+        """Takes a frame of the session; returns the messages that it completes, in order."""
         self.counters.frames_received += 1
         held = next((payload[0] for type_, payload in frame.messages if type_ == Acknowledge.type), None)
         self._take_acknowledgement(frame.acknowledged, held or 0, now)
@@ -191,7 +191,7 @@ class Channel:
         return messages
 
     def poll(self, now: float) -> bytes:
-        """The frame that is due, or nothing. Ask again until there is nothing."""
+        """Returns the frame that is due, or no bytes. Call it again until it returns no bytes."""
         if now < self._line_free:
             return b""
         reliable_first, self._reliable_next = self._reliable_next, False
@@ -208,7 +208,7 @@ class Channel:
         return data
 
     def note_sent(self, size: int, now: float) -> None:
-        """Take into account that a frame of this size was handed to the line."""
+        """Notes that a frame of this size was written to the line."""
         self._line_free = max(now, self._line_free) + size * self._second_per_byte
         self.counters.frames_sent += 1
         self.counters.bytes_sent += size

@@ -1,4 +1,4 @@
-"""A frame in words: what a kept frame says, or why it says nothing."""
+"""Explains recorded frames: their contents, or why they are invalid."""
 
 import zlib
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class Dissection:
 
 
 def dissect(frame: RecordedFrame) -> Dissection:
-    """What is in this frame; never raises."""
+    """Returns the contents of a frame; never raises."""
     try:
         content = cobs.decode(frame.stuffed)
     except cobs.DecodeError:
@@ -69,7 +69,7 @@ def dissect(frame: RecordedFrame) -> Dissection:
 
 
 def _kinds(messages: bytes) -> tuple[list[str], bool]:
-    """The names of these messages as far as they can be told, and whether they fill the bytes exactly."""
+    """Returns the names of these messages as far as known, and True if they fill the bytes exactly."""
     kinds: list[str] = []
     at = 0
     while at < len(messages):

@@ -1,4 +1,4 @@
-"""The last frames each way, for whoever looks for what has gone wrong."""
+"""The last frames in each direction, for diagnosis."""
 
 from collections import deque
 from typing import NamedTuple
@@ -23,19 +23,19 @@ class FrameRing:
         self._received: deque[RecordedFrame] = deque(maxlen=_FRAMES)
 
     def add_sent(self, frame: bytes, key: int, now: float) -> None:
-        """Note a frame that was handed to the line."""
+        """Adds a frame that was written to the line."""
         self._sent.append(RecordedFrame(now, True, key, frame.removesuffix(b"\0")))
 
     def add_received(self, frame: bytes, key: int, now: float) -> None:
-        """Note what came between two zeros, valid or not."""
+        """Adds the received bytes between two zeros, valid or not."""
         self._received.append(RecordedFrame(now, False, key, frame))
 
     def frames(self) -> list[RecordedFrame]:
-        """Both ways in the order of time."""
+        """Returns the frames of both directions in order of time."""
         return sorted([*self._received, *self._sent], key=lambda frame: frame.time)
 
     def dump(self) -> str:
-        """The same for a log, a line a frame, as stuffed bytes in hexadecimal."""
+        """Returns the frames for a log, one a line, as stuffed bytes in hexadecimal."""
         return "\n".join(
             f"{frame.time:.3f} {'->' if frame.sent else '<-'} {frame.stuffed.hex()}"
             for frame in self.frames()

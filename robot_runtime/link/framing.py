@@ -106,7 +106,7 @@ class Decoder:
 
     @property
     def key(self) -> int:
-        """That of the session's frames."""
+        """The key of the session's frames."""
         return self._key
 
     @key.setter

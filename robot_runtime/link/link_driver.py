@@ -1,4 +1,4 @@
-"""What the runtime says to the board and makes of its answers, whoever carries bytes and keeps time."""
+"""The link to the board without its I/O: session, statistics, failures and messages."""
 
 import logging
 import threading
@@ -15,8 +15,8 @@ from robot_runtime.link.session import BoardMessage, LinkSession, SessionStage
 log = logging.getLogger(__name__)
 
 PERIOD = 0.03
-"""s to let bytes gather where nothing is urgent: frames come in pieces, a hundred a second, and on a Pi it is
-the waking that costs."""
+"""s for which bytes accumulate while nothing is urgent. Frames come in pieces, a hundred a second, and each
+wake-up costs CPU time on a Pi."""
 _POLL = 0.05
 
 Write = Callable[[bytes], None]
@@ -28,7 +28,7 @@ class LineError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class LinkFailure:
-    """What went wrong at `time` (s), in words, and the last frames each way until then."""
+    """A failure at `time` (s): its description, and the last frames in each direction."""
 
     time: float
     text: str
@@ -36,7 +36,7 @@ class LinkFailure:
 
 
 class LinkDriver:
-    """Keeps a session with the board from one opening of the line to the next.
+    """Drives the session with the board, from one opening of the line to the next.
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
     lost, both by whoever calls `poll` and `receive`. `send`, `statistics` and `frames` may be called from any
@@ -68,7 +68,7 @@ class LinkDriver:
 
     @property
     def connected(self) -> bool:
-        """Whether the board answers and speaks the same definitions."""
+        """True if the board answers and was built from the same definitions."""
         return self._write is not None and self._session.stage is SessionStage.ESTABLISHED
 
     @property
@@ -78,11 +78,11 @@ class LinkDriver:
 
     @property
     def gathering(self) -> bool:
-        """Whether bytes may gather for `PERIOD`, as nothing is urgent."""
+        """True if bytes may accumulate for `PERIOD`, as nothing is urgent."""
         return self.connected and not self._session.urgent
 
     def send(self, *packets: Packet) -> bool:
-        """Hand these packets to the line; False where nobody is there to take them.
+        """Sends these packets; returns False when there is no connection.
 
         Reliable ones arrive, once and in order, for as long as the connection lives. Of unreliable ones the
         newest of each type goes out once. STOP goes out at once, and also where no board has answered yet.
@@ -100,16 +100,16 @@ class LinkDriver:
         return True
 
     def statistics(self) -> LinkStatistics:
-        """What the line carried since it was opened."""
+        """Returns the counters since the line was opened."""
         return self._session.statistics()
 
     def frames(self) -> list[RecordedFrame]:
-        """The last frames each way since the line was opened, in the order of time."""
+        """Returns the last frames in both directions since the line was opened, in order of time."""
         with self._writing:
             return self._session.ring.frames()
 
     def open(self, write: Write) -> None:
-        """Begin anew on a line that `write` hands bytes to; it may raise LineError."""
+        """Starts a session on a line that `write` sends bytes to; `write` may raise LineError."""
         with self._writing:
             # Another epoch each time: the board must not take this for the conversation before.
             self._epoch = (self._epoch + 1) & 0xFFFF
@@ -118,17 +118,17 @@ class LinkDriver:
         self._stage = None
 
     def shut(self) -> None:
-        """The line is gone."""
+        """Notes that the line is closed."""
         with self._writing:
             self._write = None
 
     def lose(self) -> None:
-        """Keep what was on the line when it went away, where a board was there."""
+        """Records the last frames when the port goes away while connected."""
         if self._stage is SessionStage.ESTABLISHED:
             self._dump("the port went away")
 
     def poll(self) -> None:
-        """Say how things stand, and what is due. Raises LineError."""
+        """Updates the state and sends what is due. Raises LineError."""
         if self._session.stage is not self._stage:
             if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")
@@ -140,11 +140,11 @@ class LinkDriver:
                 self._write(data)
 
     def wait(self) -> float:
-        """s for which `poll` need not be called unless bytes come."""
+        """Returns the s until `poll` must be called, unless bytes come."""
         return max(min(self._session.due() - self._clock.now(), _POLL), 0.0)
 
     def receive(self, data: bytes) -> None:
-        """Take what came."""
+        """Handles received bytes."""
         with self._writing:
             discarded = self._session.counters.messages_discarded
             messages = self._session.receive(data, self._clock.now())
@@ -161,7 +161,7 @@ class LinkDriver:
                 log.exception("a packet could not be understood")
 
     def report(self, text: str) -> None:
-        """Say how things stand, where that has changed."""
+        """Reports the state if it has changed."""
         if text != self.text:
             self.text = text
             log.info("link: %s", text)

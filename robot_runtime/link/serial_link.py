@@ -1,4 +1,4 @@
-"""The connection to the board: a thread that opens the port, keeps the conversation, and never gives up."""
+"""The serial link to the board: a thread that opens the port, runs the session, and reopens it for ever."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""The conversation with the board over frames, without I/O and without a clock of its own.
+"""The session with the board, without I/O and without a clock of its own.
 
 A session lasts from opening the port to closing it. The host says HELLO until the board answers with the
 same hash of the packet definitions; from then on the session is established, and a host that has nothing to
@@ -54,7 +54,7 @@ _GARBLED_BYTES = 3 * FRAME_BYTES_MAX
 
 
 class SessionStage(Enum):
-    """How far the conversation is."""
+    """The stage of a session."""
 
     GREETING = "waiting for the board's greeting"
     ESTABLISHED = "connected"
@@ -82,7 +82,7 @@ def session_key(host_epoch: int, board_epoch: int) -> int:
 
 
 class LinkSession:
-    """One conversation on a line of this many baud; `host_epoch` tells it from every other."""
+    """One session on a line of this many baud; `host_epoch` distinguishes it from every other."""
 
     def __init__(self, host_epoch: int, baud: int) -> None:
         self.stage = SessionStage.GREETING
@@ -107,12 +107,12 @@ class LinkSession:
 
     @property
     def garbled(self) -> bool:
-        """Whether bytes come, a few frames of them, and nothing that is a frame."""
+        """True if bytes for some frames came and none of them was valid."""
         return self._bytes_received - self._bytes_understood >= _GARBLED_BYTES
 
     @property
     def urgent(self) -> bool:
-        """Whether something waits for the board's word, or the board for an acknowledgement."""
+        """True if an acknowledgement is due in either direction."""
         return self._channel.urgent
 
     def receive(self, data: bytes, now: float) -> list[BoardMessage]:
@@ -137,7 +137,7 @@ class LinkSession:
         return messages
 
     def poll(self, now: float) -> bytes:
-        """What is due to be sent now: a greeting, whatever waits, a heartbeat, or nothing."""
+        """Returns the bytes to send now: a greeting, queued messages, a heartbeat, or none."""
         self._measure_goodput(now)
         if self.stage is SessionStage.ESTABLISHED and now - self._heard > self._silence:
             self.stage = SessionStage.GREETING
@@ -153,14 +153,14 @@ class LinkSession:
         return data
 
     def due(self) -> float:
-        """When `poll` wants to be called, where nothing else happens."""
+        """Returns the time of the next `poll` if nothing else happens."""
         if self.stage is not SessionStage.ESTABLISHED:
             return self._greeted + _GREETING if self._greeted is not None else float("-inf")
         heartbeat = max(self._sent + _HEARTBEAT, self._channel.free_at)
         return min(self._heard + self._silence, heartbeat, self._channel.due())
 
     def send(self, packets: Iterable[Packet], now: float) -> bytes:
-        """Take these packets over; the bytes that are to go out now. Without a session only STOP is taken."""
+        """Queues these packets; returns the bytes to send now. Without a session only STOP is accepted."""
         data = b""
         for packet in packets:
             if isinstance(packet, Stop):

@@ -1,4 +1,4 @@
-"""What a line of so many bits a second carries: how often the board's telemetry comes, and when to miss it.
+"""Timing of the serial line: airtime, telemetry periods, and the age at which a value is stale.
 
 The board sends as firmware/src/schedule.h says. In ten slots of 10 ms each, or of as many as the line needs;
 where that would be more than four, in three slots, with Depth in all of them.

@@ -1,1 +1,1 @@
-"""What may be tuned while the robot runs: each parameter described once, read and changed in one place."""
+"""Tunable parameters: each described once, read and changed in one place."""

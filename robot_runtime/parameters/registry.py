@@ -31,7 +31,7 @@ class Registry:
         self._tick_lock = tick_lock
 
     def values(self) -> dict[str, ParameterValue]:
-        """What is in force, by name."""
+        """Returns the values in force, by name."""
         return {name: entry.get() for name, entry in self._entries.items()}
 
     def listed(self) -> list[TunableParameter]:

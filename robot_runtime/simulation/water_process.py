@@ -1,4 +1,4 @@
-"""The water as a process: attached to the emulated board for ever, heard and asked over Zenoh."""
+"""The water as a process, attached to the emulated board; it publishes and serves requests over Zenoh."""
 
 import logging
 import socket
@@ -57,7 +57,7 @@ class WaterProcess:
                 time.sleep(RETRY)
 
     def end(self) -> None:
-        """Let `run` return soon; may be called from a signal handler or any thread."""
+        """Makes `run` return soon; may be called from a signal handler or any thread."""
         self._ending = True
 
     def _attend(self, line: socket.socket) -> None:

@@ -1,4 +1,4 @@
-"""What joins the rooms inside the runtime: plain function calls, topic by topic.
+"""The bus between the parts of the runtime: plain function calls, topic by topic.
 
 A listener is any callable; it runs on the publisher's thread and must be quick.
 """

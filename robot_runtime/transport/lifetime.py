@@ -1,4 +1,4 @@
-"""How long a process lives beside others: as long as the one that started it, or as there is a server."""
+"""Lifetime of a process: it ends with its parent, or when no server is left."""
 
 import argparse
 import ctypes
@@ -43,7 +43,7 @@ def add_server_options(parser: argparse.ArgumentParser) -> None:
 
 
 def is_served(lock: Path) -> bool:
-    """Whether a server holds this lock (flock(2)); where the file is gone, none can come back."""
+    """Returns True if a server holds this lock (flock(2)); without the file none can come back."""
     try:
         handle = os.open(lock, os.O_RDONLY | os.O_CLOEXEC)
     except OSError:

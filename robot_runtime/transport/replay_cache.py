@@ -1,4 +1,4 @@
-"""What a process has sent in the last minutes, for a server that was not there to hear it."""
+"""The blocks of the last minutes, for a server that has missed them."""
 
 import json
 import threading
@@ -22,7 +22,7 @@ _SIZE = Struct("<I")
 
 @dataclass(frozen=True, slots=True)
 class BacklogReply:
-    """The answer to a question for blocks: who sent them, the blocks, oldest first, and what comes next.
+    """The reply to a backlog request: the sender's run, its blocks, oldest first, and the next numbers.
 
     `next` are the numbers that the sender gives to the next sample of each topic (by name): what lies between
     them and the last block that is here was never sent or is no longer kept.
@@ -34,7 +34,7 @@ class BacklogReply:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Self:
-        """Read an answer. Raises LayoutError where it is none."""
+        """Reads a reply. Raises LayoutError for invalid bytes."""
         try:
             (size,) = _SIZE.unpack_from(data)
             head = json.loads(data[_SIZE.size : _SIZE.size + size])
@@ -62,7 +62,7 @@ class ReplayCache:
         self._next: dict[str, int] = {}
 
     def add(self, message: bytes, following: Mapping[str, int]) -> None:
-        """Keep a message that is about to be sent; `following` are the topics' numbers after it."""
+        """Adds a message that is about to be sent; `following` are the topics' numbers after it."""
         now = self._clock.now()
         with self._lock:
             self._messages.append((now, message))

@@ -1,4 +1,4 @@
-"""Zenoh, as far as this project uses it: publish a topic, listen to topics, ask a question, answer one.
+"""Transport over Zenoh: publish and subscribe to topics, query and serve requests.
 
 Keys are `mucat/<robot>/<name>`. Endpoints are explicit; nothing is looked for by multicast unless it is asked
 for. Callbacks run in Zenoh's own threads.
@@ -37,7 +37,7 @@ class Subscription:
 
 
 class ZenohTransport:
-    """One process's end of the conversation.
+    """One process's transport.
 
     `listen` and `connect` are Zenoh endpoints, such as "unixsock-stream//run/mucat/runtime.sock" or
     "tcp/192.168.0.7:7447". Lost peers are tried again for ever. A `client` reaches everybody through the one
@@ -70,7 +70,7 @@ class ZenohTransport:
         self._publisher(name).put(payload, attachment=self.run)
 
     def watched(self, name: str) -> bool:
-        """Whether anybody listens to `name` now."""
+        """Returns True if anybody subscribes to `name` now."""
         # Zenoh's stub calls this a bool; it is a MatchingStatus.
         status: Any = self._publisher(name).matching_status
         return bool(status.matching)

@@ -1,1 +1,1 @@
-"""What the robot sees: cameras, and the search for a colour in their pictures."""
+"""Vision: cameras, and the search for colours and markers in their pictures."""

@@ -1,4 +1,4 @@
-"""White balance: what water and light have done to the colours, taken back as far as can be told."""
+"""White balance: corrects the colour cast of water and light."""
 
 from collections.abc import Callable, Mapping
 

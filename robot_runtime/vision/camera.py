@@ -1,4 +1,4 @@
-"""What every camera is, whatever stands behind it."""
+"""The interface of all cameras."""
 
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, NamedTuple
@@ -39,4 +39,4 @@ class Camera(ABC):
 
     @abstractmethod
     def __str__(self) -> str:
-        """What it is, in words."""
+        """Returns a description of the camera."""

@@ -99,7 +99,7 @@ class CardCamera(Camera):
             cv2.fillConvexPoly(self._canvas, black, _through_water(BLACK), shift=4)
 
     def _light(self, time: float) -> Floats:
-        """How bright each place is, about 1; (height, width, 1)."""
+        """Returns the relative brightness of each pixel, about 1; (height, width, 1)."""
         waves = [
             np.sin(phase + 2 * pi * hertz * time)
             for phase, (_, _, hertz) in zip(self._phases, RIPPLES, strict=True)

@@ -15,7 +15,7 @@ from robot_runtime.vision.picture import Picture
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """What is in one picture.
+    """The result of searching one picture.
 
     `target_patches` are the patches of the selected colour. `patch`, of `colour`, is the reported one:
     the target's largest or, without a target, the largest of all. `set_point` (m) is the action for `target`.
@@ -40,7 +40,7 @@ class Detector:
         self._markers = MarkerFinder(settings)
 
     def look(self, picture: Picture) -> Sight:
-        """What is in a BGR picture (height, width, 3).
+        """Searches a BGR picture (height, width, 3).
 
         The wanted colour goes before everything, what has an action before the rest, in the actions' order.
         """

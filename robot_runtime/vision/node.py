@@ -1,4 +1,4 @@
-"""The vision node: a thread that looks, searches for colours and markers, and tells what it found."""
+"""The vision node: a thread that takes pictures, searches them, and publishes detections."""
 
 import importlib
 import logging
@@ -80,7 +80,7 @@ class VisionNode:
 
     @property
     def settings(self) -> VisionSettings:
-        """How it looks; what is set here holds, as a whole, from the next picture on."""
+        """The settings in force; new ones apply, as a whole, from the next picture on."""
         return self._settings
 
     @settings.setter
@@ -96,7 +96,7 @@ class VisionNode:
 
     @property
     def cards(self) -> list[str]:
-        """What can be shown to the camera."""
+        """The names of the cards that can be shown to the camera."""
         if self._config.camera not in ("card", "scene"):
             return []
         return [*dict.fromkeys([*PAINTS, *self._settings.colours]), marker_name(MARKER_CARD)]

@@ -1,4 +1,4 @@
-"""What the vision node needs NumPy and OpenCV for: cameras, the detector, and pictures made small.
+"""The parts of the vision node that need NumPy and OpenCV: cameras, detector and JPEG encoding.
 
 They are loaded with this module, in the node's own thread: that takes longer than all the rest of a start,
 and the board should not wait for it.

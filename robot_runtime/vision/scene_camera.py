@@ -47,7 +47,7 @@ class SceneCamera(Camera):
             raise SceneMissingError(str(missing))
 
     def read(self) -> CameraFrame:
-        """What the camera sees where the robot was when the simulator last told. Raises CameraError."""
+        """Returns the picture from the robot's last known position. Raises CameraError."""
         card = self._card()
         request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
         try:

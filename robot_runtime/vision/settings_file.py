@@ -1,4 +1,4 @@
-"""The settings that somebody made while the robot ran, kept over its restarts."""
+"""A file of the vision settings, which survive a restart."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ class VisionSettingsFile:
         self._path = path
 
     def read(self) -> VisionSettings | None:
-        """What was kept last; None without it. Raises ConfigError where it cannot be used."""
+        """Reads the stored settings; None if there are none. Raises ConfigError if they cannot be used."""
         try:
             table = json.loads(self._path.read_bytes())
             settings: VisionSettings = read_value(VisionSettings, table, self._path.name)
@@ -29,9 +29,9 @@ class VisionSettingsFile:
         return settings
 
     def write(self, settings: VisionSettings) -> None:
-        """Keep these. Raises OSError; then those before are kept still."""
+        """Stores the settings. Raises OSError; the older ones remain then."""
         write_whole(self._path, json.dumps(settings.table(), indent=1).encode())
 
     def forget(self) -> None:
-        """Keep none. Raises OSError."""
+        """Removes the stored settings. Raises OSError."""
         self._path.unlink(missing_ok=True)

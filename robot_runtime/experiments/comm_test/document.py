@@ -102,7 +102,7 @@ def read_document(text: str) -> list[CommTest]:
 
 
 def chip_baud(baud: int) -> float:
-    """What the chip's UART makes of a baud rate, bit/s, as the Arduino core sets it up; 0 where it cannot."""
+    """Returns the speed, bit/s, of the chip's UART for a baud rate by the Arduino core; 0 for none."""
     divisor = (CHIP_CLOCK // 4 // baud - 1) // 2
     step = 8
     if divisor > SLOWEST_DIVISOR or baud == 57600:

@@ -38,7 +38,7 @@ class EmulatedLine(CommTestLine):
         self._port.close()
 
     def errors(self) -> LineErrors:
-        """What the two UARTs have counted since the start, and what has befallen the line."""
+        """Returns the errors that both UARTs counted since the start, and the injected faults."""
         stats = {name: int(value) for name, value in self._board.stats().items()}
         return LineErrors(
             framing_board=stats["framing_errors_board"],

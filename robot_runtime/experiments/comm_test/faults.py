@@ -1,5 +1,6 @@
-"""What a test lets befall the line, in both directions: rates for every bit or byte, and what comes again and
-again in the test's time. Everything follows from one seed.
+"""Line faults of a test, in both directions: rates for each bit or byte, and timed stalls and cuts.
+
+Everything follows from one seed.
 """
 
 import heapq
@@ -14,25 +15,25 @@ Moment = tuple[float, Literal["stall", "cut", "mend"], float]
 
 
 class LineFaultInjector(Protocol):
-    """A line that can be harmed, both directions at once."""
+    """Injects faults into a line, in both directions."""
 
     def seed(self, seed: int) -> None:
-        """Let everything from now on follow from this number."""
+        """Seeds all faults from now on."""
 
     def rate(self, kind: RateKind, rate: float) -> None:
-        """Let this happen to each bit or byte with this probability."""
+        """Sets the probability of this fault for each bit or byte."""
 
     def burst(self, rate: float, bits: int) -> None:
-        """Let bursts of errors begin at each bit with this probability, and last so many bit times."""
+        """Sets the probability that a burst of errors begins at a bit, and its length in bit times."""
 
     def stall(self, seconds: float) -> None:
-        """Hold everything back for this long."""
+        """Delays all bytes for this many s."""
 
     def cut(self, cut: bool) -> None:
-        """Break the line, or mend it."""
+        """Cuts the line, or restores it."""
 
     def clean(self) -> None:
-        """End everything."""
+        """Removes all faults."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class Faults:
     cut: tuple[float, float] | None = None
 
     def begin(self, wire: LineFaultInjector) -> None:
-        """Let them begin, but for those that `moments` tells of."""
+        """Starts the faults that have rates; `moments` gives the others."""
         wire.seed(self.seed)
         for kind in RATE_KINDS:
             if rate := getattr(self, kind):
@@ -60,7 +61,7 @@ class Faults:
             wire.burst(*self.burst)
 
     def moments(self, start: float) -> Iterator[Moment]:
-        """What comes at its time, in order, for ever; `start` is when the faults began (s of the test)."""
+        """Yields the timed faults in order, without end; `start` is when the faults began (s of the test)."""
         streams = []
         if self.stall:
             streams.append(_every(start, *self.stall, "stall"))

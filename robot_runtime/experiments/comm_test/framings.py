@@ -46,7 +46,7 @@ class Sequence:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Framing:
-    """What the sketch is compiled with: `code` is its macro, `library` says whether it needs the robot's own.
+    """A framing of the sketch: `code` is its macro, `library` tells if it needs the robot's own.
 
     `number_max` is the largest number that can be sent, `bauds` are the lowest and the highest that it runs
     at, in bit/s.
@@ -60,7 +60,7 @@ class Framing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamFraming(Framing):
-    """How numbers lie on the wire: `message` makes one, `request` asks for the result, `count` reads them."""
+    """A framing of numbers: `message` writes one, `request` asks for the result, `count` reads them."""
 
     request: bytes
     message: Callable[[int], bytes]

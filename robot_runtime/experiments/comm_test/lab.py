@@ -1,4 +1,4 @@
-"""Runs the tests of a document in the place they are meant for, and tells of every step."""
+"""Runs the tests of a document on emulated boards or on the robot's own, and reports each step."""
 
 import json
 import os
@@ -23,7 +23,7 @@ from robot_runtime.link.port import PortError
 from robot_runtime.simulation.boards.emulator_process import BoardError
 
 TROUBLE = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
-"""What may end a test before it is complete; the texts say why."""
+"""Errors that end a test early; the texts say why."""
 
 SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
 """s until a sketch listens after its upload, and after a reset, when the boot loader listens first."""
@@ -38,7 +38,7 @@ class EventWriter:
         self._lock = Lock()
 
     def tell(self, event: str, **values: Any) -> None:
-        """One event."""
+        """Writes one event."""
         line = json.dumps({"event": event, **values}, ensure_ascii=False)
         with self._lock:
             self._output.write(line + "\n")
@@ -46,7 +46,7 @@ class EventWriter:
 
 
 class CommTestLab(Protocol):
-    """A place for tests. All methods raise the errors in TROUBLE."""
+    """The boards that tests run on. All methods raise the errors in TROUBLE."""
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
         """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""

@@ -1,4 +1,4 @@
-"""The host's end of the serial line as a cell needs it, whatever the board and whoever's time."""
+"""The host's end of the serial line in a communication test, emulated or real."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -15,11 +15,11 @@ TIME_MIN = 1e-6
 
 
 class StoppedError(Exception):
-    """Somebody has asked that the test end before it is complete."""
+    """The test was cancelled."""
 
 
 class Cancellation:
-    """Whether somebody has asked for the end. Signal handlers may set it.
+    """A request to cancel a test. Signal handlers may set it.
 
     An Event would not do: a second signal may interrupt the handler of the first while that has its lock.
     """
@@ -28,11 +28,11 @@ class Cancellation:
         self._set = False
 
     def set(self) -> None:
-        """Ask for the end."""
+        """Requests cancellation."""
         self._set = True
 
     def is_set(self) -> bool:
-        """Whether it was asked for."""
+        """True if cancellation was requested."""
         return self._set
 
 
@@ -65,23 +65,23 @@ class CommTestLine(ABC):
 
     @abstractmethod
     def errors(self) -> LineErrors:
-        """What happened on the wire since the start, as far as it can be known."""
+        """Returns the errors on the wire since the start, as far as they are known."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let go of port and board."""
+        """Closes port and board."""
 
     @abstractmethod
     def _wire(self) -> LineFaultInjector:
-        """What can be harmed."""
+        """Returns the fault injector of this line."""
 
     @abstractmethod
     def _hand_over(self, data: bytes) -> None:
-        """Give bytes to the port."""
+        """Writes bytes to the port."""
 
     @abstractmethod
     def _pass(self, seconds: float) -> None:
-        """Let time pass: set `now`, and add what comes to `heard`. Raises StoppedError."""
+        """Advances the time: sets `now`, and adds received bytes to `heard`. Raises StoppedError."""
 
     def __enter__(self) -> Self:
         return self
@@ -95,7 +95,7 @@ class CommTestLine(ABC):
         return max(self._line_free - self.now, 0.0)
 
     def inject_faults(self, faults: Faults) -> None:
-        """Let these befall the line from now on."""
+        """Injects these faults from now on."""
         if faults == Faults(seed=faults.seed):
             return
         self._disturbed = True
@@ -105,19 +105,19 @@ class CommTestLine(ABC):
         self._moment = next(self._moments, None)
 
     def clear_faults(self) -> None:
-        """From now on nothing befalls the line any more."""
+        """Removes all faults from the line."""
         if self._disturbed:
             self._wire().clean()
         self._moment = None
         self._stretch = 1.0
 
     def drain(self) -> None:
-        """Wait until everything that was written is through the line, which a stall may put off."""
+        """Waits until all written bytes have passed the line, which a stall may delay."""
         while self.busy > TIME_MIN:
             self.wait(self.busy)
 
     def write(self, data: bytes) -> None:
-        """Hand bytes to the port, waiting for the line where they find no room."""
+        """Writes bytes to the port; waits for the line while its buffer is full."""
         room = WRITE_BUFFER_BYTES * self.byte_time
         airtime = len(data) * self.byte_time * self._stretch
         while self.busy + airtime > room + TIME_MIN:
@@ -126,7 +126,7 @@ class CommTestLine(ABC):
         self._line_free = self.now + self.busy + airtime
 
     def wait(self, seconds: float) -> None:
-        """Let the test's time pass, and read what comes meanwhile into `heard`. Raises StoppedError."""
+        """Waits in test time and adds received bytes to `heard`. Raises StoppedError."""
         end = self.now + seconds
         while end - self.now > TIME_MIN:
             pause = end if self._moment is None else min(end, self._moment[0])

@@ -46,7 +46,7 @@ class PortLine(CommTestLine):
         self._files.close()
 
     def errors(self) -> LineErrors:
-        """What has befallen the line; what its UARTs have seen cannot be asked."""
+        """Returns the injected faults; the errors that the UARTs saw are not known."""
         if self._faulty is None:
             return LineErrors()
         channels = self._faulty.channels.items()

@@ -1,4 +1,4 @@
-"""How the board's reset pin is pulled before an upload."""
+"""The board's reset pin, pulled before an upload."""
 
 import time
 from collections.abc import Callable
@@ -18,7 +18,7 @@ Pull = Callable[[], None]
 
 
 def find_reset(spec: str) -> Pull:
-    """What pulls the reset pin: `gpio:CHIP:LINE`, `board:SOCKET` or `dtr`, which avrdude does by itself.
+    """Returns the function that pulls the reset pin: `gpio:CHIP:LINE`, `board:SOCKET` or `dtr` (by avrdude).
 
     Raises ResetError where `spec` is none of these; what it returns raises ResetError and BoardError.
     """

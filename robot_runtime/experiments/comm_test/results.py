@@ -1,4 +1,4 @@
-"""What a cell of a communication test counted, and what that means in words."""
+"""The counts of a communication test's cell, and their explanation."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
@@ -33,7 +33,7 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class FaultCounts:
-    """What the test let befall the line, both directions together; `cuts` are bytes lost while it was cut."""
+    """The injected faults of both directions together; `cuts` are bytes lost while the line was cut."""
 
     bit_errors: int = 0
     drops: int = 0
@@ -55,7 +55,7 @@ class FaultCounts:
 
     @property
     def words(self) -> str:
-        """For a person; "" where nothing befell it."""
+        """The faults as text; empty if there were none."""
         words = (
             (self.bit_errors, "wrong bits"),
             (self.bursts, "bursts of errors"),
@@ -73,7 +73,7 @@ NO_FAULT_COUNTS = FaultCounts()
 
 @dataclass(frozen=True, slots=True)
 class LineErrors:
-    """What happened on the wire below the programs, as the UARTs saw it where they can be asked."""
+    """Errors on the wire, as the UARTs counted them where they can be read."""
 
     framing_board: int = 0
     framing_host: int = 0
@@ -83,7 +83,7 @@ class LineErrors:
 
 @dataclass(frozen=True, slots=True)
 class GridCell:
-    """One place of the grid: baud in bit/s, delays in s."""
+    """One cell of the grid: baud in bit/s, delays in s."""
 
     baud: int
     arduino_delay: float
@@ -92,9 +92,10 @@ class GridCell:
 
 @dataclass(frozen=True, slots=True)
 class CellResult:
-    """What a cell gave. `board` is None where the chip's answer never came; `lost` are bytes written to the
-    line and not read from it, towards the board and towards the host. `seconds` is emulated time, `repeated`
-    are frames that either end sent again.
+    """The result of a cell.
+
+    `board` is None where the chip's answer never came; `lost_to_...` are bytes that were written to the line
+    and not read from it. `seconds` is emulated time, `repeated` are frames that either end sent again.
     """
 
     cell: GridCell
@@ -121,14 +122,14 @@ class CellResult:
 
     @property
     def counts(self) -> Counts:
-        """What the receiving ends counted, both together where both receive."""
+        """Returns the counts of the receiving ends, added up where both receive."""
         if self.direction == "to_host":
             return self.host
         return (self.board or Counts()) + self.host
 
     @property
     def causes(self) -> tuple[str, ...]:
-        """The names of what went wrong; none where every number arrived."""
+        """The names of the causes; none where every number arrived."""
         return tuple(dict.fromkeys(cause for cause, _ in self._findings()))
 
     @property
@@ -139,7 +140,7 @@ class CellResult:
 
     @property
     def values(self) -> dict[str, Any]:
-        """All of it as plain values by name, as it is stored and handed on; both directions added up."""
+        """The result as plain values by name, as it is stored; both directions added up."""
         return {
             **asdict(self.cell),
             **asdict(self.counts),
@@ -160,7 +161,7 @@ class CellResult:
 
     @property
     def harmed(self) -> bool:
-        """Whether the test let something befall the line that changes bytes."""
+        """True if the test injected faults that change bytes."""
         return replace(self.line.faults, stalls=0) != NO_FAULT_COUNTS
 
     def _findings(self) -> list[Finding]:
@@ -183,8 +184,9 @@ class CellResult:
 
 @dataclass(frozen=True, slots=True)
 class LinkCellResult(CellResult):
-    """What a cell gave over the robot's own link, where damage on the line is not yet a failure; `trouble`
-    says why there is no result.
+    """The result of a cell over the robot's own link, where damaged frames are no failure.
+
+    `trouble` says why there is no result.
     """
 
     trouble: tuple[Finding, ...] = ()

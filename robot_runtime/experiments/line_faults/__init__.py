@@ -1,1 +1,1 @@
-"""A serial line with faults: what passes is harmed at chosen rates."""
+"""Serial lines that damage passing bytes at chosen rates."""

@@ -1,4 +1,4 @@
-"""What may go wrong with the bytes of one direction of a serial line, at chosen rates, by a seed and counted.
+"""Faults of one direction of a serial line: at chosen rates, seeded and counted.
 
 Faults follow from a seed and from how much is sent, not from when it is sent or in which portions.
 """
@@ -14,12 +14,12 @@ Kind = Literal["bit_errors", "drop", "double", "insert"]
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 COUNTS = ("bit_errors", "drops", "doubles", "inserts", "bursts", "burst_errors", "cuts", "stalls", "lost")
-"""What is counted; `cuts` and `lost` are bytes, the latter those that the host did not read."""
+"""The names of the counts; `cuts` and `lost` are bytes, the latter those that the host did not read."""
 _GAP_MAX = 1e15
 
 
 class Recurrence:
-    """Something that happens in each of many trials with the same probability."""
+    """An event with the same probability in each of many trials."""
 
     def __init__(self, rate: float, random: Random) -> None:
         """Raises ValueError unless the rate is from 0 to 1."""
@@ -30,7 +30,7 @@ class Recurrence:
         self._left = self._gap()
 
     def hits(self, trials: int) -> list[int]:
-        """In which of the next trials it happens, counted from 0."""
+        """Returns the hits among the next trials, counted from 0."""
         hits = []
         while self._left < trials:
             hits.append(int(self._left))
@@ -48,7 +48,7 @@ class Recurrence:
 
 
 class FaultyChannel:
-    """One direction: bytes in, harmed bytes out. May be used by several threads."""
+    """One direction of the line: bytes in, damaged bytes out. Thread-safe."""
 
     def __init__(self, name: str, seed: int) -> None:
         self.counts: Counter[str] = Counter(dict.fromkeys(COUNTS, 0))
@@ -60,7 +60,7 @@ class FaultyChannel:
         self.seed(seed)
 
     def seed(self, seed: int) -> None:
-        """Let all that happens from now on follow from this number."""
+        """Seeds all faults from now on."""
         with self._lock:
             self._seed = seed
             self._inserted = self._random("inserted")
@@ -69,11 +69,11 @@ class FaultyChannel:
             self._faults = {kind: Recurrence(rate, self._random(kind)) for kind, rate in self._rates.items()}
 
     def set_rate(self, kind: Kind, rate: float) -> None:
-        """Let this happen to each bit (bit_errors) or byte with this probability. Raises ValueError."""
+        """Sets the probability of this fault for each bit (bit_errors) or byte. Raises ValueError."""
         self._set(kind, rate)
 
     def burst(self, rate: float, bits: int) -> None:
-        """Let bursts of so many bits begin at each bit with this probability. Raises ValueError.
+        """Sets the probability that a burst of so many bits begins at a bit. Raises ValueError.
 
         Half of the bits in a burst are wrong.
         """
@@ -83,18 +83,18 @@ class FaultyChannel:
         self._burst_bits = bits
 
     def cut(self, cut: bool) -> None:
-        """Let nothing pass, or mend it."""
+        """Cuts the line, or restores it."""
         self._cut = cut
 
     def clean(self) -> None:
-        """End everything; the counts stay."""
+        """Removes all faults; the counts stay."""
         for kind in self._rates:
             self._set(kind, 0.0)
         self._burst_left = 0
         self._cut = False
 
     def carry(self, data: bytes) -> bytes:
-        """What arrives of these bytes."""
+        """Returns the bytes that arrive of these."""
         with self._lock:
             if self._cut:
                 self.counts["cuts"] += len(data)

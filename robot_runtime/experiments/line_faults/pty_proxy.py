@@ -1,4 +1,4 @@
-"""A serial line with faults: a pseudo-terminal in front of a real port, which harms what passes.
+"""A serial line with faults: a pseudo-terminal in front of a real port that damages passing bytes.
 
     python -m robot_runtime.experiments.line_faults.pty_proxy --port /dev/ttyAMA0 \
         --link /run/mucat/faulty --bit-errors 1e-4
@@ -81,12 +81,12 @@ class PtyProxy:
         self._close_files()
 
     def seed(self, seed: int) -> None:
-        """Let all that happens from now on, in both directions, follow from this number."""
+        """Seeds all faults from now on, in both directions."""
         for channel in self.channels.values():
             channel.seed(seed)
 
     def stall(self, direction: Direction, seconds: float) -> None:
-        """Hold back what is sent for this long. Raises ValueError for less than 0 s or more than an hour."""
+        """Delays sent bytes for this many s. Raises ValueError for less than 0 s or more than an hour."""
         if not 0 <= seconds <= _STALL_MAX:
             raise ValueError("a stall lasts from 0 s to an hour")
         self.channels[direction].counts["stalls"] += seconds > 0
@@ -94,13 +94,13 @@ class PtyProxy:
         self._wake()
 
     def clean(self, direction: Direction) -> None:
-        """End everything that harms this direction."""
+        """Removes all faults of this direction."""
         self.channels[direction].clean()
         self._stalled_until[direction] = 0.0
         self._wake()
 
     def running(self) -> bool:
-        """Whether it has not ended by itself."""
+        """True until it ends by itself."""
         return self._thread.is_alive()
 
     def _make_link(self) -> None:
@@ -156,7 +156,7 @@ class PtyProxy:
 
 
 def obey(line: PtyProxy, command: str) -> str:
-    """Do what a command says; the answer. Raises ValueError where it makes no sense."""
+    """Executes a command and returns the answer. Raises ValueError for an invalid one."""
     match command.split():
         case ["stats"]:
             counts = ((name, channel.counts) for name, channel in line.channels.items())

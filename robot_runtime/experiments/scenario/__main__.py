@@ -33,17 +33,17 @@ REFUSED, FAILED = 2, 1
 
 
 class RunOutput:
-    """Writes to a stream what a run tells."""
+    """Writes a run's data and events to a stream."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream
 
     def blocks(self, data: bytes) -> None:
-        """A message of blocks."""
+        """Writes a message of blocks."""
         self._stream.write(HEADER.pack(len(data), BLOCKS) + data)
 
     def event(self, event: str, **more: Any) -> None:
-        """A message of words, which take what waits along."""
+        """Writes an event and flushes the stream."""
         data = json.dumps({"event": event, **more}, allow_nan=False, separators=(",", ":")).encode()
         self._stream.write(HEADER.pack(len(data), EVENTS) + data)
         self._stream.flush()

@@ -15,7 +15,7 @@ BUILD = Path(os.environ.get("MUCAT_BUILD", Path(__file__).parents[3] / "build"))
 
 
 def boards() -> dict[str, MakeBoard]:
-    """How each kind of board is made: `host`, this computer itself, and `emulated`, the robot's chip."""
+    """Returns the factory of each kind of board: `host`, this computer, and `emulated`, the robot's chip."""
     elf = firmware_path(BUILD, LinkConfig().baud, ".elf")
     return {
         "host": partial(HostBoard, BUILD / "libhost_board.so"),

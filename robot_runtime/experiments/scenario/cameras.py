@@ -1,4 +1,4 @@
-"""What the vision node looks through in simulated time: the scene, or drawn cards."""
+"""The cameras in simulated time: the rendered scene, or drawn cards."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ from robot_runtime.vision.cards import CameraCard as Held
 
 
 def needs_camera(scenario: Scenario) -> bool:
-    """Whether there is anything to see in it: before the card camera, nothing but cards."""
+    """True if the scenario shows anything to its camera; a card camera sees only cards."""
     return scenario.vision.camera == "scene" or any(isinstance(event, Card) for event in scenario.events)
 
 
@@ -40,7 +40,7 @@ class RenderedSceneCamera(Camera):
         self._rendered = Rendered(_contents(self._place, simulator), scenario.robot)
 
     def read(self) -> CameraFrame:
-        """What it sees now."""
+        """Renders the current picture."""
         contents = _contents(self._place, self._simulator)
         if contents != self._rendered.contents:
             self._rendered.fill(contents)

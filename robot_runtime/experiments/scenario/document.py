@@ -87,13 +87,13 @@ class Scene:
 
     @property
     def basin(self) -> Basin:
-        """What holds the water."""
+        """Returns floor and walls."""
         return Basin(self.depth, self.length, self.width)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WaterMotion:
-    """How the water moves at the start."""
+    """Current and waves at the start."""
 
     current: Current = field(default_factory=Current)
     waves: Waves = field(default_factory=Waves)
@@ -101,7 +101,7 @@ class WaterMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionChoice:
-    """What the vision node looks at: drawn water with cards, or the rendered scene; rate in Hz."""
+    """The camera of the vision node: drawn water with cards, or the rendered scene; rate in Hz."""
 
     camera: Literal["card", "scene"] = "card"
     rate: Annotated[float, VISION_RATE] = 4.0
@@ -182,7 +182,7 @@ _STAND_IN: dict[str, Any] = {
     "duration": DURATION.maximum,
     "scene": Scene(kind="natural", depth=1000.0),
 }
-"""What must be there, and what the rest is checked against where it is not."""
+"""Defaults for missing required entries, so that the rest can still be checked."""
 
 
 def read_scenario(text: str) -> Scenario:
@@ -205,7 +205,7 @@ def read_scenario(text: str) -> Scenario:
 
 
 def _read_entries(table: dict[str, Any], problems: list[str]) -> dict[str, Any]:
-    """What of the table is as it should be."""
+    """Returns the valid entries of the table; adds the problems of the others."""
     hints = get_type_hints(Scenario, include_extras=True)
     values: dict[str, Any] = {}
     for name, value in table.items():
@@ -265,7 +265,7 @@ def _read_robot(table: Any) -> SimulationParameters:
 
 
 def _check_number(name: str, value: Any, default: Any) -> list[str]:
-    """What of an overridden number, or of each in a tuple, is beyond what the physics bears."""
+    """Returns the problems of an overridden number, or of each in a tuple, that the physics cannot handle."""
     if isinstance(value, tuple):
         return [
             problem

@@ -78,7 +78,7 @@ class SimulatedRobot(Core):
 
 
 class ScenarioRig:
-    """Everything as it is at the scenario's start, `prelude` (s) before it.
+    """The robot, its board and its water, from `prelude` (s) before the scenario's start on.
 
     The board feels still water at the surface until time 0. Raises BoardError where there is no board.
     """
@@ -113,7 +113,7 @@ class ScenarioRig:
         self.board.close()
 
     def run(self, periods: int) -> bytes:
-        """Let this many `PERIOD`s pass; what came from the board in them."""
+        """Advances by this many `PERIOD`s; returns the bytes from the board."""
         data = self.board.run(periods)
         # Not a sum of many small numbers.
         self._period += periods
@@ -121,7 +121,7 @@ class ScenarioRig:
         return data
 
     def break_devices(self) -> None:
-        """Let the board's devices fail that the sensors' faults ask for, and the others answer again."""
+        """Makes the board's devices fail or answer again, by the sensors' faults."""
         devices = self.simulator.broken_devices
         for device in sorted(devices - self._broken):
             self.board.fault(device, "absent")

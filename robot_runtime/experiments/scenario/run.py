@@ -31,10 +31,10 @@ _SAME_TIME = 1e-6
 
 
 class RunListener(Protocol):
-    """Who is told of the run; times are s since its start."""
+    """Receives the data and the events of a run; times are s since its start."""
 
     def blocks(self, data: bytes) -> None:
-        """What the robot published: blocks one after the other."""
+        """Takes the robot's data: blocks one after the other."""
         ...
 
     def event(self, event: str, **more: Any) -> None:
@@ -43,7 +43,7 @@ class RunListener(Protocol):
 
 
 class _PeriodicTask:
-    """Something that is done every `period` (s); what came late is not made up for."""
+    """An action every `period` (s); missed periods are not made up for."""
 
     def __init__(self, start: float, period: float, action: Callable[[], object]) -> None:
         self.due = start
@@ -51,7 +51,7 @@ class _PeriodicTask:
         self._action = action
 
     def run_if_due(self, now: float) -> None:
-        """Do it where it is due."""
+        """Runs the action if it is due."""
         if now >= self.due - _SAME_TIME:
             self.due = max(self.due + self._period, now)
             self._action()
@@ -68,11 +68,11 @@ class ScenarioRun:
         self._cancelled = False
 
     def cancel(self) -> None:
-        """Let `perform` end soon, in order; may be called from a signal handler."""
+        """Ends `perform` soon, in order; may be called from a signal handler."""
         self._cancelled = True
 
     def perform(self, describe: Callable[[bytes], Mapping[str, str]]) -> None:
-        """From the start to the end. `describe` says of the board's program what the start tells.
+        """Runs the whole scenario. `describe` returns what the start event says about the board's program.
 
         Raises BoardError where there is no board, or it goes away.
         """
@@ -90,7 +90,7 @@ class ScenarioRun:
 
 
 class _RunLoop:
-    """What happens on the stage, from the prelude on; `stopped` tells whether it is to end early."""
+    """Advances the rig from the prelude on; `stopped` tells if it is to end early."""
 
     def __init__(self, rig: ScenarioRig, listener: RunListener, stopped: Callable[[], bool]) -> None:
         self._rig = rig
@@ -110,7 +110,7 @@ class _RunLoop:
         self._has_camera = needs_camera(rig.scenario)
 
     def wait_for_start(self) -> None:
-        """Let the prelude pass."""
+        """Runs the prelude."""
         self._until(0.0)
         robot = self._rig.robot
         robot.outbox.flush()
@@ -118,7 +118,7 @@ class _RunLoop:
         self._tasks.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._tell_progress))
 
     def play(self) -> None:
-        """Let everything happen, until the end or until it is stopped."""
+        """Runs all events, until the end or until it is stopped."""
         scenario = self._rig.scenario
         for event in scenario.events:
             self._until(event.at)
@@ -128,7 +128,7 @@ class _RunLoop:
         self._until(scenario.duration)
 
     def finish(self, *, cancelled: bool) -> None:
-        """Disarm, watch that, and say how it ended."""
+        """Disarms the robot and reports how the run ended."""
         robot, clock = self._rig.robot, self._rig.clock
         if robot.supervisor.armed:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
@@ -144,7 +144,7 @@ class _RunLoop:
         )
 
     def _until(self, end: float) -> None:
-        """Let time pass up to `end` (s), or until it is stopped."""
+        """Advances the time to `end` (s), or until it is stopped."""
         rig = self._rig
         while (now := rig.clock.now()) < end - _SAME_TIME and not self._stopped():
             self._converse(now)
@@ -160,7 +160,7 @@ class _RunLoop:
             self._heard += rig.run(periods)
 
     def _converse(self, now: float) -> None:
-        """What the connection's thread does in real time: let bytes gather, take them, say what is due."""
+        """Does the work of the link's thread: collects bytes, handles them, sends what is due."""
         line = self._rig.robot.link
         if now < self._look_at - _SAME_TIME and (line.gathering or not self._heard):
             return

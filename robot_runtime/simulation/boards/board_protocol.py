@@ -17,11 +17,11 @@ SWING_MAX = 1000.0
 
 
 class BoardLineError(ValueError):
-    """What came from the board is not what was agreed; the text says what is wrong with it."""
+    """The board sent an invalid line; the text says what is wrong with it."""
 
 
 class LineBuffer:
-    """Puts lines together from bytes as they come."""
+    """Assembles lines from received bytes."""
 
     def __init__(self) -> None:
         self._rest = b""

@@ -32,24 +32,24 @@ class EmulatedBoard(SteppedBoard):
             raise
 
     def run(self, periods: int) -> bytes:
-        """Let this many periods pass; what came for the host."""
+        """Advances by this many periods; returns the bytes for the host."""
         self._board.run(periods * PERIOD)
         return self._port.receive()
 
     def write(self, data: bytes) -> None:
-        """Put these bytes on the line."""
+        """Sends these bytes to the board."""
         self._port.write(data)
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Break a device, or mend it."""
+        """Sets or clears the fault of a device."""
         self._board.fault(device, kind)
 
     def line(self, command: str) -> None:
-        """Disturb the line by a command such as `line to_board cut on`."""
+        """Sets a fault of the line by a command such as `line to_board cut on`."""
         self._board.order(command)
 
     def seed_line(self, seed: int) -> None:
-        """Let all that befalls the line follow from this number."""
+        """Seeds the faults of the line."""
         self._board.seed_line(seed)
 
     def reset(self) -> None:
@@ -57,7 +57,7 @@ class EmulatedBoard(SteppedBoard):
         self._board.reset()
 
     def close(self) -> None:
-        """End it."""
+        """Ends the board."""
         self._port.close()
         self._board.close()
         self._process.stop()

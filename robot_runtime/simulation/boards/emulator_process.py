@@ -32,7 +32,7 @@ STILL_WATER = Reading(
     beacon_left=False,
     battery=7.4,
 )
-"""What the board's sensors feel until they are told something else."""
+"""The sensors' input until it is set."""
 
 
 class BoardError(Exception):
@@ -74,7 +74,7 @@ class EmulatorClient:
         self._insist(f"attach {period!r}")
 
     def sense(self, reading: Reading) -> None:
-        """Let the sensors feel this from now on.
+        """Sets the quantities that the sensors measure from now on.
 
         Raises BoardError on values that cannot be, or where another connection is the water.
         """
@@ -85,11 +85,11 @@ class EmulatorClient:
         return read_fins(f"fins {self._look()}")
 
     def led(self) -> bool:
-        """Whether the LED is on."""
+        """Returns True if the LED is on."""
         return self._look().endswith(" 1")
 
     def run(self, seconds: float) -> float:
-        """Let emulated time pass on a paused board, as fast as it goes; returns its time (s)."""
+        """Advances a paused board in emulated time, as fast as possible; returns its time (s)."""
         self._send(f"run {seconds!r}")
         return float(self._answer("ok"))
 
@@ -100,31 +100,31 @@ class EmulatorClient:
         return {name: float(value) for name, value in pairs}
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Break a device (imu, pressure, encoder0-3, bridge0-3), or mend it. Raises BoardError."""
+        """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
         self.order(f"fault {device} {kind}")
 
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
-        """Let this happen to each bit (bit_errors) or character with this probability. Raises BoardError."""
+        """Sets the probability of a fault for each bit (bit_errors) or character. Raises BoardError."""
         self.order(f"line {direction} {kind} {rate!r}")
 
     def burst_line(self, direction: LineDirection, rate: float, bits: float) -> None:
-        """Let bursts begin at each bit with this probability; half of the bits in one are wrong."""
+        """Sets the probability that a burst begins at a bit; half of the bits in a burst are wrong."""
         self.order(f"line {direction} burst {rate!r} {bits!r}")
 
     def stall_line(self, direction: LineDirection, seconds: float) -> None:
-        """Hold back what is sent for this much emulated time; nothing gets lost."""
+        """Delays sent bytes by this much emulated time; nothing gets lost."""
         self.order(f"line {direction} stall {seconds!r}")
 
     def cut_line(self, direction: LineDirection, cut: bool) -> None:
-        """Cut the wire, or mend it."""
+        """Cuts the wire, or restores it."""
         self.order(f"line {direction} cut {'on' if cut else 'off'}")
 
     def clean_line(self, direction: LineDirection) -> None:
-        """End everything that disturbs it."""
+        """Removes all faults of this direction."""
         self.order(f"line {direction} clean")
 
     def seed_line(self, seed: int) -> None:
-        """Let all that befalls the line from now on follow from this number."""
+        """Seeds the faults of the line from now on."""
         self.order(f"seed {seed}")
 
     def reset(self) -> None:

@@ -53,7 +53,7 @@ class HostBoard(SteppedBoard):
         self._fins = (c_double * 13)()
 
     def run(self, periods: int) -> bytes:
-        """Let this many periods pass; what came for the host."""
+        """Advances by this many periods; returns the bytes for the host."""
         library, board, received, fins = self._library, self._board, self._received, self._fins
         data = b""
         for _ in range(periods):
@@ -67,16 +67,16 @@ class HostBoard(SteppedBoard):
         return data
 
     def write(self, data: bytes) -> None:
-        """Put these bytes on the line."""
+        """Sends these bytes to the board."""
         self._library.board_send(self._board, data, len(data))
 
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Break a device, or mend it."""
+        """Sets or clears the fault of a device."""
         if not self._library.board_fault(self._board, device.encode(), kind.encode()):
             raise BoardError(f"there is no device {device!r}, or no fault {kind!r}")
 
     def line(self, command: str) -> None:
-        """Disturb the line by a command such as `line to_board cut on`."""
+        """Sets a fault of the line by a command such as `line to_board cut on`."""
         _, direction, kind, *rest = command.split()
         value = " ".join(rest)
         if kind == "stall":
@@ -91,7 +91,7 @@ class HostBoard(SteppedBoard):
             raise BoardError(f"there is no such command: {command}")
 
     def seed_line(self, seed: int) -> None:
-        """Let all that befalls the line follow from this number."""
+        """Seeds the faults of the line."""
         self._library.board_seed(self._board, seed)
 
     def reset(self) -> None:
@@ -99,7 +99,7 @@ class HostBoard(SteppedBoard):
         self._library.board_reset(self._board)
 
     def close(self) -> None:
-        """End it."""
+        """Ends the board."""
         if self._board is not None:
             self._library.board_destroy(self._board)
             self._board = None

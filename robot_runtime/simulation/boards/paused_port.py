@@ -1,4 +1,4 @@
-"""The serial port of a paused emulated board, kept in step with it: no time passes while bytes are under way.
+"""The serial port of a paused emulated board, in step with it: no time passes while bytes are in transit.
 
 What is written is on the board's side before any time passes, and all that the board has handed over is read
 before any more does, so that a run gives the same bytes every time.
@@ -39,7 +39,7 @@ class PausedPort:
         self._port.close()
 
     def count(self, counter: str) -> int:
-        """What the board counts by this name."""
+        """Returns the board's counter of this name."""
         return int(self._board.stats()[counter])
 
     def write(self, data: bytes) -> None:

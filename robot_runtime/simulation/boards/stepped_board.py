@@ -1,4 +1,4 @@
-"""A board whose time passes only when it is told to, with the water at its sensors and a host at its port."""
+"""A board whose time is advanced in steps, with simulated water at its sensors and a host at its port."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -25,26 +25,26 @@ class SteppedBoard(ABC):
 
     @abstractmethod
     def run(self, periods: int) -> bytes:
-        """Let this many `PERIOD`s pass; what came for the host in them, in order.
+        """Advances by this many `PERIOD`s; returns the bytes for the host, in order.
 
         Raises BoardError where the board goes away.
         """
 
     @abstractmethod
     def write(self, data: bytes) -> None:
-        """Put these bytes on the line, after what still waits there."""
+        """Sends these bytes to the board, after those still queued."""
 
     @abstractmethod
     def fault(self, device: str, kind: FaultKind) -> None:
-        """Break a device (imu, pressure, encoder0-3, bridge0-3), or mend it. Raises BoardError."""
+        """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
 
     @abstractmethod
     def line(self, command: str) -> None:
-        """Disturb the line by a command such as `line to_board cut on`. Raises BoardError."""
+        """Sets a fault of the line by a command such as `line to_board cut on`. Raises BoardError."""
 
     @abstractmethod
     def seed_line(self, seed: int) -> None:
-        """Let all that befalls the line from now on follow from this number."""
+        """Seeds the faults of the line from now on."""
 
     @abstractmethod
     def reset(self) -> None:
@@ -52,7 +52,7 @@ class SteppedBoard(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End it."""
+        """Ends the board."""
 
     def __enter__(self) -> Self:
         return self

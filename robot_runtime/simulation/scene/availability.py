@@ -1,11 +1,11 @@
-"""Whether this computer can render the scene, found out without loading MuJoCo."""
+"""The requirements of rendering, checked without loading MuJoCo."""
 
 from ctypes.util import find_library
 from importlib.util import find_spec
 
 
 def missing() -> str | None:
-    """What is not installed, and how to install it; None where everything is there."""
+    """Returns what is not installed and how to install it; None if nothing is missing."""
     if find_spec("mujoco") is None:
         return (
             "MuJoCo is not installed; where there is a wheel for this computer, "

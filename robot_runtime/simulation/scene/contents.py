@@ -1,4 +1,4 @@
-"""What is in the scene, checked where it is made; nothing here knows how it is drawn."""
+"""The contents of the scene, checked at construction; rendering is elsewhere."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -38,7 +38,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneWater:
-    """What sort of water it is."""
+    """The kind of water and its turbidity."""
 
     kind: Kind | None = None
     """None: a pool where there are walls, else natural."""

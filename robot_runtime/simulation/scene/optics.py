@@ -1,4 +1,4 @@
-"""What water does to a picture: colours lost with distance, its own light, rippling light, blur, noise."""
+"""Optics of water: absorption, backscatter, caustics, blur and noise."""
 
 from functools import cache
 from math import radians, tan
@@ -104,7 +104,7 @@ class UnderwaterOptics:
     def _light(
         self, depth: Floats, water: WaterOptics, position: Vector, axes: Matrix, time: float
     ) -> Floats:
-        """How much more or less light than on average falls on what is seen; 1: as much."""
+        """Returns the light on each visible point relative to the average."""
         far = _floats(cv2.resize(depth, self._half, interpolation=cv2.INTER_NEAREST))
         np.minimum(far, CAUSTICS_FAR, out=far)
         right, down = self._half_rays
@@ -146,7 +146,7 @@ class UnderwaterOptics:
         return up
 
     def _sky(self, up: Floats, depth: Floats, position: Vector) -> Floats | None:
-        """How much of the sky comes through the surface: all within Snell's window, else none."""
+        """Returns the share of sky light through the surface: all within Snell's window, else none."""
         if up.max() < SNELL - SNELL_RIM:
             return None
         below = position[2] - depth * self._stretch * up

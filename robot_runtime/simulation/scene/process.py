@@ -1,4 +1,4 @@
-"""The scene as a process: it hears where the robot is, and renders when somebody asks or watches.
+"""The scene as a process: it receives the robot's position, and renders on request or for viewers.
 
 One thread renders, as OpenGL wants it. MuJoCo is loaded with the first picture: who never asks for one pays
 for nothing.
@@ -100,7 +100,7 @@ class SceneProcess:
                 self._scene.close()
 
     def end(self) -> None:
-        """Let `run` return soon; may be called from a signal handler or any thread."""
+        """Makes `run` return soon; may be called from a signal handler or any thread."""
         self._ending = True
 
     def _see_truth(self, _: str, data: bytes) -> None:

@@ -1,4 +1,4 @@
-"""The scene: told where the robot is, it gives the pictures that its camera and a bystander take."""
+"""Renders the pictures of the robot's camera and of an observer from the robot's position."""
 
 from dataclasses import dataclass
 from math import degrees, floor
@@ -32,7 +32,7 @@ OBSERVER_CLEARER = 2.5
 
 @dataclass(frozen=True, slots=True)
 class _Eye:
-    """Who looks: where from, along which axes (forward, right, down), and at what."""
+    """A point of view: position, axes (forward, right, down) and visible groups."""
 
     position: Vector
     axes: Matrix
@@ -88,7 +88,7 @@ class SceneRenderer:
         card: Paint | None = None,
         marked: bool = False,
     ) -> Picture:
-        """What the robot's camera sees at this time (s), uint8 of shape (height, width, 3); blue, green, red.
+        """Renders the robot's camera at this time (s), uint8 of shape (height, width, 3); blue, green, red.
 
         `card` is the paint of the card that is held before it, `marked` whether the marker is printed on it.
         """
@@ -104,7 +104,7 @@ class SceneRenderer:
         height: int,
         card: Paint | None = None,
     ) -> Picture:
-        """What somebody sees who swims along and looks at the robot, as `render_camera`."""
+        """Renders the view of an observer who follows the robot, as `render_camera`."""
         self._pose(time, truth, card)
         position, axes = view.eye(truth)
         eye = _Eye(position, axes, _camera(view, truth), self._groups(position, card, modelling.ROBOT))
@@ -167,7 +167,7 @@ class SceneRenderer:
 
     @staticmethod
     def _groups(eye: Vector, card: Paint | None, *more: int) -> tuple[int, ...]:
-        """What this eye is shown; the surface only from below, as from above it would hide everything."""
+        """Returns the visible groups; the surface only from below, as from above it would hide everything."""
         surface = (modelling.SURFACE_BELOW,) if eye[2] > 0 else ()
         held = (modelling.CARD_HELD,) if card else ()
         return (modelling.ALWAYS, *surface, *held, *more)

@@ -33,7 +33,7 @@ NOISE = 2.5
 
 @dataclass(frozen=True, slots=True)
 class WaterOptics:
-    """How the water looks."""
+    """Optical properties of the water."""
 
     attenuation: Colours
     """β, 1/m."""

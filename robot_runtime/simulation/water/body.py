@@ -47,7 +47,7 @@ class Body:
         self.state = at_rest(depth, start.north, start.east, start.heading)
 
     def step(self, duration: float, angles: Four, speeds: Four) -> None:
-        """Let `duration` (s) pass: one step of the midpoint rule (Runge-Kutta of second order).
+        """Advances by `duration` (s): one step of the midpoint rule (Runge-Kutta of second order).
 
         `angles` (rad) are the fins' at the start; during the step they turn evenly at `speeds` (rad/s).
         """

@@ -1,4 +1,4 @@
-"""What happens where the hull touches the floor or a wall.
+"""Contact of the hull with floor and walls.
 
 The hull is an ellipsoid, so that it touches each plane at one point. Its speed at that point is changed by
 impulses, with the mass that it has in water: one along the plane's normal, which returns `restitution` of the

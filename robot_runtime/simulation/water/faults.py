@@ -1,4 +1,4 @@
-"""What can be wrong with a sensor, on request."""
+"""Faults of simulated sensors."""
 
 from dataclasses import dataclass
 from math import isfinite

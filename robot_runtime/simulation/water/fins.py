@@ -9,7 +9,7 @@ Four = tuple[float, float, float, float]
 
 
 class Propulsion(Protocol):
-    """Whatever pushes the body."""
+    """The source of the propulsive force."""
 
     def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
         """Force (N) and torque (N m) on the body, in body axes."""

@@ -1,4 +1,4 @@
-"""The water of a robot with its hardware in the loop: hears the fins, tells what the sensors would show.
+"""The simulator of a robot with its hardware in the loop: receives the fins' angles, sends sensor readings.
 
 The board computes how its fins move and sends their angles, fifty times a second, with its own time. The
 water moves on by the time between two of them, so that a slow or uneven network delays what it answers, and
@@ -78,7 +78,7 @@ class HilSimulator:
             self._outbox.flush()
 
     def end(self) -> None:
-        """Let `run` return; may be called from a signal handler or any thread."""
+        """Makes `run` return; may be called from a signal handler or any thread."""
         self._ending = True
         self._arrived.set()
 

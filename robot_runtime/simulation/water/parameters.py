@@ -20,7 +20,7 @@ Six = tuple[float, float, float, float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorQuality:
-    """How well a sensor tells what it feels, in the units of its reading. Raises ValueError below 0."""
+    """The error model of a sensor, in the units of its reading. Raises ValueError below 0."""
 
     rate: float = 200.0
     """Hz of new readings, at most 200, as often as the water is asked; what is faster in reality has that."""
@@ -45,7 +45,7 @@ class SensorQuality:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationParameters:
-    """What the physics needs to know. Raises ValueError where a number makes no physical sense."""
+    """The parameters of the physics. Raises ValueError for a number without physical sense."""
 
     # The hull
     mass: float = 3.0

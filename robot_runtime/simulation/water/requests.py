@@ -1,4 +1,4 @@
-"""What may be asked of the running water, by name. Words are checked here, numbers where they go."""
+"""Requests to the running simulator, by name. Names and types are checked here, ranges at their use."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
@@ -15,7 +15,7 @@ Change = Callable[[Question], Question | None]
 
 
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """What each question does. They raise RefusedError or ValueError, in words, and change nothing then.
+    """Returns the handler of each request. Handlers that raise RefusedError or ValueError change nothing.
 
     `surroundings` changes nothing and is answered with the questions that would make everything as it is.
     """

@@ -1,4 +1,4 @@
-"""How one sensor tells what it feels: late, noisy, offset, in steps, and sometimes wrong."""
+"""One simulated sensor: latency, noise, offset, quantization and faults."""
 
 from collections import deque
 from random import Random
@@ -35,16 +35,16 @@ class Sensor:
         self._fault = NO_FAULT
         self._since = 0.0
         self.holds = False
-        """Whether its newest reading never came, so that it shows an older one."""
+        """True if its newest reading was lost, so that it repeats an older one."""
 
     def set_fault(self, fault: SimulatedFault, time: float) -> None:
-        """Have this fault, and no other, from `time` (s) on."""
+        """Sets the fault from `time` (s) on, in place of any other."""
         self._fault = fault
         self._since = time
         self.holds = False
 
     def read(self, time: float, actual: Numbers) -> Numbers:
-        """What it shows at this time (s), having felt this. A first reading is there at once."""
+        """Returns the reading at this time (s) for these actual values. The first reading has no latency."""
         if time > self._due - SAME_TIME:
             self._due = max(self._due + self._interval, time)
             reading = self._apply_fault(time, self._add_noise(time, actual))

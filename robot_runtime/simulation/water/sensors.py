@@ -1,4 +1,4 @@
-"""What the robot's sensors show of the simulated motion."""
+"""The robot's sensors in the simulated motion."""
 
 from math import cos, hypot, nan, pi, remainder, sin
 from typing import NamedTuple
@@ -55,7 +55,7 @@ class Sensors:
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
     def set_fault(self, sensor: str, fault: SimulatedFault, time: float) -> None:
-        """Have this fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
+        """Sets a sensor's fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
         check_sensor(sensor, fault)
         self.faults[sensor] = fault
         self._sensors[sensor].set_fault(fault, time)
@@ -71,7 +71,7 @@ class Sensors:
         return frozenset(DEVICES[name] for name, fault in self.faults.items() if fault.kind == "bus")
 
     def read(self, time: float, state: BodyState, acceleration: Vector, battery: float) -> Reading:
-        """What they show at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
+        """Returns the readings at this time (s); `acceleration` is that over ground in world axes (m/s²)."""
         parameters, sensors = self._parameters, self._sensors
         matrix = rotation(state.attitude)
         north, east, down = acceleration
@@ -98,7 +98,7 @@ class Sensors:
         return self._world.pressure(time, (north + x, east + y, down + z))
 
     def _seen(self, state: BodyState, matrix: Matrix) -> tuple[float, float]:
-        """How well the right and the left detector see: shares of range and view that are left, above 0 seen.
+        """Returns the margins of the right and the left detector in range and view; above 0 a beacon is seen.
 
         A detector sees a beacon that is near enough and within its view; the brightest counts.
         """
@@ -127,7 +127,7 @@ def _encoder_error(encoder: Sensor, time: float) -> float:
 
 
 def _qualities(parameters: SimulationParameters) -> dict[str, tuple[SensorQuality, int]]:
-    """How well each sensor tells, and how many axes it has."""
+    """Returns the error model and the number of axes of each sensor."""
     return {
         "pressure": (parameters.pressure, 1),
         "gyroscope": (parameters.gyroscope, 3),

@@ -66,7 +66,7 @@ class Simulator:
         self._lock = threading.Lock()
 
     def advance(self, period: float, fins: FinMotion) -> Reading:
-        """Let `period` (s) pass, at whose end the fins are as given, and read the sensors."""
+        """Advances by `period` (s), at whose end the fins are as given, and reads the sensors."""
         with self._lock:
             before = self._velocity()
             steps = ceil(period / STEP_MAX)
@@ -101,17 +101,17 @@ class Simulator:
             self._start(start)
 
     def set_current(self, current: Current) -> None:
-        """Let the water flow so from now on."""
+        """Sets the current from now on."""
         with self._lock:
             self._world.set_current(current, self._body.time)
 
     def set_waves(self, waves: Waves) -> None:
-        """Let this wave run. Raises ValueError where it would break in water of this depth."""
+        """Sets the waves. Raises ValueError where they would break in water of this depth."""
         with self._lock:
             self._world.set_waves(waves)
 
     def set_trim(self, trim: Trim) -> None:
-        """Let the hull float so."""
+        """Sets the trim of the hull."""
         with self._lock:
             self._body.trim = trim
 
@@ -154,7 +154,7 @@ class Simulator:
             return self._sensors.broken_devices
 
     def truth(self) -> Truth:
-        """What the body really does now."""
+        """Returns the true motion of the body."""
         with self._lock:
             position, attitude, velocity, rate = self._body.state
             return Truth(

@@ -1,4 +1,4 @@
-"""What can be changed about water and hull while it swims; each is checked where it is made."""
+"""Settings of water and hull that may change while it swims; each is checked at construction."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -63,7 +63,7 @@ class Waves:
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """How the hull floats: what ballast, foam and small weights change. Raises ValueError beyond its limits.
+    """The trim of the hull, set by ballast and foam. Raises ValueError beyond its limits.
 
     A trim weight of w (N) that is moved by d (m) has the same effect as moving the centre of buoyancy by
     -d·w / weight.
@@ -104,7 +104,7 @@ class StartPose:
 
 @dataclass(frozen=True, slots=True)
 class Basin:
-    """What holds the water: a floor, and four walls or none. Raises ValueError beyond its limits."""
+    """The basin: a floor, and four walls or none. Raises ValueError beyond its limits."""
 
     depth: float
     """m."""

@@ -49,13 +49,13 @@ class World:
         self._tune_waves(self._wave_number(self.waves, self.basin))
 
     def set_current(self, current: Current, time: float = 0.0) -> None:
-        """Let the water flow so from `time` (s) on."""
+        """Sets the current from `time` (s) on."""
         self.current = current
         self._since = time
         self._calm = Flow((current.north, current.east, current.down), NOWHERE, 0.0)
 
     def set_waves(self, waves: Waves) -> None:
-        """Let this wave run. Raises ValueError where it would break in water of this depth."""
+        """Sets the waves. Raises ValueError where they would break in water of this depth."""
         number = self._wave_number(waves, self.basin)
         self.waves = waves
         self._tune_waves(number)
@@ -67,7 +67,7 @@ class World:
         self._tune_waves(number)
 
     def flow(self, time: float, position: Vector) -> Flow:
-        """How the water moves at this time (s) and place (m)."""
+        """Returns the motion of the water at this time (s) and place (m)."""
         if not self.waves.amplitude and not self.current.turning:
             return self._calm
         (north, east, down), (north_rate, east_rate, down_rate) = self._drift(time)
