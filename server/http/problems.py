@@ -4,6 +4,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from server.platform.errors import ApiError
+
 
 class Problem(BaseModel):
     """What happened, why, and what to do."""
@@ -11,9 +13,11 @@ class Problem(BaseModel):
     detail: str
 
 
-def answers(**codes: str) -> dict[int | str, dict[str, Any]]:
-    """Descriptions for the interface's document, by status: `answers(_409="...")`."""
-    return {int(code[1:]): {"model": Problem, "description": text} for code, text in codes.items()}
+def answers(*errors: type[ApiError], **codes: str) -> dict[int | str, dict[str, Any]]:
+    """Descriptions of answers by status, for the interface's document: of errors, or `_409="..."`."""
+    texts = {error.status: str(error.__doc__).partition("\n")[0] for error in errors}
+    texts |= {int(code[1:]): text for code, text in codes.items()}
+    return {status: {"model": Problem, "description": text} for status, text in texts.items()}
 
 
 EVERYWHERE: dict[int | str, dict[str, Any]] = {

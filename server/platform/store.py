@@ -19,12 +19,19 @@ from sqlalchemy import Connection, Engine, create_engine, event, pool
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import Session
 
+from server.platform.errors import UnavailableError
+
 T = TypeVar("T")
 PAGE_CACHE_KIB = 1024
 
 
-class StoreError(Exception):
-    """The database could not do what was asked; the text says why, for a person."""
+class StoreError(UnavailableError):
+    """The database does not work"""
+
+    @property
+    def detail(self) -> str:
+        """The reason in a sentence."""
+        return f"The database does not work: {self}."
 
 
 class Reader:

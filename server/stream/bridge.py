@@ -22,6 +22,7 @@ from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
 from robot_runtime.transport.zenoh_transport import NoAnswerError, Subscription, ZenohTransport
+from server.platform.errors import ApiError
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import Source
 
@@ -52,12 +53,17 @@ QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """Where the processes answer for what they have kept."""
 
 
-class RuntimeSilentError(Exception):
+class RuntimeSilentError(ApiError):
     """The runtime did not answer; `waited` says whether it was there to be asked at all."""
 
     def __init__(self, text: str, waited: bool) -> None:
         super().__init__(text)
         self.waited = waited
+
+    @property
+    def answer_status(self) -> int:
+        """504 where it was asked and did not answer in time, 503 where it was not there."""
+        return 504 if self.waited else 503
 
 
 class Bridge:

@@ -17,6 +17,7 @@ from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import RefusedError
 from server.platform.database_copies import copy_database, place
 from server.platform.disk_space import DIVE_BYTES
+from server.platform.errors import InsufficientStorageError
 from server.platform.settings import DataFolder
 
 PIECE_BYTES = 1 << 18
@@ -24,8 +25,8 @@ STALLED_SECONDS = 60.0
 """For which a piece may wait for whoever downloads; then the download is broken off."""
 
 
-class DatabaseCopyError(Exception):
-    """There is no copy; the text says why, for a person."""
+class DatabaseCopyError(InsufficientStorageError):
+    """It cannot be copied"""
 
 
 class Downloads:

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
-from server.features.backup.download import Downloads
+from server.features.backup.download import DatabaseCopyError, Downloads
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -22,7 +22,7 @@ router = APIRouter(prefix="/api/backup", tags=["sessions"])
             "content": {"application/vnd.sqlite3": {}},
             "description": "The database at one moment; `mucat restore` puts it back",
         },
-        **answers(_409="Another one is being copied or downloaded", _507="It cannot be copied"),
+        **answers(DatabaseCopyError, _409="Another one is being copied or downloaded"),
     },
 )
 async def download_backup(request: Request, downloads: Provided[Downloads]) -> Response:

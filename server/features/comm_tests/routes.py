@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi import APIRouter, Path, Request
 from fastapi.responses import Response
 
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError
@@ -29,6 +29,7 @@ from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
+from server.platform.errors import NotFoundError
 from server.platform.models import IDENTIFIER_MAX, CommTestRun
 
 UNKNOWN = answers(_404="There is no such run")
@@ -81,10 +82,7 @@ async def start(request: Request, watch: Provided[Watch], lab: Provided[Lab], wa
     if wanted.place == "robot":
         require_control(request)
     watch.require_disarmed("A communication test builds and uploads programs.")
-    try:
-        return Started(run=await lab.start(wanted.text, wanted.place))
-    except DocumentError as problem:
-        raise HTTPException(422, "\n".join(problem.problems)) from problem
+    return Started(run=await lab.start(wanted.text, wanted.place))
 
 
 @router.post(
@@ -190,7 +188,7 @@ def _describe(test: CommTest) -> CheckedTest:
 def _find(runs: Runs, run: int) -> CommTestRun:
     found = runs.find(run)
     if found is None:
-        raise HTTPException(404, f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")
+        raise NotFoundError(f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")
     return found
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from server.features.sessions.presence import UnknownSessionError
 from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
 
@@ -44,7 +45,6 @@ def report(
     from server.features.comparison.schemas import (
         DEFAULT_SIGNALS,
         SESSIONS_MAX,
-        NoSessionError,
         WantedComparison,
     )
     from server.features.sessions.recording import RecordingError
@@ -65,7 +65,7 @@ def report(
         out.write_text(text, encoding="utf-8")
     except ValueError as problem:
         raise SetupError(f"The report cannot be made: {problem}") from problem
-    except (NoSessionError, RecordingError) as problem:
+    except (UnknownSessionError, RecordingError) as problem:
         raise SetupError(str(problem)) from problem
     except OSError as problem:
         raise SetupError(f"{out} cannot be written: {problem.strerror}.") from problem

@@ -36,7 +36,6 @@ from server.features.comparison.schemas import (
     Drawn,
     Line,
     Lines,
-    NoSessionError,
     TimeRange,
     WantedComparison,
     WantedLines,
@@ -44,6 +43,7 @@ from server.features.comparison.schemas import (
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
+from server.features.sessions.presence import UnknownSessionError
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
@@ -74,7 +74,7 @@ class _Laid:
 class Comparer:
     """Answers comparisons, from several threads; what it found out about complete sessions is kept a while.
 
-    Methods raise NoSessionError, StoreError and RecordingError.
+    Methods raise UnknownSessionError, StoreError and RecordingError.
     """
 
     def __init__(self, store: Reader) -> None:
@@ -115,7 +115,7 @@ class Comparer:
     def _open(self, session: int) -> Recording:
         row = find_row(self._store, session)
         if row is None:
-            raise NoSessionError(f"There is no session {session}; it may have been deleted.")
+            raise UnknownSessionError(session)
         return Recording(self._store, row)
 
     def _lay(self, wanted: WantedLines) -> list[_Laid]:

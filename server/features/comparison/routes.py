@@ -10,13 +10,15 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from server.features.comparison.comparisons import Comparisons
 from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.features.comparison.signals import Signal
+from server.features.sessions.presence import UnknownSessionError
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.store import StoreError
 
 REPORT_POINTS = 2000
-UNKNOWN = answers(_404="There is no such session", _503="The database does not work")
+UNKNOWN = answers(UnknownSessionError, StoreError)
 
 router = APIRouter(prefix="/api", tags=["comparison"])
 

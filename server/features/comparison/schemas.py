@@ -20,10 +20,6 @@ Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 
 
-class NoSessionError(Exception):
-    """A session that is asked for does not exist; the text says so to a person."""
-
-
 class TimeRange(BaseModel):
     """From one moment to another, s on the common time axis, where the aligned moment is 0."""
 

@@ -27,6 +27,7 @@ from server.features.sessions.chunks import (
     ROWS_ENCODING,
     decode_pictures,
 )
+from server.platform.errors import InvalidError
 
 SESSION_BYTES_MAX = 32_000_000
 CHUNK_BYTES_MAX = 16_000_000
@@ -45,8 +46,8 @@ Count = Annotated[int, Field(ge=0, lt=1 << 62)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
-class ArchiveError(Exception):
-    """This is no archive that can be imported; the text says what is wrong with it."""
+class ArchiveError(InvalidError):
+    """It is no archive that can be imported"""
 
 
 class _Strict(BaseModel):

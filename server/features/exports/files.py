@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple, cast
 
 from robot_runtime import durable_files
+from server.platform.errors import InsufficientStorageError
 
 BUFFER_BYTES = 1 << 18
 
@@ -19,8 +20,8 @@ class Written(NamedTuple):
     sha256: str
 
 
-class FileWriteError(Exception):
-    """The file cannot be written; the text says why, and what to do."""
+class FileWriteError(InsufficientStorageError):
+    """The disk is full"""
 
 
 def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Request
+from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, StreamingResponse
 
@@ -18,12 +18,14 @@ from server.features.exports.tables import stream_tables
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import UNKNOWN as UNKNOWN_SESSION
 from server.features.sessions.dependencies import Identifier as SessionIdentifier
+from server.features.sessions.presence import UnknownSessionError
 from server.features.sessions.session import Session, find_row, from_row
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
-from server.platform.store import Store
+from server.platform.errors import ConflictError, NotFoundError
+from server.platform.store import Store, StoreError
 
 UNKNOWN = answers(_404="There is no such export")
 
@@ -49,19 +51,14 @@ async def get_exports(jobs: Provided[Jobs]) -> list[Job]:
     summary="Have a session made into a file",
     operation_id="startExport",
     openapi_extra=needs(Need.OPERATOR),
-    responses=answers(_404="There is no such session", _409="Refused now", _422="It cannot be made"),
+    responses=answers(UnknownSessionError, ConflictError, ExportRequestError),
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], wanted: NewExport) -> Job:
     """Files are made one after the other, apart from the server; GET tells how far it is."""
     row = await run_in_threadpool(find_row, store, wanted.session)
     if row is None:
-        raise HTTPException(
-            404, f"There is no session {wanted.session}; GET /api/sessions lists those there are."
-        )
-    try:
-        return jobs.add(row, wanted)
-    except ExportRequestError as problem:
-        raise HTTPException(422, str(problem)) from problem
+        raise NotFoundError(f"There is no session {wanted.session}; GET /api/sessions lists those there are.")
+    return jobs.add(row, wanted)
 
 
 @router.get(
@@ -109,7 +106,7 @@ async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     """A download that was cut goes on where it was: ask with Range, and with If-Range its ETag."""
     job = _find(jobs, export)
     if job.state != "done":
-        raise HTTPException(409, job.problem or "The file is not finished yet. Wait until its state is done.")
+        raise ConflictError(job.problem or "The file is not finished yet. Wait until its state is done.")
     return FileResponse(
         jobs.path(job),
         filename=job.file,
@@ -128,10 +125,10 @@ async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
         "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}},
     },
     responses=answers(
+        ArchiveError,
+        StoreError,
+        FileWriteError,
         _409="It is here already, another is being imported, or the robot is armed",
-        _422="It is no archive that can be imported",
-        _503="The database does not work",
-        _507="The disk is full",
     ),
 )
 async def import_session(
@@ -140,12 +137,7 @@ async def import_session(
     """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
     watch.require_disarmed("An upload takes time and disk from what is recorded.")
     length = request.headers.get("content-length")
-    try:
-        number = await imports.receive(request.stream(), int(length) if length else None)
-    except ArchiveError as problem:
-        raise HTTPException(422, str(problem)) from problem
-    except FileWriteError as problem:
-        raise HTTPException(507, str(problem)) from problem
+    number = await imports.receive(request.stream(), int(length) if length else None)
     row = await run_in_threadpool(find_row, store, number)
     assert row is not None
     return from_row(row)
@@ -154,7 +146,7 @@ async def import_session(
 def _find(jobs: Jobs, export: str) -> Job:
     found = jobs.find(export)
     if found is None:
-        raise HTTPException(404, f"There is no export {export}; GET /api/exports lists those there are.")
+        raise NotFoundError(f"There is no export {export}; GET /api/exports lists those there are.")
     return found
 
 

@@ -7,6 +7,7 @@ from math import inf
 from robot_runtime.contract.topics import TIME
 from server.features.exports.schemas import Wanted
 from server.features.sessions.recording import Recording
+from server.platform.errors import InvalidError
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
 
@@ -17,8 +18,8 @@ Tell = Callable[[float], None]
 """Called with the share that is done, from 0 to 1."""
 
 
-class ExportRequestError(Exception):
-    """The session cannot be exported like this; the text says why, and what to do."""
+class ExportRequestError(InvalidError):
+    """It cannot be made"""
 
 
 class Source(Recording):

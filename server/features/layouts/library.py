@@ -12,14 +12,15 @@ from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
+from server.platform.errors import NotFoundError
 from server.platform.models import LayoutRow
 from server.platform.store import Store
 
 LAYOUTS_MOST = 200
 
 
-class UnknownLayoutError(LookupError):
-    """There is no such layout."""
+class UnknownLayoutError(NotFoundError):
+    """There is no such layout"""
 
 
 class KeptLayout(BaseModel):

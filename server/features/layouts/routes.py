@@ -7,14 +7,15 @@ from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from server.features.layouts.document import LayoutDocument
-from server.features.layouts.library import KeptLayout, Layouts, WholeLayout
+from server.features.layouts.library import KeptLayout, Layouts, UnknownLayoutError, WholeLayout
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.store import StoreError
 
-STORING = answers(_503="The database does not work")
-UNKNOWN = answers(_404="There is no such layout")
+STORING = answers(StoreError)
+UNKNOWN = answers(UnknownLayoutError)
 
 router = APIRouter(prefix="/api/layouts", tags=["layouts"])
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import Depends, HTTPException
+from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from server.features.lease.arbiter import ControlArbiter
@@ -11,12 +11,13 @@ from server.http.dependencies import find_service
 from server.http.sign_in.authorization import refusal
 from server.http.sign_in.identity import IDENTITY, Identity
 from server.http.sign_in.policy import Need, need_of
+from server.platform.errors import ConflictError, ForbiddenError
 
 HEADER = "x-mucat-client"
 
 
 async def admit(connection: HTTPConnection) -> None:
-    """For every router: raises HTTPException with 401 or 403 where this operation may not be asked for, and
+    """For every router: raises ForbiddenError where this operation may not be asked for, and
     NotInControlError where it needs the control, and another client has it.
 
     The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
@@ -25,7 +26,7 @@ async def admit(connection: HTTPConnection) -> None:
     need = Need.VIEWER if socket else need_of(connection.scope["route"])
     reason = refusal(connection.scope.get(IDENTITY), need)
     if reason is not None:
-        raise HTTPException(403, reason)
+        raise ForbiddenError(reason)
     if need == Need.CONTROL:
         require_control(connection)
 
@@ -36,13 +37,12 @@ def require_control(connection: HTTPConnection) -> None:
 
 
 async def require_client(connection: HTTPConnection) -> ControlClient:
-    """The client that this request comes from; a program needs none before. Raises HTTPException (409)."""
+    """The client that this request comes from; a program needs none before. Raises ConflictError."""
     client, identity = _find_client(connection), connection.scope[IDENTITY]
     if client is None and HEADER not in connection.headers and identity.kind != "browser":
         client = find_service(connection, ControlArbiter).open_program(identity)
     if client is None:
-        raise HTTPException(
-            409,
+        raise ConflictError(
             "This request names no open page. A page has its key from `hello` while its live socket is open.",
         )
     return client

@@ -3,13 +3,17 @@
 from collections.abc import Callable
 from typing import Literal
 
+from server.platform.errors import ApiError
+
 Change = Literal["taken", "taken over", "released", "left"]
 Changed = Callable[[Change, int | None, int | None], None]
 """Called with the change, the client that has control now (None: nobody), and the one that had it before."""
 
 
-class NotInControlError(Exception):
-    """Only the client in control may do this; the text says which one is, and what to do."""
+class NotInControlError(ApiError):
+    """Control is with somebody else"""
+
+    status = 423
 
 
 class Lease:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, HTTPException
+from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.documents import State, Steering
@@ -14,6 +14,7 @@ from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.disk_space import check_room
+from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge
 
@@ -92,7 +93,7 @@ async def get_robot(watch: Provided[Watch]) -> object:
     """As the runtime sent it last; its `time` says when that was (s, steady clock)."""
     state = watch.state()
     if state is None:
-        raise HTTPException(503, "The robot's runtime has said nothing yet. Its state is in /api/health.")
+        raise UnavailableError("The robot's runtime has said nothing yet. Its state is in /api/health.")
     return state
 
 

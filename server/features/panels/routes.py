@@ -7,7 +7,13 @@ from fastapi import APIRouter, Path
 from fastapi.responses import HTMLResponse
 
 from server.features.panels import frame
-from server.features.panels.scripts import OwnPanel, OwnPanelScript, list_panels, read_panel
+from server.features.panels.scripts import (
+    OwnPanel,
+    OwnPanelScript,
+    UnknownPanelError,
+    list_panels,
+    read_panel,
+)
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -39,7 +45,7 @@ def get_frame() -> HTMLResponse:
     summary="A panel's script",
     operation_id="getPanel",
     openapi_extra=needs(Need.VIEWER),
-    responses=answers(_404="There is no such panel, or it cannot be read"),
+    responses=answers(UnknownPanelError),
 )
 def get_panel(settings: Provided[Settings], panel: Annotated[str, Path(max_length=60)]) -> OwnPanelScript:
     """As text, which the page hands to a frame."""

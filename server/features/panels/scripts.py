@@ -6,12 +6,14 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from server.platform.errors import NotFoundError
+
 SCRIPT_BYTES_MAX = 200_000
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]{0,39}")
 
 
-class UnknownPanelError(LookupError):
-    """There is no such panel."""
+class UnknownPanelError(NotFoundError):
+    """There is no such panel, or it cannot be read"""
 
 
 class OwnPanel(BaseModel):

@@ -2,12 +2,19 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path
+from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from server.features.parameters.changes import Changes
-from server.features.parameters.profiles import ProfileError, Profiles, file_name, read_file, write_file
+from server.features.parameters.profiles import (
+    ProfileError,
+    Profiles,
+    UnknownProfileError,
+    file_name,
+    read_file,
+    write_file,
+)
 from server.features.parameters.routes import ask_parameters
 from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Restored
 from server.http.dependencies import Provided
@@ -15,10 +22,11 @@ from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.store import StoreError
 from server.stream.bridge import Bridge
 
-UNKNOWN = answers(_404="There is no such profile")
-STORED = answers(_503="The database does not work")
+UNKNOWN = answers(UnknownProfileError)
+STORED = answers(StoreError)
 
 router = APIRouter(prefix="/api/profiles", tags=["parameters"])
 
@@ -54,16 +62,13 @@ async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], w
     summary="Take a profile from a file",
     operation_id="importProfile",
     openapi_extra=needs(Need.OPERATOR),
-    responses={**answers(_409="The name is taken", _422="The file is no profile of this version"), **SILENT},
+    responses={**answers(ProfileError, _409="The name is taken"), **SILENT},
 )
 async def import_profile(
     bridge: Provided[Bridge], profiles: Provided[Profiles], wanted: ProfileText
 ) -> Imported:
     """Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told."""
-    try:
-        found = read_file(wanted.text)
-    except ProfileError as problem:
-        raise HTTPException(422, str(problem)) from problem
+    found = read_file(wanted.text)
     listed = await ask_parameters(bridge)
     profile = await profiles.save(found.name, found.note, found.parameters)
     known = {one["name"] for one in listed["parameters"]}

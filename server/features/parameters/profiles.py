@@ -14,6 +14,7 @@ from sqlmodel import col, select
 from robot_runtime.errors import RefusedError
 from server import VERSION
 from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
+from server.platform.errors import InvalidError, NotFoundError
 from server.platform.models import ProfileRow
 from server.platform.store import Store
 
@@ -22,12 +23,12 @@ FORMAT = 1
 PROFILES_MAX = 500
 
 
-class UnknownProfileError(LookupError):
-    """There is no such profile."""
+class UnknownProfileError(NotFoundError):
+    """There is no such profile"""
 
 
-class ProfileError(ValueError):
-    """A file that is no profile; the text says why, for a person."""
+class ProfileError(InvalidError):
+    """The file is no profile of this version"""
 
 
 class ProfileFile(BaseModel):

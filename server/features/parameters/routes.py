@@ -12,6 +12,7 @@ from server.http.dependencies import Provided
 from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
+from server.platform.store import StoreError
 from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api/parameters", tags=["parameters"])
@@ -54,7 +55,7 @@ async def change_parameters(changes: Provided[Changes], caller: Caller, wanted: 
     summary="Who changed what",
     operation_id="listParameterChanges",
     openapi_extra=needs(Need.VIEWER),
-    responses=answers(_503="The database does not work"),
+    responses=answers(StoreError),
 )
 async def get_changes(changes: Provided[Changes]) -> list[Change]:
     """The newest hundred, the newest first."""

@@ -3,7 +3,7 @@
 import time
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Path, Request, Response
+from fastapi import APIRouter, Path, Request, Response
 
 from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
@@ -19,19 +19,21 @@ from server.features.people.schemas import (
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.access import Access
-from server.http.sign_in.devices import Device
+from server.http.sign_in.devices import Device, UnknownDeviceError
 from server.http.sign_in.identity import IDENTITY, Caller, Identity
 from server.http.sign_in.pairing_codes import CODE_SECONDS, TooManyTriesError, WrongCodeError
 from server.http.sign_in.policy import Need, list_needs, needs
+from server.platform.errors import ConflictError
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
+from server.platform.store import StoreError
 
 COOKIE_SECONDS = 400 * 86400
 """As long as browsers keep any. Access ends by signing out and by revocation; a Raspberry Pi without a
 battery has no clock that could tell when it is too old."""
 
-STORING = answers(_409="Refused now", _503="The database does not work")
-UNKNOWN = answers(_404="There is no such device")
+STORING = answers(ConflictError, StoreError)
+UNKNOWN = answers(UnknownDeviceError)
 
 router = APIRouter(prefix="/api/access", tags=["access"])
 
@@ -49,8 +51,7 @@ async def get_me(request: Request, settings: Provided[Settings], access: Provide
     summary="Sign this browser in with a code",
     operation_id="pairBrowser",
     openapi_extra=needs(Need.NOTHING),
-    responses=answers(_403="The code is not valid", _429="Too many wrong codes; Retry-After says how long")
-    | STORING,
+    responses=answers(WrongCodeError, TooManyTriesError) | STORING,
 )
 async def pair(
     request: Request,
@@ -60,12 +61,7 @@ async def pair(
     wanted: Pairing,
 ) -> Me:
     """Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more."""
-    try:
-        identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
-    except WrongCodeError as problem:
-        raise HTTPException(403, str(problem)) from problem
-    except TooManyTriesError as problem:
-        raise HTTPException(429, str(problem), {"retry-after": str(problem.seconds)}) from problem
+    identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
     if secret is not None:
         response.set_cookie(
             access.cookie,

@@ -1,6 +1,6 @@
 """Scenarios: those there are, checking, running, cancelling."""
 
-from fastapi import APIRouter, HTTPException, Request
+from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
@@ -47,10 +47,7 @@ def get_scenarios(settings: Provided[Settings]) -> list[ScenarioText]:
 async def keep(settings: Provided[Settings], document: ScenarioDocument) -> ScenarioSummary:
     """Write it into the data folder under its own name, over one of that name."""
     folder = settings.data.scenarios
-    try:
-        return summarize(await run_in_threadpool(keep_scenario, folder, document.text))
-    except ScenarioError as problem:
-        raise HTTPException(422, "\n".join(problem.problems)) from problem
+    return summarize(await run_in_threadpool(keep_scenario, folder, document.text))
 
 
 @router.post(
@@ -87,10 +84,7 @@ async def start(
     """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
     if wanted.place == "live":
         require_control(request)
-    try:
-        run = scenarios.start(wanted.text, wanted.place, wanted.board)
-    except ScenarioError as problem:
-        raise HTTPException(422, "\n".join(problem.problems)) from problem
+    run = scenarios.start(wanted.text, wanted.place, wanted.board)
     return ScenarioStarted(run=run)
 
 

@@ -11,12 +11,13 @@ from robot_runtime.clock import Clock
 from server.features.sessions.presence import SessionStateError, require
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import Mark
+from server.platform.errors import NotFoundError
 from server.platform.models import Marker, SessionRow
 from server.platform.store import Store
 
 
-class UnknownBookmarkError(LookupError):
-    """The session has no such mark."""
+class UnknownBookmarkError(NotFoundError):
+    """The session has no such mark"""
 
 
 class Markers:

@@ -5,14 +5,16 @@ from typing import Annotated
 from fastapi import Depends, Path
 
 from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.presence import UnknownSessionError
 from server.features.sessions.recording import Recording
 from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.platform.errors import ConflictError
 from server.platform.models import IDENTIFIER_MAX
-from server.platform.store import Store
+from server.platform.store import Store, StoreError
 
-UNKNOWN = answers(_404="There is no such session")
-STORING = answers(_409="Refused now", _503="The database does not work")
+UNKNOWN = answers(UnknownSessionError)
+STORING = answers(ConflictError, StoreError)
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 

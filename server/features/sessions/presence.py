@@ -4,18 +4,19 @@ from sqlalchemy import Connection
 from sqlmodel import col, select
 
 from server.features.sessions.session import HIDDEN
+from server.platform.errors import ConflictError, NotFoundError
 from server.platform.models import SessionRow
 
 
-class UnknownSessionError(LookupError):
-    """There is no session of this number."""
+class UnknownSessionError(NotFoundError):
+    """There is no such session"""
 
     def __init__(self, session: int) -> None:
         super().__init__(f"There is no session {session}; the list of sessions has those that there are.")
 
 
-class SessionStateError(Exception):
-    """What is asked cannot be done with this session as it is; the text says why."""
+class SessionStateError(ConflictError):
+    """Refused now"""
 
 
 def require(connection: Connection, session: int) -> str:

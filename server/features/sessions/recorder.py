@@ -26,6 +26,7 @@ from robot_runtime.contract.topics import BY_NAME, NUMBERS, RECORDED, Block, Top
 from server.features.sessions.chunks import encode
 from server.features.sessions.resume import Left, Missing, find_left
 from server.features.sessions.session import Session, from_row
+from server.platform.errors import ConflictError
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
 from server.platform.store import Store, StoreError
@@ -43,8 +44,8 @@ BACKLOG_BYTES = 8_000_000
 _PARAMETERS = BY_NAME["parameters"]
 
 
-class RecordingRefusedError(Exception):
-    """A session cannot be started or stopped now; the text says why."""
+class RecordingRefusedError(ConflictError):
+    """Refused now"""
 
 
 @dataclass(slots=True)

@@ -19,6 +19,7 @@ from server.features.sessions.chunks import (
     decode_rows,
     row_layout,
 )
+from server.platform.errors import ApiError
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
 
@@ -32,8 +33,13 @@ CHUNKS_AT_ONCE = 32
 DATA_AT_ONCE = 512
 
 
-class RecordingError(Exception):
-    """A recording that cannot be read; the text says what is wrong."""
+class RecordingError(ApiError):
+    """The recording cannot be read whole"""
+
+    @property
+    def detail(self) -> str:
+        """Says that other sessions are not affected."""
+        return f"This recording cannot be read whole: {self}. Other sessions are not affected."
 
 
 class Recording:

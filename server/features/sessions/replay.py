@@ -26,6 +26,7 @@ from server.features.sessions.chunks import (
 )
 from server.features.sessions.recording import Recording
 from server.features.sessions.upgrade import NoCounterpartError, rewrite_document, rewrite_rows
+from server.platform.errors import InvalidError
 from server.platform.models import Chunk
 
 RANGE_MAX = 120.0
@@ -47,8 +48,8 @@ COUNT_MAX = 65_535
 log = logging.getLogger(__name__)
 
 
-class TooMuchDataError(Exception):
-    """More was asked for than one answer holds; the text says how much may be."""
+class TooMuchDataError(InvalidError):
+    """More was asked for than one answer holds"""
 
 
 @dataclass(slots=True)

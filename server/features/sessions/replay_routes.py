@@ -2,13 +2,14 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query
+from fastapi import APIRouter, Query
 from fastapi.responses import Response
 
 from server.features.sessions.dependencies import UNKNOWN, OpenRecording
-from server.features.sessions.replay import HISTORY_MAX, TooMuchDataError, read_stretch
+from server.features.sessions.replay import HISTORY_MAX, read_stretch
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.http.sign_in.policy import Need, needs
+from server.platform.errors import InvalidError
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
@@ -55,11 +56,8 @@ def get_blocks(
     that are damaged or cannot be said in this version's definitions.
     """
     if end < start:
-        raise HTTPException(422, f"The end, {end:g} s, lies before the start, {start:g} s.")
+        raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
     zero = recording.row.started_steady
-    try:
-        stretch = read_stretch(recording, zero + start, zero + end, history)
-    except TooMuchDataError as problem:
-        raise HTTPException(422, str(problem)) from problem
+    stretch = read_stretch(recording, zero + start, zero + end, history)
     headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
     return Response(stretch.data, media_type="application/octet-stream", headers=headers)

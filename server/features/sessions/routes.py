@@ -3,7 +3,7 @@
 import json
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query
+from fastapi import APIRouter, Query
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel, ConfigDict
 from starlette.responses import Response
@@ -25,6 +25,7 @@ from server.features.sessions.session import (
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.sign_in.policy import Need, needs
+from server.platform.errors import NotFoundError
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge
 
@@ -179,4 +180,4 @@ def get_thumbnail(
     """The first from this time on."""
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
-    raise HTTPException(404, f"Session {recording.row.id} has no picture from {time:g} s on.")
+    raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")

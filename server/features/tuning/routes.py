@@ -7,6 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.lab import TuningLab
+from server.features.tuning.runs import UnknownTuningRunError
 from server.features.tuning.schemas import (
     LoopName,
     Start,
@@ -19,9 +20,11 @@ from server.features.tuning.schemas import (
 from server.http.dependencies import Provided
 from server.http.problems import COMMAND, answers
 from server.http.sign_in.policy import Need, needs
+from server.platform.errors import ConflictError
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.store import StoreError
 
-UNKNOWN = answers(_404="There is no such run", _409="Refused now", _503="The database does not work")
+UNKNOWN = answers(UnknownTuningRunError, ConflictError, StoreError)
 
 router = APIRouter(prefix="/api/tuning", tags=["tuning"])
 

@@ -23,14 +23,15 @@ from server.features.tuning.schemas import (
     TuningRun,
     TuningRunDetail,
 )
+from server.platform.errors import NotFoundError
 from server.platform.models import TuningRunRow
 from server.platform.store import Store
 
 LISTED_MOST = 500
 
 
-class UnknownTuningRunError(LookupError):
-    """There is no such run."""
+class UnknownTuningRunError(NotFoundError):
+    """There is no such run"""
 
 
 class Runs:

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from fastapi import APIRouter, HTTPException
+from fastapi import APIRouter
 from fastapi.responses import PlainTextResponse
 
-from robot_runtime.contract.limits import ConfigError
 from server.features.parameters.changes import Changes
 from server.features.vision.schemas import (
     PickedColour,
@@ -49,10 +48,7 @@ async def get_vision(bridge: Provided[Bridge]) -> VisionInForce:
 async def put_settings(changes: Provided[Changes], caller: Caller, settings: VisionSettings) -> None:
     """All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that."""
     table = settings.model_dump(mode="json")
-    try:
-        check(table)
-    except ConfigError as problem:
-        raise HTTPException(422, "; ".join(problem.problems)) from problem
+    check(table)
     await changes.command(caller.name, "vision_settings", table)
 
 
@@ -95,8 +91,5 @@ async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
 )
 def read(document: VisionText) -> VisionSettings:
     """What its table [vision] says. It changes nothing."""
-    try:
-        table: dict[str, Any] = read_document(document.text)
-    except ConfigError as problem:
-        raise HTTPException(422, "; ".join(problem.problems)) from problem
+    table: dict[str, Any] = read_document(document.text)
     return as_model(table)

@@ -12,6 +12,7 @@ from sqlmodel import col, select
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.identity import Identity, Kind, Role
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
+from server.platform.errors import NotFoundError
 from server.platform.models import DeviceRow
 from server.platform.store import Store, StoreError
 
@@ -22,8 +23,8 @@ SEEN_SECONDS = 3600.0
 """How old the moment of the last visit may be in the database, which should not wear out its card."""
 
 
-class UnknownDeviceError(Exception):
-    """There is no such browser or program; the text names it."""
+class UnknownDeviceError(NotFoundError):
+    """There is no such device"""
 
     def __init__(self, device: int) -> None:
         super().__init__(f"There is no device {device}; GET /api/access/devices lists those there are.")

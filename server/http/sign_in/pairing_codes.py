@@ -4,6 +4,7 @@ Both live in memory: what nobody used before the server ended is void.
 """
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hmac import compare_digest
 from math import ceil
@@ -11,6 +12,7 @@ from math import ceil
 from robot_runtime.clock import Clock
 from server.http.sign_in.identity import Role
 from server.http.sign_in.tokens import digest, make_code, normal_code
+from server.platform.errors import ApiError, ForbiddenError
 
 CODE_SECONDS = 600.0
 CODES_MAX = 20
@@ -20,8 +22,8 @@ LIMITS = ((3, 60.0), (10, 3600.0))
 nothing."""
 
 
-class WrongCodeError(Exception):
-    """This code opens nothing."""
+class WrongCodeError(ForbiddenError):
+    """The code is not valid"""
 
     def __init__(self) -> None:
         super().__init__(
@@ -30,12 +32,19 @@ class WrongCodeError(Exception):
         )
 
 
-class TooManyTriesError(Exception):
-    """Codes are not looked at now; `seconds` until they are again."""
+class TooManyTriesError(ApiError):
+    """Too many wrong codes; Retry-After says how long"""
+
+    status = 429
 
     def __init__(self, seconds: float) -> None:
         self.seconds = ceil(seconds)
         super().__init__(f"Too many wrong codes have been tried. Try again in {_in_words(self.seconds)}.")
+
+    @property
+    def headers(self) -> Mapping[str, str]:
+        """When to try again, s."""
+        return {"retry-after": str(self.seconds)}
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ import asyncio
 from pathlib import Path
 
 import pytest
-from fastapi import APIRouter, Depends, FastAPI, HTTPException
+from fastapi import APIRouter, Depends, FastAPI
 from fastapi.routing import iter_route_contexts
 from starlette.requests import HTTPConnection
 
@@ -13,6 +13,7 @@ from server.features.lease.admission import admit
 from server.http.sign_in.gate import OPEN
 from server.http.sign_in.identity import IDENTITY, SHELL
 from server.http.sign_in.policy import Need, list_needs, needs
+from server.platform.errors import ForbiddenError
 from server.platform.settings import DataFolder, Settings
 
 
@@ -55,6 +56,5 @@ def test_an_operation_without_a_need_is_refused_even_to_the_shell() -> None:
         asyncio.run(admit(HTTPConnection(scope)))
 
     ask("/declared")
-    with pytest.raises(HTTPException, match="does not declare") as refused:
+    with pytest.raises(ForbiddenError, match="does not declare"):
         ask("/undeclared")
-    assert refused.value.status_code == 403

@@ -1,0 +1,52 @@
+"""Errors as answers: each with its HTTP status, and its text as `detail`."""
+
+from collections.abc import Mapping
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.errors import RefusedError
+from robot_runtime.experiments.comm_test.document import DocumentError
+from server.platform.errors import ApiError
+
+
+def add_error_handlers(app: FastAPI) -> None:
+    """Let the application answer the server's errors, the runtime's, and requests that are not valid."""
+    app.add_exception_handler(ApiError, _answer_api_error)
+    app.add_exception_handler(RefusedError, _answer_refusal)
+    app.add_exception_handler(ConfigError, _answer_document_error)
+    app.add_exception_handler(DocumentError, _answer_document_error)
+    app.add_exception_handler(RequestValidationError, _answer_invalid_request)
+    app.add_exception_handler(400, _answer_unreadable_body)
+
+
+async def _answer_api_error(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, ApiError)
+    return _answer(problem.answer_status, problem.detail, problem.headers)
+
+
+async def _answer_refusal(_: Request, problem: Exception) -> JSONResponse:
+    return _answer(409, str(problem))
+
+
+async def _answer_document_error(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, ConfigError | DocumentError)
+    return _answer(422, "\n".join(problem.problems))
+
+
+async def _answer_invalid_request(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, RequestValidationError)
+    words = "; ".join(
+        f"{'.'.join(str(place) for place in error['loc'])}: {error['msg']}" for error in problem.errors()[:5]
+    )
+    return _answer(422, f"The request is not valid. {words}")
+
+
+async def _answer_unreadable_body(_: Request, __: Exception) -> JSONResponse:
+    return _answer(422, "The request is not valid. Its body is not JSON in UTF-8.")
+
+
+def _answer(status: int, detail: str, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    return JSONResponse({"detail": detail}, status, headers)
