@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
 from typing import Any
 
+from robot_runtime.control.alarms import Alarms
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.contract.topics import Block
 from robot_runtime.errors import RefusedError
@@ -35,7 +36,7 @@ from server.features.sessions.retention import Tidying
 from server.features.sessions.session import new_row
 from server.features.tuning.lab import TuningLab
 from server.features.tuning.runs import Runs as TuningRuns
-from server.health.alarms import Alarms
+from server.health.faults import FAULTS
 from server.health.monitor import Watch
 from server.health.watchdog import DOWN, Inspection
 from server.http.page import Page
@@ -82,7 +83,7 @@ class Assembly:
         self.markers = Markers(self.store, self.clock, self.recorder)
         self.tidying = Tidying(self.store, settings, self.notices, self.clock)
         self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
-        self.alarms = Alarms(self.clock, self.notices.tell, self._tell_alarms)
+        self.alarms = Alarms(self.clock, FAULTS, self.notices.tell_event, changed=self._tell_alarms)
         self.parts = Parts(commands, settings.data, self.clock, self._see_down)
         self.watch = Watch(settings, self.clock, self.store, self.parts)
         self.inspection = Inspection(settings, self.clock, self.watch, self.parts, self.store, self.alarms)
@@ -234,7 +235,7 @@ class Assembly:
         self.hub.tell(message)
 
     def _tell_alarms(self) -> None:
-        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.all]})
+        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.listed()]})
 
     def _see_down(self, part: str, text: str) -> None:
         self.alarms.begin(DOWN[part], text)

@@ -1,54 +1,75 @@
-"""The alarm list: active faults, and past ones that are not acknowledged yet."""
+"""The alarm list: active faults, and past ones that are not acknowledged yet.
+
+The runtime has one for the robot (`robot_runtime.control.faults`), the server one for the processes around it
+(`server.health.faults`).
+"""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Alarm, Event
-from robot_runtime.control.faults import BY_NAME
+from robot_runtime.contract.documents import Alarm, Event, Severity
 
 CLEAR_AFTER = 1.0
-"""s without the fault after which an alarm ends, so that a flickering fault is one alarm."""
+"""s without a fault of the robot after which its alarm ends, so that a flickering fault is one alarm."""
+OVER = "alarm_over"
+"""The kind of the event at the end of an alarm; at its beginning it is the fault's name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultText:
+    """The words of one fault, in sentences; `what` is "" where each time has its own."""
+
+    severity: Severity
+    what: str
+    cause: str
+    remedy: str
 
 
 class Alarms:
-    """The alarms; each start and end is published as an event. Not thread-safe."""
+    """The alarms; each start and end is published as an event, and `changed` is called. Not thread-safe.
 
-    def __init__(self, clock: Clock, on_event: Callable[[Event], None]) -> None:
+    A fault must be absent for `clear_after` s before its alarm is over.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        faults: Mapping[str, FaultText],
+        on_event: Callable[[Event], None],
+        *,
+        clear_after: float = 0.0,
+        changed: Callable[[], None] = lambda: None,
+    ) -> None:
         self._clock = clock
+        self._faults = faults
         self._on_event = on_event
+        self._clear_after = clear_after
+        self._changed = changed
         self._alarms: dict[str, Alarm] = {}
         self._last: dict[str, float] = {}
 
     def update(self, wrong: Mapping[str, str]) -> None:
         """Sets the active faults: name and detail of each."""
-        now = self._clock.now()
-        for name, detail in wrong.items():
+        for name in dict.fromkeys([*wrong, *self._alarms]):
+            self.see(name, name in wrong, wrong.get(name, ""))
+
+    def see(self, name: str, wrong: bool, detail: str = "") -> None:
+        """Sets if this fault is active now."""
+        now, alarm = self._clock.now(), self._alarms.get(name)
+        active = alarm is not None and alarm.active
+        if wrong:
             self._last[name] = now
-            known = self._alarms.get(name)
-            if known is None or not known.active:
-                self._begin(name, detail, active=True)
-        for name, alarm in list(self._alarms.items()):
-            if alarm.active and name not in wrong and now - self._last[name] >= CLEAR_AFTER:
-                self._end(name, alarm)
+            if not active:
+                self.begin(name, detail)
+        elif alarm is not None and active and now - self._last[name] >= self._clear_after:
+            self._end(alarm)
 
-    def note(self, name: str, detail: str = "") -> None:
-        """Adds a fault that is over already."""
-        self._begin(name, detail, active=False)
-
-    def acknowledge(self) -> None:
-        """Acknowledges all alarms; those that are over are removed."""
-        self._alarms = {
-            name: replace(alarm, acknowledged=True) for name, alarm in self._alarms.items() if alarm.active
-        }
-
-    def listed(self) -> list[Alarm]:
-        """Returns all alarms, the newest last."""
-        return sorted(self._alarms.values(), key=lambda alarm: alarm.since)
-
-    def _begin(self, name: str, detail: str, *, active: bool) -> None:
-        fault, now = BY_NAME[name], self._clock.now()
+    def begin(self, name: str, detail: str = "", *, active: bool = True) -> None:
+        """Adds a fault. It lasts until `see` finds it gone; if not `active`, it is over already."""
+        fault, now = self._faults[name], self._clock.now()
         what = f"{fault.what} {detail}".strip()
+        self._last[name] = now
         self._alarms[name] = Alarm(
             fault=name,
             severity=fault.severity,
@@ -59,17 +80,26 @@ class Alarms:
             cause=fault.cause,
             remedy=fault.remedy,
         )
-        self._on_event(
-            Event(
-                time=now, kind="alarm", severity=fault.severity, text=f"{what} {fault.cause} {fault.remedy}"
-            )
-        )
+        text = f"{what} {fault.cause} {fault.remedy}"
+        self._on_event(Event(time=now, kind=name, severity=fault.severity, text=text))
+        self._changed()
 
-    def _end(self, name: str, alarm: Alarm) -> None:
+    def acknowledge(self) -> None:
+        """Acknowledges all alarms; those that are over are removed."""
+        self._alarms = {
+            name: replace(alarm, acknowledged=True) for name, alarm in self._alarms.items() if alarm.active
+        }
+        self._changed()
+
+    def listed(self) -> list[Alarm]:
+        """Returns all alarms, the newest last."""
+        return sorted(self._alarms.values(), key=lambda alarm: alarm.since)
+
+    def _end(self, alarm: Alarm) -> None:
         if alarm.acknowledged:
-            del self._alarms[name]
+            del self._alarms[alarm.fault]
         else:
-            self._alarms[name] = replace(alarm, active=False)
-        self._on_event(
-            Event(time=self._clock.now(), kind="alarm", severity="info", text=f"It is over: {alarm.what}")
-        )
+            self._alarms[alarm.fault] = replace(alarm, active=False)
+        text = f"It is over: {alarm.what}"
+        self._on_event(Event(time=self._clock.now(), kind=OVER, severity="info", text=text))
+        self._changed()

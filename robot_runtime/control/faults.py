@@ -6,7 +6,8 @@ What the chip does by itself, and how each is tested, is in docs/reference/safet
 from dataclasses import dataclass
 from typing import Literal
 
-from robot_runtime.contract.documents import Mode, Severity
+from robot_runtime.contract.documents import Mode
+from robot_runtime.control.alarms import FaultText
 
 LOOK = 0.1
 """s between two checks at most."""
@@ -15,20 +16,16 @@ Action = Literal["all-stop", "neutral", "drop set points", "alarm only"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FaultRule:
+class FaultRule(FaultText):
     """One row of the table; `limit` is the s within which it is noticed, on a line of full speed."""
 
     name: str
-    severity: Severity
     limit: float
     action: Action
     steered_by: bool = False
     """True if only depth control needs it: in manual and in the fin check it raises an alarm only."""
     always: bool = False
     """True if it is checked while the robot is disarmed, too."""
-    what: str
-    cause: str
-    remedy: str
 
     def stops(self, mode: Mode) -> bool:
         """True if the robot is stopped for it in this mode."""

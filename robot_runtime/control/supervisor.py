@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Mode, Severity
 from robot_runtime.contract.packets import Hello, Start, Status, StatusFlag, Stop
-from robot_runtime.control.alarms import Alarms
+from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
 from robot_runtime.control.fault_detector import BoardLink, FaultDetector
 from robot_runtime.control.faults import BY_NAME
 from robot_runtime.control.fin_check import FinCheck
@@ -81,7 +81,7 @@ class Supervisor:
         self._loop = loop
         self._heartbeat = heartbeat
         self._on_mode = on_mode
-        self._alarms = Alarms(clock, on_event)
+        self._alarms = Alarms(clock, BY_NAME, on_event, clear_after=CLEAR_AFTER)
         self._arming: Arming | None = None
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
         # Reentrant: telling an event may come back here to read the state.
@@ -219,7 +219,7 @@ class Supervisor:
             failed = self.fin_check.failed()
             if failed:
                 moved = "; ".join(f"{fin} {how}" for fin, how in failed.items())
-                self._alarms.note("fin_failing", f"({moved})")
+                self._alarms.begin("fin_failing", f"({moved})", active=False)
             words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _FINS_WELL
             self._leave("checked", "caution" if failed else "info", words, kind="fin_check")
         self._line.send(Stop())
@@ -267,7 +267,7 @@ class Supervisor:
 
     def _fail(self, name: str) -> None:
         """Adds an alarm for a fault that is over already, and stops the robot."""
-        self._alarms.note(name)
+        self._alarms.begin(name, active=False)
         self._all_stop()
 
     def _all_stop(self) -> None:

@@ -4,7 +4,7 @@ import asyncio
 import shutil
 
 from robot_runtime.clock import Clock
-from server.health.alarms import Alarms
+from robot_runtime.control.alarms import Alarms
 from server.health.monitor import Watch
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -66,7 +66,7 @@ class Inspection:
         disk = shutil.disk_usage(self._settings.data.path)
         see("disk_low", disk.free < min(DISK_LOW_BYTES, DISK_LOW_SHARE * disk.total))
         see("store_failing", self._store.failing is not None)
-        see("server_restarted", wrong=False)
+        see("server_restarted", False)
 
     def _is_silent(self, name: str) -> bool:
         part, heard = self._parts.get(name), self._watch.heard[name]

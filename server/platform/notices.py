@@ -21,7 +21,10 @@ class Notices:
 
     def tell(self, kind: str, severity: documents.Severity, text: str) -> None:
         """Say something in words for a person; `kind` is one word for programs."""
-        event = documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text)
+        self.tell_event(documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
+
+    def tell_event(self, event: documents.Event) -> None:
+        """Say what an event says."""
         block = Block.of(BY_NAME["notice"], 1, self._told, pack_documents([event]))
         self._told += 1
         self._deliver(block)

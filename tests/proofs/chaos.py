@@ -293,9 +293,7 @@ class Storm:
                 if topic == "control":
                     ticks += row_times(topic, data)
                 elif topic == "notice":
-                    report.alarms.update(
-                        one["kind"] for one in decode_documents(data) if not one["text"].startswith("Over")
-                    )
+                    report.alarms.update(one["kind"] for one in decode_documents(data))
         late = [1000 * abs(after - before - 0.1) for before, after in pairwise(ticks)]
         cuts = quantiles(late, n=1000)
         report.jitter = {"p50": round(cuts[499], 2), "p99": round(cuts[989], 2), "max": round(max(late), 1)}

@@ -62,9 +62,8 @@ class Swim(Flight):
 
     def told(self, fault: str, since: float) -> float | None:
         """When this fault's alarm was told, s; None where it was not since then."""
-        words = BY_NAME[fault].what
         for event in self.events:
-            if event.kind == "alarm" and event.time >= since and event.text.startswith(words):
+            if event.kind == fault and event.time >= since:
                 time: float = event.time
                 return time
         return None

@@ -72,7 +72,7 @@ def test_a_simulator_that_is_lost_is_noticed_and_the_robot_stops(
     assert told["back"] == "failsafe"
     events = table(archive, "event")
     lost = next(event for event in events if "The simulator has been silent for 0.5 s" in event["text"])
-    assert (lost["kind"], lost["severity"]) == ("alarm", "alarm")
+    assert (lost["kind"], lost["severity"]) == ("simulator_silent", "alarm")
     armed = next(float(event["time [s]"]) for event in events if event["kind"] == "armed")
     disarmed = next(float(event["time [s]"]) for event in events if event["kind"] == "disarmed")
     times = [float(line["time [s]"]) for line in table(archive, "depth")]

@@ -6,8 +6,8 @@ from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.documents import State, Steering
+from robot_runtime.control.alarms import Alarms
 from server.features.parameters.changes import Changes
-from server.health.alarms import Alarms
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.problems import COMMAND, SILENT, answers

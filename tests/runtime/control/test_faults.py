@@ -156,7 +156,7 @@ def test_by_hand_only_what_the_controller_steers_by_goes_on() -> None:
 
 @pytest.fixture
 def alarms(rig: Rig) -> Alarms:
-    return Alarms(rig.clock, rig.events.append)
+    return Alarms(rig.clock, BY_NAME, rig.events.append, clear_after=CLEAR_AFTER)
 
 
 def test_what_flickers_is_one_alarm_with_one_beginning_and_one_end(rig: Rig, alarms: Alarms) -> None:
@@ -168,7 +168,8 @@ def test_what_flickers_is_one_alarm_with_one_beginning_and_one_end(rig: Rig, ala
     assert (alarm.since, alarm.active, alarm.acknowledged) == (began, True, False)
     rig.clock.forward(CLEAR_AFTER)
     alarms.update({})
-    assert [(event.kind, event.severity) for event in rig.events] == [("alarm", "caution"), ("alarm", "info")]
+    told = [(event.kind, event.severity) for event in rig.events]
+    assert told == [("fin_failing", "caution"), ("alarm_over", "info")]
     assert not alarms.listed()[0].active
 
 
@@ -179,14 +180,14 @@ def test_an_alarm_goes_once_it_is_over_and_acknowledged_in_either_order(rig: Rig
     rig.clock.forward(CLEAR_AFTER)
     alarms.update({})
     assert alarms.listed() == []
-    alarms.note("board_restarted")
+    alarms.begin("board_restarted", active=False)
     assert [alarm.active for alarm in alarms.listed()] == [False]
     alarms.acknowledge()
     assert alarms.listed() == []
 
 
 def test_one_that_comes_again_wants_to_be_acknowledged_again(rig: Rig, alarms: Alarms) -> None:
-    alarms.note("capsized")
+    alarms.begin("capsized", active=False)
     rig.clock.forward(5.0)
     alarms.update({"capsized": ""})
     (alarm,) = alarms.listed()

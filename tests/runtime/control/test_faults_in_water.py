@@ -60,7 +60,7 @@ def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
     assert took > 0.05 or name == "control_failed"
     flight.run(1.0)
     assert any(alarm.fault == name for alarm in flight.supervisor.alarms)
-    words = [event.text for event in flight.events if event.kind == "alarm"]
+    words = [event.text for event in flight.events if event.kind == name]
     assert any(text.startswith(BY_NAME[name].what) for text in words)
     assert not any(time > flight.now - 0.9 for time, _ in flight.sent)
     with pytest.raises(RefusedError, match="Acknowledge the alarms"):

@@ -247,7 +247,7 @@ def test_a_lost_connection_disarms_with_an_alarm(rig: Rig) -> None:
     rig.supervisor.tick()
     assert not rig.supervisor.armed
     assert [(event.severity, event.kind) for event in rig.events[1:]] == [
-        ("alarm", "alarm"),
+        ("alarm", "board_silent"),
         ("alarm", "disarmed"),
     ]
     assert "the port went away" in rig.events[-2].text

@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
-from robot_runtime.contract.documents import Alarm
-from server.health.alarms import FAULTS, Alarms
+from robot_runtime.contract.documents import Alarm, Event
+from robot_runtime.control.alarms import Alarms
+from server.health.faults import FAULTS
 from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Inspection
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -18,8 +19,8 @@ class Room(Bench):
 
     def __init__(self, settings: Settings, store: Store) -> None:
         super().__init__(settings, store, *DOWN)
-        self.told: list[tuple[str, str, str]] = []
-        self.alarms = Alarms(self.clock, lambda *words: self.told.append(words), lambda: None)
+        self.told: list[Event] = []
+        self.alarms = Alarms(self.clock, FAULTS, self.told.append)
         self.inspection = Inspection(
             settings,
             self.clock,
@@ -39,10 +40,10 @@ class Room(Bench):
             self.inspection.look()
 
     def find(self, fault: str) -> Alarm | None:
-        return next((alarm for alarm in self.alarms.all if alarm.fault == fault), None)
+        return next((alarm for alarm in self.alarms.listed() if alarm.fault == fault), None)
 
     def active(self) -> set[str]:
-        return {alarm.fault for alarm in self.alarms.all if alarm.active}
+        return {alarm.fault for alarm in self.alarms.listed() if alarm.active}
 
 
 @pytest.fixture
@@ -55,7 +56,7 @@ def room(settings: Settings, store: Store) -> Room:
 
 def test_all_is_well(room: Room) -> None:
     room.spend(5.0, all=room.hear)
-    assert (room.alarms.all, room.told) == ([], [])
+    assert (room.alarms.listed(), room.told) == ([], [])
 
 
 def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(room: Room) -> None:
@@ -69,12 +70,14 @@ def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(room: Room) -> N
     alarm = room.find("runtime_silent")
     assert alarm is not None
     assert (alarm.active, alarm.acknowledged) == (False, False)
-    assert [(kind, severity) for kind, severity, _ in room.told] == [
+    assert [(event.kind, event.severity) for event in room.told] == [
         ("runtime_silent", "alarm"),
         ("simulator_silent", "caution"),
+        ("alarm_over", "info"),
+        ("alarm_over", "info"),
     ]
     room.alarms.acknowledge()
-    assert room.alarms.all == []
+    assert room.alarms.listed() == []
 
 
 def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(room: Room) -> None:
@@ -84,7 +87,7 @@ def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(room: Room)
     assert alarm is not None
     assert (alarm.active, alarm.acknowledged) == (True, True)
     room.spend(PERIOD, all=room.hear)
-    assert room.alarms.all == []
+    assert room.alarms.listed() == []
     room.spend(3.0)
     alarm = room.find("runtime_silent")
     assert alarm is not None
@@ -156,7 +159,7 @@ def test_a_part_that_is_paused_is_not_wrong(room: Room) -> None:
     for part in room.parts.values():
         part._set("paused")
     room.spend(20.0)
-    assert room.alarms.all == []
+    assert room.alarms.listed() == []
 
 
 def test_a_disk_that_fills_up(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,45 @@
+"""Every fault of the processes around the robot that the server looks for."""
+
+from robot_runtime.control.alarms import FaultText
+
+_PART = "It crashed, was killed, or the computer ran out of memory."
+_LOGS = "It is started again by itself. Where that goes on, the System page and its log say more."
+FAULTS: dict[str, FaultText] = {
+    "runtime_silent": FaultText(
+        severity="alarm",
+        what="The robot's runtime says nothing.",
+        cause="It hangs, or the computer is overloaded.",
+        remedy="The board stops the fins by itself after 1 s. After 10 s the runtime is ended and "
+        "started again, disarmed; nothing is to be done.",
+    ),
+    "runtime_down": FaultText(severity="alarm", what="", cause=_PART, remedy=_LOGS),
+    "board_down": FaultText(severity="alarm", what="", cause=_PART, remedy=_LOGS),
+    "simulator_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),
+    "scene_down": FaultText(severity="caution", what="", cause=_PART, remedy=_LOGS),
+    "simulator_silent": FaultText(
+        severity="caution",
+        what="The simulated water stands still.",
+        cause="The simulator hangs, or the computer is overloaded.",
+        remedy="End the simulator, which is then started again.",
+    ),
+    "server_restarted": FaultText(
+        severity="caution",
+        what="",
+        cause=_PART,
+        remedy="A robot that was armed is stopped where the server is away for more than 4 s. "
+        "Nothing is to be done; where it happens again, look into the words that it prints.",
+    ),
+    "disk_low": FaultText(
+        severity="caution",
+        what="The disk is almost full.",
+        cause="Recordings or exports have filled it.",
+        remedy="Remove sessions or exports, or have old ones removed by themselves (keep_free in "
+        "robot.toml).",
+    ),
+    "store_failing": FaultText(
+        severity="alarm",
+        what="Nothing can be stored.",
+        cause="The disk is full, broken or read-only.",
+        remedy="Free some space, or check the disk. Up to 8 MB of a recording wait meanwhile.",
+    ),
+}
