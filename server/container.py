@@ -7,9 +7,9 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import asdict
 from typing import Any
 
-from robot_runtime.control.alarms import Alarms
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.contract.topics import Block
+from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from server.features.backup.download import Downloads
 from server.features.comm_tests.board_reservation import Board, Handover
