@@ -4,13 +4,14 @@ The copy has no name any more when its first byte is sent, so that it is gone ho
 """
 
 import asyncio
+import os
 import shutil
 import sqlite3
 from collections.abc import Callable
+from functools import partial
 from typing import BinaryIO
 
-from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from robot_runtime.durable_files import PART, make_folder
@@ -21,8 +22,6 @@ from server.platform.errors import InsufficientStorageError
 from server.platform.settings import DataFolder
 
 PIECE_BYTES = 1 << 18
-STALLED_SECONDS = 60.0
-"""For which a piece may wait for whoever downloads; then the download is broken off."""
 
 
 class DatabaseCopyError(InsufficientStorageError):
@@ -42,7 +41,7 @@ class Downloads:
         for path in (self._path, self._path.with_name(self._path.name + PART)):
             path.unlink(missing_ok=True)
 
-    async def begin(self, request: Request) -> Response:
+    async def begin(self) -> Response:
         """An answer that sends the database as it is now. Raises RefusedError, DatabaseCopyError."""
         if self._busy:
             raise RefusedError("A backup is being copied or downloaded already. Wait until it is done.")
@@ -52,7 +51,7 @@ class Downloads:
         except BaseException:
             self._busy = False
             raise
-        return Download(request, file, place(self._folder, "backup").name, self._end)
+        return Download(file, place(self._folder, "backup").name, self._end)
 
     def _end(self) -> None:
         self._busy = False
@@ -78,33 +77,26 @@ class Downloads:
         return file
 
 
-class Download(Response):
-    """Sends a file to its end and closes it; `ended` is called then, or when it is broken off."""
+class Download(StreamingResponse):
+    """Sends a file and closes it; calls `ended` then, or when the client is gone.
 
-    def __init__(self, request: Request, file: BinaryIO, name: str, ended: Callable[[], None]) -> None:
-        size = file.seek(0, 2)
-        file.seek(0)
+    A client that has stopped reading is gone after `server.http.serving.USER_TIMEOUT_MS`.
+    """
+
+    def __init__(self, file: BinaryIO, name: str, ended: Callable[[], None]) -> None:
         headers = {
-            "content-length": str(size),
+            "content-length": str(os.fstat(file.fileno()).st_size),
             "content-disposition": f'attachment; filename="{name}"',
             "cache-control": "no-store",
         }
-        super().__init__(None, headers=headers, media_type="application/vnd.sqlite3")
-        self._request = request
+        super().__init__(iter(partial(file.read, PIECE_BYTES), b""), 200, headers, "application/vnd.sqlite3")
         self._file = file
         self._ended = ended
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
-        """Send piece by piece; one that nobody takes ends it, and the connection with it."""
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send piece by piece."""
         try:
-            start = {"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers}
-            await send(start)
-            more = True
-            while more and not await self._request.is_disconnected():
-                piece = await asyncio.to_thread(self._file.read, PIECE_BYTES)
-                more = piece != b""
-                async with asyncio.timeout(STALLED_SECONDS):
-                    await send({"type": "http.response.body", "body": piece, "more_body": more})
+            await super().__call__(scope, receive, send)
         finally:
             self._file.close()
             self._ended()

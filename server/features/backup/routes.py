@@ -1,6 +1,6 @@
 """The whole database, to be taken home."""
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from starlette.responses import Response
 
 from server.features.backup.download import DatabaseCopyError, Downloads
@@ -25,6 +25,6 @@ router = APIRouter(prefix="/api/backup", tags=["sessions"])
         **answers(DatabaseCopyError, _409="Another one is being copied or downloaded"),
     },
 )
-async def download_backup(request: Request, downloads: Provided[Downloads]) -> Response:
+async def download_backup(downloads: Provided[Downloads]) -> Response:
     """Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile."""
-    return await downloads.begin(request)
+    return await downloads.begin()

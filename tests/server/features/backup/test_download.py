@@ -1,6 +1,5 @@
 """A copy of the database over the network."""
 
-import asyncio
 import shutil
 import sqlite3
 from contextlib import closing
@@ -11,8 +10,7 @@ import pytest
 
 from server.cli import main
 from server.features.backup import download
-from server.features.backup.download import Downloads
-from server.platform.schema import prepare
+from server.http import serving
 from server.platform.settings import Settings
 from tests.server.serving import Served, play
 from tests.server.waiting import until
@@ -66,23 +64,20 @@ def test_there_is_one_at_a_time_and_a_broken_off_one_makes_room(
 
 
 def test_who_takes_nothing_is_cut_off(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(download, "STALLED_SECONDS", 0.01)
-    prepare(settings.data)
+    monkeypatch.setattr(serving, "USER_TIMEOUT_MS", 500)
 
-    async def scenario() -> None:
-        downloads = Downloads(settings.data)
-        request = SimpleNamespace(is_disconnected=lambda: asyncio.sleep(0, False))
-        answer = await downloads.begin(request)  # type: ignore[arg-type]
+    async def scenario(served: Served) -> None:
+        # More than all buffers between the two ends can hold.
+        with closing(sqlite3.connect(served.settings.data.database)) as database:
+            database.execute("CREATE TABLE filler AS SELECT zeroblob(16000000)")
+            database.commit()
+        downloads = served.assembly.downloads
+        async with served.api.stream("GET", "/backup") as answer:
+            assert (answer.status_code, downloads._busy) == (200, True)
+            await until(lambda: not downloads._busy, "the end of the download")
+        assert [*served.settings.data.backups.iterdir()] == []
 
-        async def send(message: object) -> None:
-            if "body" in str(message):
-                await asyncio.Event().wait()
-
-        with pytest.raises(TimeoutError):
-            await answer({}, asyncio.Event().wait, send)  # type: ignore[arg-type]
-        assert not downloads._busy
-
-    asyncio.run(scenario())
+    play(settings, scenario)
 
 
 def test_a_full_disk_is_told_and_nothing_is_left(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
