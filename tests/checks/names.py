@@ -12,8 +12,8 @@ DIALECT = frozenset({"befall", "felt", "kept", "lent", "told", "wanted"})
 """Participles of the project's old private English: say set point, requested, reported, override, backlog."""
 STORED_NAMES = frozenset({("robot_runtime/contract/packets/definitions.py", "wanted")})
 """Fields of packets and documents: they are in recordings, and stay."""
-PENDING_DOCSTRINGS: tuple[str, ...] = ("server/", "migrations/", "robot_runtime/")
-PENDING_DIALECT: tuple[str, ...] = ("server/", "robot_runtime/")
+PENDING_DOCSTRINGS: tuple[str, ...] = ("server/", "migrations/")
+PENDING_DIALECT: tuple[str, ...] = ("server/", "migrations/")
 """Folders that are not yet rewritten."""
 PENDING_CLASSES = frozenset(
     {
@@ -29,7 +29,6 @@ PENDING_CLASSES = frozenset(
         "Left",
         "Line",
         "Mark",
-        "Moment",
         "Range",
         "Run",
         "Runs",
