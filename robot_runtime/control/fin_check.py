@@ -46,7 +46,7 @@ class FinCheck:
         """Returns the fins that did not follow, by name, with how far they moved."""
         found = {}
         for fin, name in enumerate(FINS):
-            wanted, angle = (max(self._most[row][fin] - self._least[row][fin], 0.0) for row in range(2))
-            if wanted < _SWING_MIN or angle < _FOLLOWED * wanted:
-                found[name] = f"moved {angle:.2f} of {wanted:.2f} rad"
+            commanded, angle = (max(self._most[row][fin] - self._least[row][fin], 0.0) for row in range(2))
+            if commanded < _SWING_MIN or angle < _FOLLOWED * commanded:
+                found[name] = f"moved {angle:.2f} of {commanded:.2f} rad"
         return found

@@ -5,12 +5,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.checks.links import find_dead_links
+from tests.checks.names import find_bad_names
 from tests.checks.pictures import find_needless_pictures
 from tests.checks.rooms import find_room_problems
 from tests.checks.version import find_other_versions
 
 ROOT = Path(__file__).parents[2]
 CHECKS: tuple[Callable[[Path], list[str]], ...] = (
+    find_bad_names,
     find_dead_links,
     find_needless_pictures,
     find_other_versions,

@@ -15,7 +15,7 @@ from robot_runtime.config import LinkConfig, load
 from robot_runtime.contract.limits import ConfigError
 
 _SOURCES = Path(__file__).parents[3] / "firmware"
-_LINES_TOLD = 5
+_LINES_SHOWN = 5
 
 
 class FirmwareBuildError(Exception):
@@ -51,7 +51,7 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
     command += ["HIL=1"] if hil else []
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode != 0:
-        last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_TOLD:]).strip()
+        last = " ".join((made.stderr or made.stdout).split("\n")[-_LINES_SHOWN:]).strip()
         raise FirmwareBuildError(f"The firmware for {baud} baud could not be built: {last}")
 
 
