@@ -1,4 +1,4 @@
-"""The application: routes, guard and page around one assembly."""
+"""The application: routes, guards and the page around one container."""
 
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
@@ -6,7 +6,7 @@ from contextlib import asynccontextmanager
 from fastapi import Depends, FastAPI
 
 from server import VERSION
-from server.container import Assembly
+from server.container import Container
 from server.features.backup import routes as backup
 from server.features.comm_tests import routes as comm_tests
 from server.features.comparison import routes as compare
@@ -42,11 +42,16 @@ from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
 from server.processes.supervisor import Command
 
+ROUTES = (
+    *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, marks, panels),
+    *(parameters, profiles, replay, robot, scenarios, scene, sessions, simulator, storage, tuning, vision),
+)
+
 
 def create_app(
     settings: Settings, commands: Sequence[Command] = (), started: Callable[[Access], None] | None = None
 ) -> FastAPI:
-    """The server for one robot; `commands` are the processes that it keeps running (see `parts.plan`).
+    """The server for one robot; `commands` are the processes that it keeps running (`supervisor.plan`).
 
     `started` is called once everything is there, before anybody is served.
     """
@@ -56,12 +61,12 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        assembly = Assembly(settings, commands, token, app.state.ended)
-        app.state.assembly = assembly
-        app.state.services = assembly.services
-        async with assembly.run():
+        container = Container(settings, commands, token, app.state.ended)
+        app.state.container = container
+        app.state.services = container.services
+        async with container.run():
             if started is not None:
-                started(assembly.access)
+                started(container.access)
             yield
 
     app = FastAPI(
@@ -79,9 +84,7 @@ def create_app(
     app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
     add_error_handlers(app)
-    robots = (health, robot, vision, simulator, scene, link, live, control, parameters, profiles)
-    kept = (sessions, marks, replay, storage, backup, compare, exports)
-    for module in (access, *robots, *kept, comm_tests, scenarios, layouts, panels, tuning):
+    for module in ROUTES:
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)
     app.include_router(make_help_router(HelpPages(settings.help_pages)))
     app.include_router(make_router(Page(settings.page)))

@@ -1,4 +1,4 @@
-"""The one place where the server's parts are put together."""
+"""The container: makes the services of a server, joins them, starts and ends them."""
 
 import asyncio
 import json
@@ -54,7 +54,7 @@ HEALTH_SECONDS = 1.0
 BEAT_SECONDS = 1.0
 
 
-class Assembly:
+class Container:
     """Everything that lives as long as the server does."""
 
     def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
@@ -67,9 +67,18 @@ class Assembly:
         self.store = Store(settings.data.database)
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
-        self.changes = Changes(self.store, self.bridge)
-        self.profiles = Profiles(self.store)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
+        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
+        self._add_lease()
+        self._add_health(commands)
+        self._add_sessions()
+        self._add_comm_tests()
+        self._add_scenarios()
+        self._add_tuning()
+        self.downloads = Downloads(settings.data)
+        self.layouts = Layouts(self.store)
+
+    def _add_lease(self) -> None:
         self.lease_sync = LeaseSync(self.bridge.tell_lease)
         self.arbiter = ControlArbiter(
             self.clock,
@@ -77,27 +86,33 @@ class Assembly:
             self.bridge.drive,
             lambda text: self.notices.tell("control", "info", text),
         )
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
+
+    def _add_health(self, commands: Sequence[Command]) -> None:
+        self.alarms = Alarms(self.clock, FAULTS, self.notices.tell_event, changed=self._tell_alarms)
+        self.parts = Parts(commands, self.settings.data, self.clock, self._see_down)
+        self.watch = Watch(self.settings, self.clock, self.store, self.parts)
+        self.inspection = Inspection(
+            self.settings, self.clock, self.watch, self.parts, self.store, self.alarms
+        )
+
+    def _add_sessions(self) -> None:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Markers(self.store, self.clock, self.recorder)
-        self.tidying = Tidying(self.store, settings, self.notices, self.clock)
+        self.tidying = Tidying(self.store, self.settings, self.notices, self.clock)
         self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
-        self.alarms = Alarms(self.clock, FAULTS, self.notices.tell_event, changed=self._tell_alarms)
-        self.parts = Parts(commands, settings.data, self.clock, self._see_down)
-        self.watch = Watch(settings, self.clock, self.store, self.parts)
-        self.inspection = Inspection(settings, self.clock, self.watch, self.parts, self.store, self.alarms)
-        board = Board(settings, self.notices.tell)
-        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
-        self.jobs = Jobs(settings.data, self.store)
-        self.imports = Imports(settings.data, self.store)
-        self.layouts = Layouts(self.store)
+        self.jobs = Jobs(self.settings.data, self.store)
+        self.imports = Imports(self.settings.data, self.store)
         self.comparisons = Comparisons(self.store)
-        self.downloads = Downloads(settings.data)
-        self.lab = Lab(settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
 
+    def _add_comm_tests(self) -> None:
+        board = Board(self.settings, self.notices.tell)
+        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
+        self.lab = Lab(self.settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
+
+    def _add_scenarios(self) -> None:
         self._live = Live(
-            settings,
+            self.settings,
             self.store,
             self.recorder,
             self.bridge,
@@ -106,10 +121,13 @@ class Assembly:
             self.clock,
             self.notices.tell,
         )
-        self.scenarios = ScenarioRuns(
-            self._live, Simulated(settings, self.store, self.notices), self.hub.tell
-        )
+        simulated = Simulated(self.settings, self.store, self.notices)
+        self.scenarios = ScenarioRuns(self._live, simulated, self.hub.tell)
         self.bridge.on_stop = self.scenarios.see_stop
+
+    def _add_tuning(self) -> None:
+        self.changes = Changes(self.store, self.bridge)
+        self.profiles = Profiles(self.store)
         self.tuning = TuningLab(
             TuningRuns(self.store),
             self.bridge,

@@ -15,7 +15,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from robot_runtime.errors import RefusedError
 from server.app import create_app
-from server.container import Assembly
+from server.container import Container
 from server.http.serving import make_server, open_socket
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
@@ -32,7 +32,7 @@ class Served:
     """A running server, an HTTP client of it that has the shell's token, and the runtime's end."""
 
     settings: Settings
-    assembly: Assembly
+    container: Container
     api: httpx.AsyncClient
     runtime: RuntimeEnd
 
@@ -58,7 +58,7 @@ class Served:
         async with asyncio.timeout(SECONDS):
             while True:
                 try:
-                    return await self.assembly.bridge.command("there", {})
+                    return await self.container.bridge.command("there", {})
                 except (RuntimeSilentError, RefusedError):
                     await asyncio.sleep(0.005)
 
@@ -85,7 +85,7 @@ async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIt
                 shell = ShellToken(settings.data)
                 verify = trust_only(settings.data) if settings.tls else True
                 async with httpx.AsyncClient(base_url=url, timeout=10, auth=shell, verify=verify) as api:
-                    served = Served(settings, app.state.assembly, api, runtime)
+                    served = Served(settings, app.state.container, api, runtime)
                     await served.heard("stream")
                     await served.reached()
                     await served.take_control()

@@ -15,7 +15,7 @@ from fastapi.routing import iter_route_contexts
 from starlette.types import Message
 
 from server.app import create_app
-from server.container import Assembly
+from server.container import Container
 from server.http.sign_in.policy import MESSAGES
 from server.platform.schema import prepare
 from server.platform.settings import Settings
@@ -184,7 +184,7 @@ class House:
     def __init__(self, app: FastAPI, settings: Settings, runtime: RuntimeEnd) -> None:
         self.app = app
         self.own = f"127.0.0.1:{settings.port}"
-        self.assembly: Assembly = app.state.assembly
+        self.container: Container = app.state.container
         self.runtime = runtime
         self.people: dict[Who, Somebody] = {"anonymous": Somebody()}
         self.shell = Somebody(shell_headers(settings.data))
@@ -308,7 +308,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
             house = House(app, settings, runtime)
             await until(lambda: runtime.is_heard("stream"), "the server to listen")
             runtime.publish(state_block(0))
-            await until(house.assembly.watch.state, "the state")
+            await until(house.container.watch.state, "the state")
             for who in ROLES:
                 if who != "anonymous":
                     house.people[who] = await house.enter(who)
@@ -393,13 +393,13 @@ async def say_everything(house: House, who: Who, socket: LiveSocket) -> None:
     before = len(house.runtime.asked)
     assert await socket.say({"op": "stop"}) == []
     await until(lambda: ("stop", {}) in house.runtime.asked[before:], "the STOP")
-    arbiter = house.assembly.arbiter
+    arbiter = house.container.arbiter
     if who == "control":
         client = arbiter.clients.get(hello["you"]["client"])
         assert client is not None
         arbiter.take(client, over=True)
     passed = arbiter.driving.counts.passed
     drive = {"op": "drive", "lease": arbiter.lease.epoch, "sequence": 1, "axes": [0.0] * 6}
-    errors = await socket.say(drive | {"taken": house.assembly.clock.now()})
+    errors = await socket.say(drive | {"taken": house.container.clock.now()})
     assert (errors != []) is (ROLES[who] < LEAST["operator"])
     assert arbiter.driving.counts.passed - passed == (who == "control")

@@ -32,7 +32,7 @@ def test_health_names_every_part_and_its_words(settings: Settings) -> None:
         assert list(await states()) == [*heard, "scene"]
         assert (await served.api.get("/health")).json()["status"] == "starting"
         served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
-        await until(lambda: served.assembly.watch.health().status == "ok", "all to be well")
+        await until(lambda: served.container.watch.health().status == "ok", "all to be well")
         assert await states() == dict.fromkeys(heard, "ok") | {"scene": "absent"}
 
     play(settings, scenario)
@@ -44,7 +44,7 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
         assert answer.status_code == 503
         assert "/api/health" in answer.json()["detail"]
         served.runtime.publish(state_block(0, set_point=0.5), state_block(1, set_point=0.75))
-        await until(lambda: (served.assembly.watch.state() or {}).get("set_point") == 0.75, "the state")
+        await until(lambda: (served.container.watch.state() or {}).get("set_point") == 0.75, "the state")
         answer = await served.api.get("/robot")
         assert (answer.status_code, answer.json()["set_point"]) == (200, 0.75)
 
@@ -219,7 +219,7 @@ def test_a_runtime_that_does_not_answer_is_told_in_the_end_and_stop_does_not_wai
         gate = served.runtime.gates["vision"]
         gate.clear()
         slow = [
-            asyncio.create_task(served.assembly.bridge.command("vision", {}))
+            asyncio.create_task(served.container.bridge.command("vision", {}))
             for _ in range(bridge_module.COMMANDS_AT_ONCE)
         ]
         await asyncio.sleep(0)
@@ -248,8 +248,8 @@ def test_a_session_from_start_to_download(settings: Settings) -> None:
         again = await api.post("/sessions", json={})
         assert again.status_code == 409
         assert "“Dive” is being recorded" in again.json()["detail"]
-        served.runtime.publish(depth_block(0, 10, start=served.assembly.clock.now()))
-        recorder = served.assembly.recorder
+        served.runtime.publish(depth_block(0, 10, start=served.container.clock.now()))
+        recorder = served.container.recorder
         await until(lambda: recorder.session is not None and recorder.session.samples >= 10, "the samples")
         half = await api.get(f"/sessions/{session['id']}/csv")
         assert "depth.csv" in zipfile.ZipFile(io.BytesIO(half.content)).namelist()
@@ -311,7 +311,7 @@ def test_a_session_is_completed_when_the_server_ends_in_order(settings: Settings
         async with serve(settings) as served:
             await served.api.post("/sessions", json={"name": "cut"})
             served.runtime.publish(depth_block(0, 4))
-            seen = served.assembly.watch._newest
+            seen = served.container.watch._newest
             await until(lambda: "depth" in seen, "the samples")
         async with serve(settings) as served:
             (session,) = (await served.api.get("/sessions")).json()
@@ -353,11 +353,11 @@ def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) ->
     broken = Command("board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')"))
 
     async def scenario(served: Served) -> None:
-        await until(lambda: served.assembly.watch.health().status == "failed", "the failure")
+        await until(lambda: served.container.watch.health().status == "failed", "the failure")
         parts = {part["name"]: part for part in (await served.api.get("/health")).json()["parts"]}
         assert parts["board"]["state"] == "failed"
         assert parts["board"]["text"] == "It has ended with exit status 1. Its last words: no firmware."
-        history = b"".join(b"".join(group) for group in served.assembly.hub.history.since(-1, 10**6))
+        history = b"".join(b"".join(group) for group in served.container.hub.history.since(-1, 10**6))
         assert "The emulated board has ended with exit status 1" in history.decode(errors="replace")
 
     play(settings, scenario, broken)
@@ -369,9 +369,9 @@ def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
         for bad in (good[:11], good[:-1], good + b"x", b"\xff" + good[1:], good[:1] + b"\x01" + good[2:]):
             served.runtime.publish_bytes(bad)
         served.runtime.publish(depth_block(0, 2))
-        await until(lambda: served.assembly.bridge.damaged == 5, "the damaged blocks")
-        await until(lambda: "depth" in served.assembly.watch._newest, "the good one")
-        kept = b"".join(b"".join(one) for one in served.assembly.hub.history.since(-1, 10**6))
+        await until(lambda: served.container.bridge.damaged == 5, "the damaged blocks")
+        await until(lambda: "depth" in served.container.watch._newest, "the good one")
+        kept = b"".join(b"".join(one) for one in served.container.hub.history.since(-1, 10**6))
         assert [block.data for block in read_blocks(kept) if block.topic.name == "depth"] == [good]
 
     play(settings, scenario)

@@ -183,7 +183,7 @@ def test_revocation_closes_live_sockets_and_ends_everything(settings: Settings) 
             guest.connect() as second,
             boss.connect() as own,
         ):
-            await until(lambda: served.assembly.hub.clients == 3, "the sockets")
+            await until(lambda: served.container.hub.clients == 3, "the sockets")
             answer = await boss.api.delete(f"/access/devices/{await guest.device()}")
             assert answer.status_code == 204
             assert await closing_of(first) == (1008, "Access was revoked by an operator.")
@@ -341,7 +341,7 @@ def test_names_are_short_and_can_be_shown(settings: Settings, name: str) -> None
 def test_the_last_visit_is_stored_once_an_hour(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         now = [1e9]
-        devices = Devices(served.assembly.store, lambda: now[0])
+        devices = Devices(served.container.store, lambda: now[0])
         device, _ = await devices.add("tablet", "viewer", "browser")
 
         async def stored() -> float:

@@ -34,7 +34,7 @@ async def answers(served: Served) -> list[tuple[int, str]]:
 
 def says(served: Served, armed: bool) -> bool:
     """Whether the newest state says so."""
-    state = served.assembly.watch.state()
+    state = served.container.watch.state()
     return state is not None and state["armed"] is armed
 
 

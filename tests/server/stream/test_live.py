@@ -46,9 +46,9 @@ def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_dou
 ) -> None:
     async def scenario(served: Served) -> None:
         await served.heard("stream")
-        start = served.assembly.clock.now()
+        start = served.container.clock.now()
         served.runtime.publish(*(depth_block(5 * place, 5, start) for place in range(10)))
-        seen = served.assembly.hub.history
+        seen = served.container.hub.history
 
         def kept() -> list[int]:
             return numbers(read_blocks(b"".join(chain.from_iterable(seen.since(-1, 1)))), "depth")
@@ -58,7 +58,7 @@ def test_a_page_is_greeted_and_gets_the_past_and_the_present_without_hole_or_dou
             hello = json.loads(await page.recv())
             assert hello["op"] == "hello"
             assert (hello["robot"], hello["definitions"]) == ("tested", f"{DEFINITIONS_HASH:08x}")
-            assert hello["steady"] <= served.assembly.clock.now()
+            assert hello["steady"] <= served.container.clock.now()
             assert hello["utc"] > 1.7e9
             assert hello["page_version"] == ""
             served.runtime.publish(*(depth_block(50 + 5 * place, 5, start) for place in range(10)))
@@ -209,7 +209,7 @@ def test_pages_of_others_get_no_socket(settings: Settings, origin: str) -> None:
         with pytest.raises(InvalidStatus) as refused:
             await served.connect(origin=origin)
         assert refused.value.response.status_code == 403
-        assert served.assembly.hub.clients == 0
+        assert served.container.hub.clients == 0
         async with served.connect(origin=None) as program:
             assert await program.recv()
 
@@ -239,7 +239,7 @@ def test_a_page_that_stops_reading_is_dropped_and_the_others_miss_nothing(
 
     async def scenario(served: Served) -> None:
         stalled = await stall(served)
-        hub = served.assembly.hub
+        hub = served.container.hub
         await until(lambda: hub.clients == 1, "the stalled page")
         async with served.connect() as page:
             await until(lambda: hub.clients == 2, "both pages")

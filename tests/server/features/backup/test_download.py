@@ -52,7 +52,7 @@ def test_there_is_one_at_a_time_and_a_broken_off_one_makes_room(
     monkeypatch.setattr(download, "PIECE_BYTES", 16)
 
     async def scenario(served: Served) -> None:
-        downloads = served.assembly.downloads
+        downloads = served.container.downloads
         async with served.api.stream("GET", "/backup") as first:
             assert first.status_code == 200
             second = await served.api.get("/backup")
@@ -71,7 +71,7 @@ def test_who_takes_nothing_is_cut_off(settings: Settings, monkeypatch: pytest.Mo
         with closing(sqlite3.connect(served.settings.data.database)) as database:
             database.execute("CREATE TABLE filler AS SELECT zeroblob(16000000)")
             database.commit()
-        downloads = served.assembly.downloads
+        downloads = served.container.downloads
         async with served.api.stream("GET", "/backup") as answer:
             assert (answer.status_code, downloads._busy) == (200, True)
             await until(lambda: not downloads._busy, "the end of the download")

@@ -60,7 +60,7 @@ def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 def runtime_state(served: Served) -> str:
-    part = served.assembly.parts.get("runtime")
+    part = served.container.parts.get("runtime")
     assert part is not None
     return part.state
 
@@ -77,11 +77,11 @@ async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]
 
     async def disarm() -> None:
         await until(lambda: len(served.runtime.asked) > asked, "STOP")
-        now = served.assembly.clock.now()
+        now = served.container.clock.now()
         served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
 
     disarming = asyncio.create_task(disarm())
-    async with served.assembly.handover.lend(name) as arguments:
+    async with served.container.handover.lend(name) as arguments:
         yield arguments
     await disarming
 
@@ -106,7 +106,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
             with pytest.raises(RefusedError, match="grid"):
-                async with served.assembly.handover.lend("another"):
+                async with served.container.handover.lend("another"):
                     pass
             assert runtime_state(served) == "paused"
         assert "--restore" in robot.uploads.read_text()
@@ -122,7 +122,7 @@ def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
-            async with served.assembly.handover.lend("tested"):
+            async with served.container.handover.lend("tested"):
                 pass
         assert served.runtime.asked == []
 
@@ -138,10 +138,10 @@ def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
         if state is not None:
-            served.runtime.publish(state_block(0, **{"time": served.assembly.clock.now() + 60} | state))
-            await until(served.assembly.watch.state, "the state")
+            served.runtime.publish(state_block(0, **{"time": served.container.clock.now() + 60} | state))
+            await until(served.container.watch.state, "the state")
         with pytest.raises(RefusedError, match="was not disarmed within"):
-            async with served.assembly.handover.lend("tested"):
+            async with served.container.handover.lend("tested"):
                 pass
         assert (runtime_state(served), robot.marker.exists()) == ("running", False)
         assert (await served.api.post("/robot/arm")).status_code == 204
@@ -155,7 +155,7 @@ def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch:
     async def scenario(served: Served) -> None:
         served.runtime.gates["stop"].clear()
         with pytest.raises(RefusedError, match="could not be disarmed before the test"):
-            async with served.assembly.handover.lend("tested"):
+            async with served.container.handover.lend("tested"):
                 pass
         served.runtime.gates["stop"].set()
         assert not robot.marker.exists()
@@ -182,7 +182,7 @@ def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_agai
             pass
         assert robot.marker.exists()
         served.runtime.publish(state_block(1500, connected=False, connection="no answer"))
-        await until(lambda: (served.assembly.watch.state() or {}).get("connected") is False, "the state")
+        await until(lambda: (served.container.watch.state() or {}).get("connected") is False, "the state")
         state, words = (await health(served))["link"]
         assert state == "failed"
         assert "not in sync" in words
@@ -219,7 +219,7 @@ def test_without_a_port_the_runtime_starts_all_the_same_and_the_note_stays(
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
         assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
-        assert served.assembly.watch.firmware_away is not None
-        assert f"there is no {robot.settings.link.port}" in served.assembly.watch.firmware_away
+        assert served.container.watch.firmware_away is not None
+        assert f"there is no {robot.settings.link.port}" in served.container.watch.firmware_away
 
     robot.play(scenario)

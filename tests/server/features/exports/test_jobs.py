@@ -37,7 +37,7 @@ async def start(api: AsyncClient, session: int, **wanted: Any) -> dict[str, Any]
 
 
 async def ended(served: Served, job: dict[str, Any]) -> dict[str, Any]:
-    found = served.assembly.jobs.find
+    found = served.container.jobs.find
     await until(lambda: (one := found(job["id"])) and one.state in ("done", "failed"), "the file", 60)
     answer: dict[str, Any] = (await served.api.get(f"/exports/{job['id']}")).json()
     return answer
@@ -126,7 +126,7 @@ def test_old_files_go(settings: Settings) -> None:
     young = finished(settings, "b" * 16, limit + timedelta(minutes=10))
 
     async def scenario(served: Served) -> None:
-        jobs = served.assembly.jobs
+        jobs = served.container.jobs
         await until(lambda: len(jobs.list()) == 1, "the old file to go")
         names = {path.name for path in settings.data.exports.iterdir()}
         assert names == {young.id, f"{young.id}.json"}
@@ -160,7 +160,7 @@ def test_a_job_is_cancelled_and_the_next_one_comes(
     slow(monkeypatch, tmp_path)
 
     async def scenario(served: Served) -> None:
-        jobs = served.assembly.jobs
+        jobs = served.container.jobs
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
         await until(lambda: (one := jobs.find(first["id"])) and one.progress == 0.25, "progress")
         assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
@@ -179,7 +179,7 @@ def test_a_process_that_is_killed_leaves_nothing(
     slow(monkeypatch, tmp_path)
 
     async def scenario(served: Served) -> None:
-        jobs = served.assembly.jobs
+        jobs = served.container.jobs
         job = await start(served.api, session)
         await until(lambda: (one := jobs.find(job["id"])) and one.progress == 0.25, "progress")
         assert jobs._running is not None

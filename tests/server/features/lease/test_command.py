@@ -32,7 +32,7 @@ def test_a_command_takes_control_and_releases_it(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await asyncio.to_thread(command, served)
         assert served.runtime.asked == [("arm", {})] * 2
-        assert served.assembly.arbiter.state().holder is None
+        assert served.container.arbiter.state().holder is None
 
     play(settings, with_address(scenario))
 
@@ -44,7 +44,7 @@ def test_a_command_does_not_take_control_over(settings: Settings) -> None:
             with pytest.raises(SetupError, match="Control is with the shell of this computer"):
                 await asyncio.to_thread(command, served)
             assert served.runtime.asked == []
-            assert served.assembly.arbiter.lease.holder == page.client
+            assert served.container.arbiter.lease.holder == page.client
 
     play(settings, with_address(scenario))
 
@@ -63,6 +63,6 @@ def test_a_command_whose_control_is_taken_over_stays_without(settings: Settings)
             loop = asyncio.get_running_loop()
             with pytest.raises(SetupError, match="Control is with"):
                 await asyncio.to_thread(lose)
-            assert served.assembly.arbiter.lease.holder == page.client
+            assert served.container.arbiter.lease.holder == page.client
 
     play(settings, with_address(scenario))

@@ -48,9 +48,9 @@ class Page:
     def command(self, **changes: Any) -> dict[str, Any]:
         whole = {
             "op": "drive",
-            "lease": self.served.assembly.arbiter.lease.epoch,
+            "lease": self.served.container.arbiter.lease.epoch,
             "sequence": 1,
-            "taken": self.served.assembly.clock.now(),
+            "taken": self.served.container.clock.now(),
             "axes": [0, 0, 1, 0, 0, 0],
         }
         return whole | changes
@@ -72,8 +72,8 @@ def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> No
         async with open_page(served) as anna:
             (await anna.ask("/control/take?over=true")).raise_for_status()
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
-        assembly = served.assembly
-        recording = Recording(assembly.store, assembly.catalogue.row(session))
+        container = served.container
+        recording = Recording(container.store, container.catalogue.row(session))
         texts = [one["text"] for one in recording.documents("notice")]
         shell = "“the shell of this computer”"
         assert texts[-2:] == [
@@ -138,7 +138,7 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
             ("POST", "/scenarios/runs", {"text": SCENARIO, "place": "live"}),
             ("POST", "/comm-tests/runs", {"text": "[]", "place": "robot"}),
         ]
-        name = served.assembly.arbiter.state().holder
+        name = served.container.arbiter.state().holder
         assert name is not None
         async with open_page(served) as page:
             for key in (bare, {"X-Mucat-Client": page.key}):
@@ -163,11 +163,11 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
 def test_a_program_that_is_silent_loses_control(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with open_page(served) as page:
-            arbiter = served.assembly.arbiter
+            arbiter = served.container.arbiter
             client = arbiter.clients.get(arbiter.lease.holder or 0)
             assert client is not None
             # As if it had been silent for nearly all of its time.
-            client.until = served.assembly.clock.now() + 0.05
+            client.until = served.container.clock.now() + 0.05
             arbiter.announce()
             await page.told(None)
             assert (await served.api.post("/robot/arm")).status_code == 423
@@ -183,9 +183,9 @@ def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings
             await anna.ask("/control/take")
             await until(lambda: served.runtime.epochs, "the runtime to be told")
             await anna.drive(sequence=1)
-            await anna.drive(sequence=2, taken=served.assembly.clock.now() - 0.4)
+            await anna.drive(sequence=2, taken=served.container.clock.now() - 0.4)
             await ben.drive(sequence=3)
-            await anna.drive(sequence=4, lease=served.assembly.arbiter.lease.epoch - 1)
+            await anna.drive(sequence=4, lease=served.container.arbiter.lease.epoch - 1)
             await anna.drive(sequence=1)
             await anna.drive(sequence=5)
             await until(lambda: len(served.runtime.driven) == 2, "two commands")
@@ -202,7 +202,7 @@ def test_the_driver_s_sticks_reach_the_runtime_and_no_other_s(settings: Settings
 
 def test_a_runtime_that_was_restarted_is_told_the_epoch_again(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        epoch = served.assembly.arbiter.lease.epoch
+        epoch = served.container.arbiter.lease.epoch
         await until(lambda: served.runtime.epochs[-1:] == [epoch], "the runtime to be told")
         before = len(served.runtime.epochs)
         served.runtime.publish(state_block(0))

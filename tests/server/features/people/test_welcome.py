@@ -15,7 +15,7 @@ PUBLIC = ("localhost", "127.0.0.1", "turtle.local", "192.168.0.7")
 
 
 def lines(served: Served, settings: Settings, *, picture: bool = False) -> list[str]:
-    return welcome(settings, served.assembly.access, None, picture=picture)
+    return welcome(settings, served.container.access, None, picture=picture)
 
 
 def code_in(lines: list[str]) -> str:
@@ -32,7 +32,7 @@ def test_the_link_of_each_start_signs_this_computer_s_browser_in(settings: Setti
                 assert f"http://localhost:{served.settings.port}/#pair=" in "".join(told)
                 answer = await one.pair(code_in(told))
                 assert answer.json()["identity"]["role"] == "operator"
-                assert len(served.assembly.access.devices.all()) == number
+                assert len(served.container.access.devices.all()) == number
 
     asyncio.run(run())
 

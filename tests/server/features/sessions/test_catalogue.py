@@ -100,9 +100,9 @@ def test_marks_are_set_live_and_later(settings: Settings) -> None:
 def test_a_session_says_what_is_in_it(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, set_point=0.7))
-        await until(lambda: served.assembly.watch.state() is not None, "the state")
+        await until(lambda: served.container.watch.state() is not None, "the state")
         session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
-        now, recorder = served.assembly.clock.now(), served.assembly.recorder
+        now, recorder = served.container.clock.now(), served.container.recorder
         small = [thumbnail_block(n, now + n, bytes([n])) for n in range(2)]
         served.runtime.publish(depth_block(5, 10, start=now - 0.1), depth_block(20, 1, start=now))
         served.runtime.publish_bytes(b"".join(block.data for block in small))
@@ -117,7 +117,7 @@ def test_a_session_says_what_is_in_it(settings: Settings) -> None:
         assert (topics["depth"]["count"], topics["thumbnail"]["kind"]) == (11, "picture")
         assert {"name": "depth", "unit": "m"}.items() <= topics["depth"]["columns"][1].items()
         picture = f"/sessions/{session}/thumbnail"
-        start = served.assembly.catalogue.row(session).started_steady
+        start = served.container.catalogue.row(session).started_steady
         answer = await served.api.get(picture, params={"time": now - start + 0.5})
         assert (answer.headers["content-type"], answer.content) == ("image/jpeg", b"\1")
         assert (await served.api.get(picture, params={"time": 1e6})).status_code == 404

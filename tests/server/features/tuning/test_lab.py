@@ -103,8 +103,8 @@ async def begin(served: Served, wanted: dict[str, Any]) -> int:
 
 async def over(served: Served) -> dict[str, Any]:
     """The run that has ended."""
-    await until(lambda: served.assembly.tuning.state().active is None, "the run's end")
-    last = served.assembly.tuning.state().last
+    await until(lambda: served.container.tuning.state().active is None, "the run's end")
+    last = served.container.tuning.state().last
     assert last is not None
     answer: dict[str, Any] = (await served.api.get(f"/tuning/runs/{last.id}")).raise_for_status().json()
     return answer
@@ -247,9 +247,9 @@ def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> 
         served.runtime.refusal = "No, since the runtime knows better."
         assert "the runtime knows better" in await refused(served, STEP, 409)
         served.runtime.refusal = None
-        served.assembly.tuning._occupied = lambda: "The scenario “Dive” is being run."
+        served.container.tuning._occupied = lambda: "The scenario “Dive” is being run."
         assert "The scenario “Dive”" in await refused(served, STEP, 409)
-        served.assembly.tuning._occupied = lambda: None
+        served.container.tuning._occupied = lambda: None
         nothing = await served.api.post("/tuning/stop")
         assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment runs.")
         assert (await served.api.get("/tuning/runs")).json()["runs"] == []
