@@ -1,0 +1,71 @@
+"""The commands of the tutorial and of the pages of tasks, run one after the other as a reader runs them."""
+
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.documents.blocks import DOCS, read_commands
+
+ROOT = Path(__file__).parents[2]
+MUCAT = ".venv/bin/mucat"
+
+# Each page begins where the pages before it have left the data folder.
+TUTORIAL = "use/tutorial.md"
+AFTER_IT = (
+    "use/start.md",
+    "use/sessions.md",
+    "use/scenarios.md",
+    "use/compare.md",
+    "use/export.md",
+    "use/comm-tests.md",
+    "run/install.md",
+    "run/backup.md",
+)
+WITH_A_SERVER = ("run/access.md",)
+
+
+def run(commands: list[str], folder: Path) -> list[str]:
+    """What each command printed. `make` is only asked if it knows the target."""
+    printed = []
+    for command in commands:
+        name, *arguments = shlex.split(command)
+        if name == "make":
+            line, place = ["make", "--dry-run", *arguments], ROOT
+        else:
+            assert name == MUCAT, f"{command} cannot be run by this test"
+            line, place = [str(ROOT / MUCAT), *arguments], folder
+        environment = os.environ | {"MUCAT_DATA": str(folder / "data")}
+        done = subprocess.run(line, cwd=place, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+        printed.append(done.stdout)
+    return printed
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the tutorial was followed."""
+    path = tmp_path_factory.mktemp("reader")
+    (path / "robot.toml").write_text((ROOT / "robot.toml").read_text())
+    (path / "server").symlink_to(ROOT / "server")
+    run(read_commands(TUTORIAL), path)
+    return path
+
+
+def test_the_tutorial_ends_with_a_report_and_a_zip_file(folder: Path) -> None:
+    assert "Figure 14" in (folder / "report.html").read_text()
+    assert (folder / "dive.zip").read_bytes().startswith(b"PK")
+
+
+@pytest.mark.parametrize("page", AFTER_IT)
+def test_the_commands_of_a_page_can_be_run(folder: Path, page: str) -> None:
+    commands = read_commands(page)
+    assert commands
+    run(commands, folder)
+
+
+def test_every_page_of_tasks_with_commands_is_run() -> None:
+    pages = [str(page.relative_to(DOCS)) for place in ("use", "run") for page in (DOCS / place).glob("*.md")]
+    assert {page for page in pages if read_commands(page)} == {TUTORIAL, *AFTER_IT, *WITH_A_SERVER}

@@ -1,0 +1,65 @@
+"""The pages "add a ...": each step is applied to a copy of the tree, each command is run there."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.documents.blocks import apply, read_blocks
+
+ROOT = Path(__file__).parents[2]
+LINKED = (".venv", "build", "frontend/node_modules")
+"""Folders that are built or installed: the copy uses those of the tree."""
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A copy of the files under version control, with what is built beside them."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
+    copy = tmp_path / "tree"
+    for name in filter(None, listed.stdout.split("\0")):
+        if (ROOT / name).is_file():
+            (copy / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, copy / name)
+    for name in LINKED:
+        (copy / name).symlink_to(ROOT / name)
+    return copy
+
+
+def follow(page: str, tree: Path) -> None:
+    """Do what the page says, from its first block to its last."""
+    for block in read_blocks(page):
+        if block.title:
+            apply(block, tree)
+        elif block.language == "sh":
+            for line in block.text.splitlines():
+                done = subprocess.run(line, shell=True, cwd=tree, capture_output=True, text=True, check=False)
+                assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+
+
+def changed_modules(page: str) -> list[str]:
+    """The files of the product that the page has somebody write or change; tests are not counted."""
+    titles = dict.fromkeys(block.title for block in read_blocks(page) if block.title)
+    return [title for title in titles if not title.startswith("tests/")]
+
+
+def test_a_controller_is_added(tree: Path) -> None:
+    follow("develop/add-a-controller.md", tree)
+    reference = (tree / "docs/reference/parameters.md").read_text()
+    assert "| `depth.proportional.kp` | 0 to 20 1/m | 2 | command for each metre of error |" in reference
+    assert len(changed_modules("develop/add-a-controller.md")) == 2
+
+
+def test_a_route_is_added(tree: Path) -> None:
+    follow("develop/add-a-route.md", tree)
+    reference = (tree / "docs/reference/http.md").read_text()
+    assert "| `GET /api/link/speed` | viewer |  | 200 [LinkSpeed](#linkspeed) |" in reference
+    assert len(changed_modules("develop/add-a-route.md")) == 1
+
+
+def test_a_panel_is_added(tree: Path) -> None:
+    follow("develop/add-a-panel.md", tree)
+    built = [file.read_text() for file in (tree / "server/page/assets").glob("*.js")]
+    assert any("Water temperature" in script for script in built)
+    assert len(changed_modules("develop/add-a-panel.md")) == 2
