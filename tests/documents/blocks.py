@@ -1,7 +1,7 @@
 """Code blocks of a page, and the changes to files that they describe.
 
-A block with a title is a new file, or what is added at the end of a file. A `diff` block with a title changes a
-file: its lines without `+` are searched for, and replaced by its lines without `-`.
+A block with a title is a new file, or what is added at the end of a file. A `diff` block with a title changes
+a file: its lines without `+` are searched for, and replaced by its lines without `-`.
 """
 
 import re

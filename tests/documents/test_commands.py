@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.documents.blocks import DOCS, read_commands
+from tests.stack import Stack
 
 ROOT = Path(__file__).parents[2]
 MUCAT = ".venv/bin/mucat"
@@ -64,6 +65,14 @@ def test_the_commands_of_a_page_can_be_run(folder: Path, page: str) -> None:
     commands = read_commands(page)
     assert commands
     run(commands, folder)
+
+
+@pytest.mark.stack
+@pytest.mark.parametrize("page", WITH_A_SERVER)
+def test_the_commands_of_a_page_can_be_run_beside_a_server(tmp_path: Path, page: str) -> None:
+    (tmp_path / "robot.toml").write_text((ROOT / "robot.toml").read_text())
+    with Stack(tmp_path / "data"):
+        run(read_commands(page), tmp_path)
 
 
 def test_every_page_of_tasks_with_commands_is_run() -> None:
