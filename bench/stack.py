@@ -21,7 +21,7 @@ def measure() -> dict[str, float]:
     """CPU in percent of one core over half a minute; resident memory in MB at its end."""
     with tempfile.TemporaryDirectory() as folder, Stack(Path(folder)) as stack:
         viewer = _Viewer(stack)
-        stack.api.post("/robot/arm").raise_for_status()
+        stack.api.post("/robot/commands/arm").raise_for_status()
         stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
         parts = {
             "server": stack.server,

@@ -116,6 +116,7 @@ class Container:
             self.store,
             self.recorder,
             self.bridge,
+            self.changes,
             self.watch,
             self.parts,
             self.clock,
@@ -131,6 +132,7 @@ class Container:
         self.tuning = TuningLab(
             TuningRuns(self.store),
             self.bridge,
+            self.changes,
             self.clock,
             self.hub.tell,
             self.notices.tell,

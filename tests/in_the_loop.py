@@ -48,7 +48,7 @@ def main() -> None:
             wait(lambda: refusals(stack) == [], "the simulator", stack)
             told["simulator"] = health(stack, "simulator")
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
-            stack.api.post("/robot/arm").raise_for_status()
+            stack.api.post("/robot/commands/arm").raise_for_status()
             time.sleep(DIVE_SECONDS)
             told["armed"] = state(stack)["armed"]
             told["camera"] = state(stack)["camera"]
@@ -59,7 +59,7 @@ def main() -> None:
             hosts.loss = 0.01
             wait(lambda: len(refusals(stack)) == 1, "the simulator's return", stack)
             told["back"] = state(stack)["mode"]
-            stack.api.post("/robot/acknowledge").raise_for_status()
+            stack.api.post("/robot/commands/acknowledge").raise_for_status()
             wait(lambda: refusals(stack) == [], "the acknowledgement", stack)
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
             (data / "session.zip").write_bytes(stack.api.get(f"/sessions/{session['id']}/csv").content)

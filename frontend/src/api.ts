@@ -1,5 +1,6 @@
 /** The server's HTTP interface. Every call answers `null` or its result, or what went wrong in words. */
 import type { components } from './generated/api';
+import type { Commands } from './generated/commands';
 import type { State } from './generated/topics';
 import { command, download, request, send, upload, type Answer } from './http';
 
@@ -35,11 +36,11 @@ export type ScenarioEvent = Schemas['ScenarioEvent'];
 export type ScenarioCheck = Schemas['ScenarioCheck'];
 export type ScenarioState = Schemas['ScenarioState'];
 export type ScenarioStart = Schemas['ScenarioStart'];
-export type VisionSettings = Schemas['VisionSettings'];
-export type ColourRange = Schemas['ColourRange'];
+export type VisionSettings = Commands['vision_settings'];
+export type { ColourRange } from './generated/topics';
 export type PickedColour = Schemas['PickedColour'];
 export type View = Schemas['View'];
-export type Course = Schemas['Course']['by'];
+export type Course = Commands['steering']['by'];
 export type KeptLayout = Schemas['KeptLayout'];
 export type OwnPanel = Schemas['OwnPanel'];
 export type ThesisTable = Schemas['ThesisTable'];
@@ -54,7 +55,7 @@ export type LimitCycle = Schemas['LimitCycleFound'];
 export type LoopName = TuningRun['loop'];
 export type ParameterChange = Schemas['Change'];
 export type Profile = Schemas['Profile'];
-export type ParameterValue = Profile['values'][string];
+export type ParameterValue = Commands['parameters']['values'][string];
 export type Restored = Schemas['Restored'];
 /** who drives an armed robot: the pilot or the controller */
 export type Piloting = Extract<State['mode'], 'manual' | 'automatic'>;
@@ -110,10 +111,9 @@ function orderFor<T>(method: string, path: string, body?: object): Promise<Answe
 
 export const api = {
   stop: () => command('POST', '/robot/stop', undefined, TIMEOUT_STOP),
-  arm: (mode: Piloting) => order('POST', '/robot/arm', { mode }),
-  changeMode: (mode: Piloting) => order('PUT', '/robot/mode', { mode }),
-  checkFins: () => order('POST', '/robot/check-fins', undefined, TIMEOUT_CHECK),
-  acknowledge: () => order('POST', '/robot/acknowledge'),
+  /** Send the robot a command; STOP has its own way. */
+  command: <Name extends keyof Commands>(name: Name, fields: Commands[Name]) =>
+    order('POST', `/robot/commands/${name}`, fields, name === 'check_fins' ? TIMEOUT_CHECK : undefined),
   takeControl: () => command('POST', '/control/take'),
   releaseControl: () => command('POST', '/control/release'),
   takeControlOver: () => command('POST', '/control/take?over=true'),
@@ -125,18 +125,10 @@ export const api = {
   changeDevice: (device: number, said: { role?: Role; name?: string }) => command('PATCH', `/access/devices/${device}`, said),
   revoke: (device: number) => command('DELETE', `/access/devices/${device}`),
   makeToken: (name: string, role: Role) => request<Token>('POST', '/access/tokens', { name, role }),
-  controller: (name: string, gains: Record<string, number>) => order('PUT', '/robot/controller', { name, gains }),
-  changeLoop: (name: LoopName, change: Partial<Schemas['LoopChange']>) => order('PUT', `/robot/loops/${name}`, change),
-  setPoints: (points: Schemas['SetPoints']) => order('PUT', '/robot/set-points', points),
-  steering: (by: Course) => order('PUT', '/robot/steering', { by }),
-  card: (colour: string | null) => order('PUT', '/robot/card', { colour }),
-  vision: (wanted: Schemas['Vision']) => order('PUT', '/robot/vision', wanted),
-  visionSettings: () => request<Schemas['VisionInForce']>('GET', '/vision'),
-  changeVision: (settings: VisionSettings) => order('PUT', '/vision', settings),
+  visionSettings: () => request<{ settings: VisionSettings; configured: VisionSettings }>('GET', '/vision'),
   pick: (place: Schemas['PickPlace']) => request<PickedColour>('POST', '/vision/pick', place),
   visionFile: '/api/vision/toml',
   readVision: (text: string) => request<VisionSettings>('POST', '/vision/read', { text }),
-  changeParameters: (values: Profile['values']) => order('PATCH', '/parameters', { values }),
   parameterChanges: () => request<ParameterChange[]>('GET', '/parameters/changes'),
   undoParameters: (change: ParameterChange['id']) => order('POST', '/parameters/undo', { change }),
   profiles: () => request<Profile[]>('GET', '/profiles'),

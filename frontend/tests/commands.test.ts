@@ -15,20 +15,20 @@ describe('a page that may not command', () => {
     });
     refuseCommands('a replay');
     const orders = [
-      () => api.arm('manual'),
-      () => api.changeMode('automatic'),
-      () => api.checkFins(),
-      () => api.acknowledge(),
-      () => api.controller('pid', {}),
-      () => api.setPoints({ default: 1 }),
-      () => api.card(null),
-      () => api.vision({ rate: 4 }),
+      () => api.command('arm', { mode: 'manual' }),
+      () => api.command('mode', { mode: 'automatic' }),
+      () => api.command('check_fins', {}),
+      () => api.command('acknowledge', {}),
+      () => api.command('loop', { name: 'depth', controller: 'pid' }),
+      () => api.command('parameters', { values: { 'control.set_point': 1 } }),
+      () => api.command('card', {}),
+      () => api.command('steering', { by: 'none' }),
     ];
     for (const order of orders) expect(await order()).toBe('a replay');
     expect(sent).toEqual([]);
     expect(await api.stop()).toBeNull();
     expect(sent).toEqual(['/api/robot/stop']);
     refuseCommands(null);
-    expect(await api.arm('manual')).toBeNull();
+    expect(await api.command('arm', { mode: 'manual' })).toBeNull();
   });
 });

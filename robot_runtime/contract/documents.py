@@ -187,7 +187,7 @@ class Pace:
 
 
 ParameterType = Literal["number", "whole", "choice", "switch"]
-ParameterValue = float | str | bool
+ParameterValue = int | float | str | bool
 Where = Literal["runtime", "firmware"]
 
 

@@ -1,10 +1,15 @@
-"""Limits of numbers in a configuration, and the error for a configuration that cannot be used."""
+"""Limits of quantities, each stated once for configuration, commands, HTTP interface and page."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import pi
+from typing import Annotated, Literal
+
+from annotated_types import Ge, GroupedMetadata, Le
 
 
 class ConfigError(ValueError):
-    """A configuration that cannot be used; each of `problems` names an entry and what it may be."""
+    """A configuration or command that cannot be used; each of `problems` names an entry and its range."""
 
     def __init__(self, *problems: str) -> None:
         super().__init__("; ".join(problems))
@@ -12,14 +17,40 @@ class ConfigError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Range:
-    """Limits of a number, both included."""
+class Range(GroupedMetadata):
+    """Limits of a number, both included; pydantic reads them as `ge` and `le`."""
 
     minimum: float
     maximum: float
 
+    def __iter__(self) -> Iterator[Ge | Le]:
+        yield Ge(self.minimum)
+        yield Le(self.maximum)
 
+
+LoopName = Literal["depth", "heading", "pitch", "roll"]
+TILT_MAX = 0.5
+"""rad."""
 SET_POINT = Range(0, 10)
-"""m; what a wanted depth may be, in the file and later."""
+"""m, of the depth."""
+SET_POINTS: dict[LoopName, Range] = {
+    "depth": SET_POINT,
+    "heading": Range(-pi, pi),
+    "pitch": Range(-TILT_MAX, TILT_MAX),
+    "roll": Range(-TILT_MAX, TILT_MAX),
+}
+"""Of each loop; m, of the angles rad."""
 VISION_RATE = Range(2, 30)
-"""Hz; slower, and what was seen would be stale before the next look."""
+"""Hz; a lower rate leaves the newest detection stale before the next one."""
+ALONE = Range(0, 3600)
+"""s for which an armed robot may go on without a server."""
+
+DepthSetPoint = Annotated[float, SET_POINT]
+VisionRate = Annotated[float, VISION_RATE]
+AloneSeconds = Annotated[float, ALONE]
+SettleSeconds = Annotated[float, Range(0, 120)]
+"""For which an experiment waits for the loop to settle."""
+ExperimentSeconds = Annotated[float, Range(2, 300)]
+RelayAmplitude = Annotated[float, Range(0.1, 1.0)]
+"""Share of the largest command."""
+RelayCycles = Annotated[int, Range(3, 20)]

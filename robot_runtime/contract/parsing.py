@@ -89,10 +89,22 @@ def read_value(hint: Any, value: Any, where: str) -> Any:
             )
         return value
     if get_origin(hint) in (types.UnionType, Union):
-        # TOML has no null: what may be None is left out.
-        (inner,) = (one for one in get_args(hint) if one is not types.NoneType)
-        return read_value(inner, value, where)
+        return _read_union(get_args(hint), value, where)
     return _plain(hint, value, where)
+
+
+def _read_union(hints: tuple[Any, ...], value: Any, where: str) -> Any:
+    if value is None and types.NoneType in hints:
+        return None
+    kinds = [one for one in hints if one is not types.NoneType]
+    if len(kinds) == 1:
+        return read_value(kinds[0], value, where)
+    for kind in kinds:
+        try:
+            return read_value(kind, value, where)
+        except ConfigError:
+            continue
+    raise ConfigError(f"{where} is {value!r}; it must be {' or '.join(_WORDS[kind] for kind in kinds)}")
 
 
 def _plain(hint: Any, value: Any, where: str) -> Any:

@@ -5,10 +5,10 @@ The loop is lent to them, and nothing of its own is changed: afterwards it goes 
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.controllers.base import GainLimits
@@ -22,40 +22,6 @@ BALANCED = 0.1
 """Share of a cycle by which its halves may differ for the relay to count as balanced."""
 BALANCING_MOST = 6
 """Cycles after which it goes on unbalanced: the bias is at its limit then, or the water is not still."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StepSettings:
-    """From `start` to `target` and `duration` (s) there.
-
-    The start is held until the value stays within `tolerance` of it, and for `settle` (s) at most. Values in
-    the loop's unit; those beyond `low` and `high` end it.
-    """
-
-    start: float
-    target: float
-    tolerance: float
-    settle: float
-    duration: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelaySettings:
-    """`cycles` of a relay of ±`amplitude` (share of the most) about `set_point`.
-
-    It switches `hysteresis` beyond the set point, and gives up after `duration` (s). Values in the loop's
-    unit; those beyond `low` and `high` end it.
-    """
-
-    set_point: float
-    amplitude: float
-    hysteresis: float
-    cycles: int
-    duration: float
-    low: float
-    high: float
 
 
 class LoopExperiment(ABC):
@@ -117,7 +83,7 @@ class StepExperiment(LoopExperiment):
 
     kind = "step"
 
-    def __init__(self, settings: StepSettings, clock: Clock) -> None:
+    def __init__(self, settings: StepExperimentCommand, clock: Clock) -> None:
         super().__init__(clock, settings.low, settings.high)
         self._settings = settings
         self._away = self._began
@@ -154,7 +120,7 @@ class RelayExperiment(LoopExperiment):
 
     kind = "relay"
 
-    def __init__(self, settings: RelaySettings, clock: Clock) -> None:
+    def __init__(self, settings: RelayExperimentCommand, clock: Clock) -> None:
         super().__init__(clock, settings.low, settings.high)
         self._settings = settings
         self._override = LoopOverride(_Relay(self), settings.set_point)

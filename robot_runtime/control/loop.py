@@ -1,25 +1,15 @@
 """A control loop: one axis, its measured value, set point and controllers."""
 
 from dataclasses import dataclass
-from math import degrees, pi
+from math import degrees
 from typing import Literal
 
-from robot_runtime.contract.limits import SET_POINT, Range
+from robot_runtime.contract.limits import SET_POINTS, LoopName
 from robot_runtime.control.attitude import wrap_angle
 from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import RefusedError
 
-LoopName = Literal["depth", "heading", "pitch", "roll"]
 Axis = Literal["z", "yaw", "pitch", "roll"]
-TILT_MAX = 0.5
-"""rad."""
-SET_POINTS: dict[LoopName, Range] = {
-    "depth": SET_POINT,
-    "heading": Range(-pi, pi),
-    "pitch": Range(-TILT_MAX, TILT_MAX),
-    "roll": Range(-TILT_MAX, TILT_MAX),
-}
-"""What a loop's set point may be; m, of the angles rad."""
 
 
 @dataclass(frozen=True, slots=True)

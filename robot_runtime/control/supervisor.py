@@ -22,8 +22,6 @@ ARM_WAIT = 0.1
 """s between two STARTs."""
 _ARM_BYTES = 96
 """What START and the answer wait for and are themselves, on the line."""
-ALONE_MAX = 3600.0
-"""s for which a mission may go on without the server, at most."""
 
 _ARM: dict[Mode, Trigger] = {"automatic": "arm", "manual": "arm manual", "test": "check fins"}
 _CHANGE: dict[Mode, Trigger] = {"manual": "take over", "automatic": "hand back"}

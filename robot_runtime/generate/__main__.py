@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from robot_runtime.generate import cpp, json_schema, typescript
+from robot_runtime.generate.commands import commands_page
 from robot_runtime.generate.configuration import configuration_page
 from robot_runtime.generate.faults import faults_page
 from robot_runtime.generate.packets import packets_page
@@ -27,6 +28,8 @@ def main() -> int:
         "firmware/src/parameters.gen.h": cpp.parameters(),
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
+        "frontend/src/generated/commands.ts": typescript.commands_module(),
+        "docs/reference/commands.md": commands_page(),
         "docs/reference/configuration.md": configuration_page(
             (SOURCES / "robot.toml").read_text(encoding="utf-8")
         ),

@@ -7,6 +7,7 @@ import typing
 from enum import IntEnum, IntFlag
 
 from robot_runtime.contract import documents
+from robot_runtime.contract.commands import HTTP_COMMANDS, RobotCommand, is_required
 from robot_runtime.contract.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
 from robot_runtime.contract.packets.layout import Record, Wire
 from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
@@ -59,6 +60,31 @@ def module() -> str:
         f"export interface Documents {{\n{names}\n}}\n",
     ]
     return "\n".join(parts)
+
+
+def commands_module() -> str:
+    """The whole text of commands.ts."""
+    parts = [
+        "// Written by `make generate` from robot_runtime/contract/commands.py. Do not edit.\n"
+        "import type { ColourRange } from './topics';\n",
+        *(_command(cls) for cls in HTTP_COMMANDS),
+        "/** The body of each command, by its name. */\nexport interface Commands {\n"
+        + "".join(f"  {cls.policy.name}: {cls.__name__};\n" for cls in HTTP_COMMANDS)
+        + "}\n",
+    ]
+    return "\n".join(parts)
+
+
+def _command(cls: type[RobotCommand]) -> str:
+    hints = typing.get_type_hints(cls)
+    lines = []
+    for one in dataclasses.fields(cls):
+        note = one.metadata.get("description", "")
+        lines += [f"  /** {note} */"] if note else []
+        lines.append(f"  {one.name}{'' if is_required(one) else '?'}: {_type(hints[one.name])};")
+    if not lines:
+        return f"/** {cls.__doc__} */\nexport type {cls.__name__} = Record<string, never>;\n"
+    return f"/** {cls.__doc__} */\nexport interface {cls.__name__} {{\n" + "\n".join(lines) + "\n}\n"
 
 
 def _enum(enum: type[IntEnum] | type[IntFlag]) -> str:
@@ -144,7 +170,7 @@ def _type(hint: typing.Any) -> str:
     if origin is typing.Literal:
         return " | ".join(f"'{value}'" for value in typing.get_args(hint))
     if origin is types.UnionType:
-        return " | ".join(_type(part) for part in typing.get_args(hint))
+        return " | ".join(dict.fromkeys(_type(part) for part in typing.get_args(hint)))
     if origin is list:
         return f"{_type(typing.get_args(hint)[0])}[]"
     if origin is tuple:

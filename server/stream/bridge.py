@@ -156,30 +156,29 @@ class Bridge:
         for name in wanted - self._pictures.keys():
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
-    async def command(self, name: str, payload: Mapping[str, Any]) -> None:
-        """Have the runtime do something. Raises RefusedError with its reason, or RuntimeSilentError."""
+    async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Have the runtime perform a command; its answer. Raises RefusedError, RuntimeSilentError.
+
+        Commands that change parameters go through `Changes`, which notes them.
+        """
         if name == "stop" and self.on_stop is not None:
             self.on_stop()
-        await self._ask(f"command/{name}", payload, stop=name == "stop")
-
-    async def tune(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Have the runtime do what may change parameters; what it changed. Raises as `command` does."""
-        return await self._ask(f"command/{name}", payload, stop=False)
+        return await self._ask(f"command/{name}", payload, stop=name == "stop")
 
     async def disarm(self) -> None:
         """STOP as a scenario's own step, which ends no scenario. Raises RuntimeSilentError."""
         await self._ask("command/stop", {}, stop=True)
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulator answers. Raises RefusedError with its reason, or RuntimeSilentError."""
+        """What the simulator answers. Raises RefusedError, RuntimeSilentError."""
         return await self._ask(f"simulator/{name}", payload, stop=False)
 
     async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
-        """What the runtime says to a question. Raises RefusedError with its reason, or RuntimeSilentError."""
+        """What the runtime says to a question. Raises RefusedError, RuntimeSilentError."""
         return await self._ask(f"query/{name}", question or {}, stop=False)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulated scene answers. Raises RefusedError with its reason, or RuntimeSilentError."""
+        """What the simulated scene answers. Raises RefusedError, RuntimeSilentError."""
         try:
             return await self._ask(f"scene/{name}", payload, stop=False)
         except RuntimeSilentError as problem:

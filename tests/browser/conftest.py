@@ -81,9 +81,9 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportS
     # The next test finds the robot as this one did.
     stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
-    stack.api.post("/robot/acknowledge").raise_for_status()
+    stack.api.post("/robot/commands/acknowledge").raise_for_status()
     for session in stack.api.get("/sessions").json():
         if session["state"] == "recording":
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
-    stack.api.put("/robot/card", json={"colour": None}).raise_for_status()
+    stack.api.post("/robot/commands/card", json={"colour": None}).raise_for_status()
     assert complaints == []

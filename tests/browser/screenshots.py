@@ -35,11 +35,22 @@ STEP = {"kind": "step", "start": 0.4, "target": 0.7, "tolerance": 0.05, "settle"
 RELAY = {"kind": "relay", "set_point": 0.6, "amplitude": 1.0, "hysteresis": 0.01, "cycles": 3, "duration": 60}
 
 
+def choose(stack: Stack, controller: str) -> None:
+    """Steer the depth by this controller."""
+    wanted = {"name": "depth", "controller": controller}
+    stack.api.post("/robot/commands/loop", json=wanted).raise_for_status()
+
+
+def tune_parameters(stack: Stack, **values: float | str) -> None:
+    """Set parameters by their names."""
+    stack.api.post("/robot/commands/parameters", json={"values": values}).raise_for_status()
+
+
 def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
     """Record a dive from the surface."""
-    stack.api.put("/robot/controller", json={"name": controller}).raise_for_status()
+    choose(stack, controller)
     session = stack.api.post("/sessions", json={"name": name, "note": "still water"}).json()["id"]
-    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
     wait_for_depth(watcher, DEPTH - 0.1, DEPTH)
     stack.api.post(f"/sessions/{session}/markers", json={"text": "nearly there"}).raise_for_status()
     for _ in range(3):
@@ -53,9 +64,9 @@ def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
 
 def tune(stack: Stack) -> None:
     """A step response of two controllers, and a relay experiment."""
-    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
     for controller in TUNED:
-        stack.api.put("/robot/controller", json={"name": controller}).raise_for_status()
+        choose(stack, controller)
         experiment(stack, STEP)
     experiment(stack, RELAY | LIMITS)
     stack.api.post("/robot/stop").raise_for_status()
@@ -70,13 +81,13 @@ def prepare(stack: Stack, watcher: Page) -> None:
     """Experiments, two sessions that can be compared, and a robot that swims and records."""
     tune(stack)
     wait_for_depth(watcher, -0.1, 0.05)
-    stack.api.put("/robot/set-points", json={"default": DEPTH}).raise_for_status()
+    tune_parameters(stack, **{"control.set_point": DEPTH})
     for name, controller in zip(SESSIONS, CONTROLLERS, strict=True):
         dive(stack, watcher, name, controller)
     stack.api.post("/sessions", json={"name": "Hovering", "note": ""}).raise_for_status()
-    wait(lambda: stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
-    stack.api.put("/robot/vision", json={"colour": "green"}).raise_for_status()
-    stack.api.put("/robot/card", json={"colour": "green"}).raise_for_status()
+    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
+    tune_parameters(stack, **{"vision.colour": "green"})
+    stack.api.post("/robot/commands/card", json={"colour": "green"}).raise_for_status()
     wait_for_depth(watcher, DEPTH - 0.05, 1.0)
 
 

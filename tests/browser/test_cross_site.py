@@ -22,7 +22,7 @@ ATTACKS = """async (target) => {
     try { results[name] = await promise } catch (problem) { results[name] = 'refused' }
   }
   const json = { 'content-type': 'application/json' }
-  const asked = { '/api/robot': null, '/api/sessions': { name: 'evil' }, '/api/robot/arm': {},
+  const asked = { '/api/robot': null, '/api/sessions': { name: 'evil' }, '/api/robot/commands/arm': {},
     '/api/access/tokens': { name: 'evil', role: 'operator' }, '/api/control/take': {} }
   for (const [path, body] of Object.entries(asked)) {
     const request = body === null ? {} : { method: 'POST', body: JSON.stringify(body) }
@@ -33,8 +33,10 @@ ATTACKS = """async (target) => {
       .then(async (answer) => answer.type === 'opaque' ? 'refused' : await answer.text()))
     if (body !== null) navigator.sendBeacon(target + path, new Blob([request.body], { type: 'text/plain' }))
   }
-  await settle('set points', fetch(target + '/api/robot/set-points', { method: 'PUT', credentials: 'include',
-    headers: { ...json, 'x-mucat': 'page' }, body: '{"default": 7.5}' }).then((answer) => answer.text()))
+  const commands = '/api/robot/commands/'
+  await settle('set points', fetch(target + commands + 'parameters', { method: 'POST', credentials: 'include',
+    headers: { ...json, 'x-mucat': 'page' }, body: '{"values": {"control.set_point": 7.5}}' })
+    .then((answer) => answer.text()))
   await settle('socket', new Promise((resolve, reject) => {
     const socket = new WebSocket(target.replace('http', 'ws') + '/api/live')
     socket.onopen = () => resolve('open')
@@ -60,7 +62,7 @@ ATTACKS = """async (target) => {
   frame.src = target + '/'
   document.body.append(frame)
   await new Promise((resolve) => { frame.onload = resolve })
-  for (const [path, name, value] of [['/api/sessions', '{"name": "evil', '"}'], ['/api/robot/arm', 'a', 'b'],
+  for (const [path, name, value] of [['/api/sessions', '{"name": "evil', '"}'], [commands + 'arm', 'a', 'b'],
       ['/api/access/sign-out', 'a', 'b']]) {
     const answered = document.createElement('iframe')
     answered.name = 'answer' + path

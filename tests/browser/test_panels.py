@@ -17,7 +17,7 @@ export const topics = ['depth', 'nothing'];
 export default async function panel(root) {
   const tries = {
     state: () => fetch('/api/robot').then((answer) => answer.text()),
-    arm: () => fetch('/api/robot/arm', { method: 'POST', headers: { 'X-Mucat': 'page' } }),
+    arm: () => fetch('/api/robot/commands/arm', { method: 'POST', headers: { 'X-Mucat': 'page' } }),
     blind: () => fetch('/api/robot/stop', { method: 'POST', mode: 'no-cors', credentials: 'include' }),
     socket: () => new Promise((resolve, reject) => {
       const socket = new WebSocket(location.href.replace(/^http(.*)panels.frame/, 'ws$1live'));

@@ -21,7 +21,7 @@ def value(stack: Stack, name: str) -> object:
 def amplitude(stack: Stack) -> Iterator[None]:
     """Afterwards, and once the page has left, as it was."""
     yield
-    stack.api.patch("/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
+    stack.api.post("/robot/commands/parameters", json={"values": {AMPLITUDE: 1.6}}).raise_for_status()
 
 
 @pytest.mark.usefixtures("amplitude")

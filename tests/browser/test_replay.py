@@ -77,7 +77,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     assert commands == []
 
     # The robot itself can be stopped from here, and is.
-    stack.api.post("/robot/arm").raise_for_status()
+    stack.api.post("/robot/commands/arm").raise_for_status()
     expect(page.get_by_text("ARMED", exact=True)).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.locator(".now")).to_contain_text("disarmed")

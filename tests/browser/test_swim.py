@@ -154,15 +154,16 @@ def test_both_sizes_show_what_matters(any_page: Page) -> None:
 @pytest.mark.parametrize(
     ("body", "why"),
     [
-        ('{"name": "pid", "gains": {"kp": 51}}', "between 0 and 50"),
-        ('{"name": "fuzzy"}', "no controller 'fuzzy'"),
-        ('{"name": "pid", "gains": {"kp": NaN}}', ""),
-        ('{"name": "pid", "gains": {"kq": 1}}', "no gain 'kq'"),
+        ('{"name": "depth", "controller": "pid", "gains": {"kp": 51}}', "between 0 and 50"),
+        ('{"name": "depth", "controller": "fuzzy"}', "no controller 'fuzzy'"),
+        ('{"name": "depth", "controller": "pid", "gains": {"kp": NaN}}', ""),
+        ('{"name": "depth", "controller": "pid", "gains": {"kq": 1}}', "no gain 'kq'"),
     ],
 )
 def test_refused_controllers_are_told_in_words(stack: Stack, body: str, why: str) -> None:
     before = stack.api.get("/robot").json()["controllers"]
-    answer = stack.api.put("/robot/controller", content=body, headers={"Content-Type": "application/json"})
+    json = {"Content-Type": "application/json"}
+    answer = stack.api.post("/robot/commands/loop", content=body, headers=json)
     assert answer.status_code in (409, 422)
     assert why in answer.json()["detail"]
     assert stack.api.get("/robot").json()["controllers"] == before
@@ -198,15 +199,15 @@ def test_a_reload_keeps_what_happened(page: Page) -> None:
 
 def test_a_board_that_was_reset_is_disarmed_and_can_be_armed_again(stack: Stack) -> None:
     wait_for_state(stack, lambda state: state["refusals"] == [])
-    stack.api.post("/robot/arm").raise_for_status()
+    stack.api.post("/robot/commands/arm").raise_for_status()
     epoch = stack.api.get("/robot").json()["epoch"]
     with EmulatorClient(stack.data / "run/board.sock") as board:
         board.reset()
     wait_for_state(stack, lambda state: state["mode"] == "failsafe" and state["epoch"] == epoch + 1)
-    stack.api.post("/robot/acknowledge").raise_for_status()
+    stack.api.post("/robot/commands/acknowledge").raise_for_status()
     wait_for_state(stack, lambda state: state["refusals"] == [])
     # The chip wants half a second of steady traffic first, and says so where it refuses.
-    wait_for_state(stack, lambda _: stack.api.post("/robot/arm").status_code == 204)
+    wait_for_state(stack, lambda _: stack.api.post("/robot/commands/arm").status_code == 204)
     wait_for_state(stack, lambda state: bool(state["armed"]))
     stack.api.post("/robot/stop").raise_for_status()
 

@@ -69,7 +69,7 @@ def depth(stack: Stack) -> Iterator[dict[str, Any]]:
     pid = next(one for one in loop["controllers"] if one["name"] == "pid")
     gains = {one["name"]: one["value"] for one in pid["gains"]}
     for change in ({"controller": "pid", "gains": gains}, {"controller": loop["controller"]}):
-        stack.api.put("/robot/loops/depth", json=change).raise_for_status()
+        stack.api.post("/robot/commands/loop", json={"name": "depth", **change}).raise_for_status()
 
 
 def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(

@@ -26,7 +26,7 @@ CARD_SHARE = 0.26 * 0.36 * 3 / 4
 @pytest.fixture
 def card(stack: Stack, request: pytest.FixtureRequest) -> None:
     """Before the page opens, which then has the control that this takes."""
-    stack.api.put("/robot/card", json={"colour": request.param}).raise_for_status()
+    stack.api.post("/robot/commands/card", json={"colour": request.param}).raise_for_status()
 
 
 @pytest.fixture
@@ -34,10 +34,13 @@ def settings(stack: Stack) -> Iterator[dict[str, Any]]:
     """As they are before, and again afterwards; and the set points."""
     before: dict[str, Any] = stack.api.get("/vision").raise_for_status().json()["settings"]
     robot = stack.api.get("/robot").json()
-    points = {"default": robot["set_point_default"], "detected": robot["set_point_detected"]}
+    points = {
+        "control.set_point": robot["set_point_default"],
+        "control.set_point_detected": robot["set_point_detected"],
+    }
     yield before
-    stack.api.put("/vision", json=before).raise_for_status()
-    stack.api.put("/robot/set-points", json=points).raise_for_status()
+    stack.api.post("/robot/commands/vision_settings", json=before).raise_for_status()
+    stack.api.post("/robot/commands/parameters", json={"values": points}).raise_for_status()
 
 
 def pick_the_middle(page: Page) -> None:

@@ -215,8 +215,8 @@ class Storm:
     def _swim(self) -> None:
         """Armed again, where it was stopped; a refusal is not what is tested here."""
         with suppress(httpx.TransportError):
-            self._stack.api.post("/robot/acknowledge")
-            self._stack.api.post("/robot/arm")
+            self._stack.api.post("/robot/commands/acknowledge")
+            self._stack.api.post("/robot/commands/arm")
 
     def _rest(self, seconds: float) -> None:
         end = time.monotonic() + seconds

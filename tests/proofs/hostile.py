@@ -328,13 +328,13 @@ def robot_words(field: Field) -> None:
     words = field.words
     path, body = words.choose(
         (
-            ("controller", {"name": words.value(), "gains": {words.word(): words.value()}}),
-            ("set-points", {"default": words.value(), words.word(): 1}),
+            ("loop", {"name": "depth", "controller": words.value(), "gains": {words.word(): words.value()}}),
+            ("parameters", {"values": {words.word(): words.value()}, words.word(): 1}),
             ("card", {"colour": words.value()}),
-            ("vision", {"rate": words.value(), "colour": words.value()}),
+            ("vision_settings", {"rate": words.value(), "colour": words.value()}),
         )
     )
-    field.ask("PUT", f"robot/{path}", body)
+    field.ask("POST", f"robot/commands/{path}", body)
 
 
 @entrance("words on the live socket")

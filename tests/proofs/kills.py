@@ -121,7 +121,7 @@ def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None)
 
 def _arm(stack: Stack) -> None:
     """So that it swims; a refusal only means that it has to be asked again after the next kill."""
-    stack.api.post("/robot/arm")
+    stack.api.post("/robot/commands/arm")
 
 
 def _samples(stack: Stack, session: int) -> int:

@@ -171,7 +171,7 @@ class World:
         """Disarmed, nothing to acknowledge, everything well."""
         self.wait_well()
         self.stack.api.post("/robot/stop").raise_for_status()
-        self.stack.api.post("/robot/acknowledge").raise_for_status()
+        self.stack.api.post("/robot/commands/acknowledge").raise_for_status()
         wait(lambda: not self.viewer.alarms and not self.viewer.state["armed"], "no alarm")
 
     def wait_well(self) -> None:
@@ -181,7 +181,7 @@ class World:
 
     def arm(self) -> None:
         """Swim: with power, and fins that move."""
-        wait(lambda: self.stack.api.post("/robot/arm").status_code == 204, "the robot to arm")
+        wait(lambda: self.stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
         try:
             wait(lambda: self.fins.seen[-1].powered and self.fins.seen[-1].moving, "the fins to move")
         except AssertionError as problem:

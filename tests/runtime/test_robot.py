@@ -270,9 +270,9 @@ def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
         ("controller", {"name": "fuzzy"}, "no controller 'fuzzy'"),
         ("controller", {"name": "pid", "gains": {"kp": 1e6}}, "between 0 and 50"),
         ("controller", {"name": "pid", "gains": {"kp": "3"}}, "must be a number"),
-        ("controller", {"name": "pid", "gains": [3]}, "numbers by name"),
+        ("controller", {"name": "pid", "gains": [3]}, "gains is \\[3\\]; it must be a table"),
         ("controller", {}, "name is missing"),
-        ("set_points", {"default": 11}, "not between 0 and 10"),
+        ("set_points", {"default": 11}, "must lie between 0 and 10"),
         ("set_points", {"default": "deep"}, "must be a number"),
         ("card", {"colour": "plaid"}, "no card of colour 'plaid'"),
         ("vision", {"rate": 1000}, "must lie between 2 and 30"),
@@ -284,8 +284,8 @@ def test_what_the_board_sends_is_published_unchanged(rig: Rig) -> None:
         ("parameters", {"values": {"fins.amplitude": 1.7}}, "between 0.2 and 1.6 rad"),
         ("parameters", {"values": {"depth.pid.kp": 4, "nothing": 1}}, "no parameter 'nothing'"),
         ("parameters", {"values": {"vision.rate": 5}, "expected": {"vision.rate": 6}}, "not 6 any more"),
-        ("parameters", {"values": [3]}, "by parameters' names"),
-        ("parameters", {}, "by parameters' names"),
+        ("parameters", {"values": [3]}, "must be a table"),
+        ("parameters", {}, "values is missing"),
     ],
 )
 def test_bad_commands_are_refused_with_the_reason(

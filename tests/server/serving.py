@@ -58,7 +58,8 @@ class Served:
         async with asyncio.timeout(SECONDS):
             while True:
                 try:
-                    return await self.container.bridge.command("there", {})
+                    await self.container.bridge.command("there", {})
+                    return
                 except (RuntimeSilentError, RefusedError):
                     await asyncio.sleep(0.005)
 

@@ -51,37 +51,51 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
     play(settings, scenario)
 
 
-COMMANDS = [
-    ("POST", "stop", None, "stop", {}),
-    ("POST", "arm", None, "arm", {}),
+DEPTHS = {"control.set_point": 0, "control.set_point_detected": 10}
+CHANGED = {"changed": [{"name": "depth.pid.kp", "before": 1, "after": 2}], "left_out": []}
+COMMANDS: list[tuple[str, object, str, dict[str, Any]]] = [
+    ("stop", None, "stop", {}),
+    ("commands/arm", None, "arm", {}),
     (
-        "PUT",
-        "controller",
-        {"name": "pid", "gains": {"kp": 2}},
-        "controller",
-        {"name": "pid", "gains": {"kp": 2}},
+        "commands/loop",
+        {"name": "depth", "controller": "pid", "gains": {"kp": 2}},
+        "loop",
+        {"name": "depth", "controller": "pid", "gains": {"kp": 2}},
     ),
-    ("PUT", "controller", {"name": "pid"}, "controller", {"name": "pid", "gains": {}}),
-    ("PUT", "set-points", {"default": 0.4}, "set_points", {"default": 0.4}),
     (
-        "PUT",
-        "set-points",
-        {"default": 0, "detected": 10},
-        "set_points",
-        {"default": 0, "detected": 10},
+        "commands/loop",
+        {"name": "depth", "controller": "pid"},
+        "loop",
+        {"name": "depth", "controller": "pid"},
     ),
-    ("PUT", "card", {"colour": "red"}, "card", {"colour": "red"}),
-    ("PUT", "card", {"colour": None}, "card", {"colour": None}),
-    ("PUT", "vision", {"rate": 8}, "vision", {"rate": 8}),
-    ("PUT", "vision", {"colour": "red"}, "vision", {"colour": "red"}),
+    (
+        "commands/parameters",
+        {"values": {"control.set_point": 0.4}},
+        "parameters",
+        {"values": {"control.set_point": 0.4}},
+    ),
+    ("commands/parameters", {"values": DEPTHS}, "parameters", {"values": DEPTHS}),
+    ("commands/card", {"colour": "red"}, "card", {"colour": "red"}),
+    ("commands/card", {"colour": None}, "card", {}),
+    (
+        "commands/parameters",
+        {"values": {"vision.rate": 8}, "expected": {"vision.rate": 4}},
+        "parameters",
+        {"values": {"vision.rate": 8}, "expected": {"vision.rate": 4}},
+    ),
+    ("commands/steering", {"by": "beacons"}, "steering", {"by": "beacons"}),
 ]
 
 
 def test_every_command_reaches_the_runtime(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        for method, path, body, name, expected in COMMANDS:
-            answer = await served.api.request(method, f"/robot/{path}", json=body)
-            assert (answer.status_code, answer.content) == (204, b""), answer.text
+        served.runtime.answer = {"changed": {"depth.pid.kp": [1, 2]}}
+        for path, body, name, expected in COMMANDS:
+            answer = await served.api.post(f"/robot/{path}", json=body)
+            if name in ("stop", "arm", "card"):
+                assert (answer.status_code, answer.content) == (204, b""), answer.text
+            else:
+                assert (answer.status_code, answer.json()) == (200, CHANGED), answer.text
             assert served.runtime.asked[-1] == (name, expected)
         assert len(served.runtime.asked) == len(COMMANDS)
 
@@ -89,20 +103,20 @@ def test_every_command_reaches_the_runtime(settings: Settings) -> None:
 
 
 INVALID = [
-    ("controller", "{}"),
-    ("controller", '{"name": ""}'),
-    ("controller", '{"name": "pid", "gains": {"kp": NaN}}'),
-    ("controller", '{"name": "pid", "gains": {"kp": Infinity}}'),
-    ("controller", '{"name": "pid", "extra": 1}'),
-    ("set-points", '{"default": -0.1}'),
-    ("set-points", '{"default": 10.1}'),
-    ("set-points", '{"detected": "deep"}'),
-    ("card", "{}"),
+    ("loop", "{}"),
+    ("loop", '{"name": ""}'),
+    ("loop", '{"name": "depth", "controller": "pid", "gains": {"kp": NaN}}'),
+    ("loop", '{"name": "depth", "controller": "pid", "gains": {"kp": Infinity}}'),
+    ("loop", '{"name": "depth", "controller": "pid", "extra": 1}'),
+    ("loop", '{"name": "depth", "set_point": -0.1}'),
+    ("loop", '{"name": "depth", "set_point": 10.1}'),
+    ("loop", '{"name": "depth", "set_point": "deep"}'),
+    ("card", '{"color": "red"}'),
     ("card", '{"colour": 3}'),
-    ("vision", '{"rate": 0}'),
-    ("vision", '{"rate": 1e999}'),
-    ("vision", "no JSON"),
-    ("vision", "[]"),
+    ("vision_settings", '{"rate": 0}'),
+    ("vision_settings", '{"rate": 1e999}'),
+    ("vision_settings", "no JSON"),
+    ("vision_settings", "[]"),
 ]
 
 
@@ -110,7 +124,7 @@ def test_what_is_not_valid_never_reaches_the_runtime(settings: Settings) -> None
     async def scenario(served: Served) -> None:
         for path, body in INVALID:
             headers = {"content-type": "application/json"}
-            answer = await served.api.put(f"/robot/{path}", content=body, headers=headers)
+            answer = await served.api.post(f"/robot/commands/{path}", content=body, headers=headers)
             assert answer.status_code == 422, (path, body)
             assert answer.json()["detail"].startswith("The request is not valid.")
         assert served.runtime.asked == []
@@ -145,7 +159,7 @@ def test_the_last_frames_are_asked_of_the_runtime(settings: Settings) -> None:
 def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.refusal = "There is no fresh depth. Check the pressure sensor."
-        answer = await served.api.post("/robot/arm")
+        answer = await served.api.post("/robot/commands/arm")
         assert (answer.status_code, answer.json()) == (409, {"detail": served.runtime.refusal})
 
     play(settings, scenario)
@@ -154,11 +168,11 @@ def test_a_refusal_is_passed_on_word_for_word(settings: Settings) -> None:
 @pytest.mark.parametrize(
     ("method", "path", "body", "asked"),
     [
-        ("POST", "/robot/arm", None, ("arm", {})),
-        ("POST", "/robot/arm", {"mode": "manual"}, ("arm", {"mode": "manual"})),
-        ("PUT", "/robot/mode", {"mode": "automatic"}, ("mode", {"mode": "automatic"})),
-        ("POST", "/robot/check-fins", None, ("check_fins", {})),
-        ("POST", "/robot/acknowledge", None, ("acknowledge", {})),
+        ("POST", "/robot/commands/arm", None, ("arm", {})),
+        ("POST", "/robot/commands/arm", {"mode": "manual"}, ("arm", {"mode": "manual"})),
+        ("POST", "/robot/commands/mode", {"mode": "automatic"}, ("mode", {"mode": "automatic"})),
+        ("POST", "/robot/commands/check_fins", None, ("check_fins", {})),
+        ("POST", "/robot/commands/acknowledge", None, ("acknowledge", {})),
     ],
 )
 def test_what_changes_who_steers_goes_to_the_runtime(
@@ -180,7 +194,7 @@ def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pyte
     async def scenario(served: Served) -> None:
         usage = shutil.disk_usage(settings.data.path)
         monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=19_999_999))
-        answer = await served.api.post("/robot/arm")
+        answer = await served.api.post("/robot/commands/arm")
         assert answer.status_code == 409
         assert "The disk is full: 20 MB are free" in answer.json()["detail"]
         assert served.runtime.asked == []
@@ -191,7 +205,7 @@ def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pyte
 @pytest.mark.parametrize("body", [{}, {"mode": "failsafe"}, {"mode": "manual", "alone": 60}])
 def test_no_other_mode_can_be_asked_for(settings: Settings, body: dict[str, Any]) -> None:
     async def scenario(served: Served) -> None:
-        assert (await served.api.put("/robot/mode", json=body)).status_code == 422
+        assert (await served.api.post("/robot/commands/mode", json=body)).status_code == 422
         assert served.runtime.asked == []
 
     play(settings, scenario)
@@ -223,7 +237,7 @@ def test_a_runtime_that_does_not_answer_is_told_in_the_end_and_stop_does_not_wai
             for _ in range(bridge_module.COMMANDS_AT_ONCE)
         ]
         await asyncio.sleep(0)
-        refused = await served.api.post("/robot/arm")
+        refused = await served.api.post("/robot/commands/arm")
         assert refused.status_code == 503
         assert "busy" in refused.json()["detail"]
         stopped = await served.api.post("/robot/stop")
@@ -323,12 +337,12 @@ def test_a_session_is_completed_when_the_server_ends_in_order(settings: Settings
 def test_foreign_hosts_and_pages_are_refused_everywhere(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for headers in ({"host": "evil.example"}, {"origin": "http://evil.example"}, {"origin": "null"}):
-            answer = await served.api.post("/robot/arm", headers=headers)
+            answer = await served.api.post("/robot/commands/arm", headers=headers)
             assert answer.status_code == 403
             assert answer.json()["detail"]
         assert served.runtime.asked == []
         own = await served.api.post(
-            "/robot/arm", headers={"origin": f"http://127.0.0.1:{served.settings.port}"}
+            "/robot/commands/arm", headers={"origin": f"http://127.0.0.1:{served.settings.port}"}
         )
         assert own.status_code == 204
 
@@ -386,4 +400,4 @@ def test_the_interface_is_described_in_the_same_words_every_time(capsys: pytest.
     assert "/api/live" not in paths
     assert all(way["summary"] and way["operationId"] for path in paths.values() for way in path.values())
     schemas = json.loads(first)["components"]["schemas"]
-    assert {"Health", "Session", "State", "Controller", "Problem"} <= set(schemas)
+    assert {"Health", "Session", "State", "LoopCommand", "Problem"} <= set(schemas)

@@ -708,11 +708,7 @@ export interface paths {
         delete?: never;
         options?: never;
         head?: never;
-        /**
-         * Change parameters
-         * @description All or none, between two control ticks; what has the value already is not changed.
-         */
-        patch: operations["changeParameters"];
+        patch?: never;
         trace?: never;
     };
     "/api/parameters/changes": {
@@ -899,7 +895,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/robot/acknowledge": {
+    "/api/robot/commands/acknowledge": {
         parameters: {
             query?: never;
             header?: never;
@@ -909,17 +905,17 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Acknowledge the alarms
-         * @description Say that all alarms were seen; after a failsafe the robot may be armed again from then on.
+         * Acknowledges all alarms
+         * @description Acknowledges all alarms. After a failsafe the robot may be armed again from then on.
          */
-        post: operations["acknowledgeAlarms"];
+        post: operations["commandAcknowledge"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/arm": {
+    "/api/robot/commands/arm": {
         parameters: {
             query?: never;
             header?: never;
@@ -929,37 +925,17 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Arm
-         * @description Refused with every reason that stands against it; without a body the depth controller steers.
+         * Arms the robot
+         * @description Arms the robot. It is refused with every reason that stands against it.
          */
-        post: operations["armRobot"];
+        post: operations["commandArm"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/card": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        /**
-         * Show or hide the card
-         * @description Show a coloured card to the simulated camera, or take it away.
-         */
-        put: operations["putCard"];
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/robot/check-fins": {
+    "/api/robot/commands/card": {
         parameters: {
             query?: never;
             header?: never;
@@ -969,17 +945,17 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Check the fins
-         * @description Arm for some seconds, try each axis, and tell in an event which fins followed; then disarm.
+         * Holds a card before the simulated camera, or takes it away
+         * @description Holds a card before the simulated camera, or takes it away.
          */
-        post: operations["checkFins"];
+        post: operations["commandCard"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/controller": {
+    "/api/robot/commands/check_fins": {
         parameters: {
             query?: never;
             header?: never;
@@ -987,19 +963,19 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Choose a controller
-         * @description Choose a controller, and set gains of it.
+         * Arms for some seconds and moves each fin
+         * @description Arms for some seconds and moves each fin. An event says which fins followed; then it disarms.
          */
-        put: operations["putController"];
-        post?: never;
+        post: operations["commandCheckFins"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/loops/{name}": {
+    "/api/robot/commands/loop": {
         parameters: {
             query?: never;
             header?: never;
@@ -1007,19 +983,19 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Steer or hold depth or an angle
-         * @description Switch a loop on or off, move its set point, choose its controller and gains: all of it or nothing.
+         * Changes one control loop: all of it or nothing
+         * @description Changes one control loop: all of it or nothing. What is left out stays as it is.
          */
-        put: operations["putLoop"];
-        post?: never;
+        post: operations["commandLoop"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/mode": {
+    "/api/robot/commands/mode": {
         parameters: {
             query?: never;
             header?: never;
@@ -1027,19 +1003,19 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Hand over
-         * @description Let the pilot or the depth controller steer the armed robot.
+         * Lets the pilot or the depth controller steer the armed robot
+         * @description Lets the pilot or the depth controller steer the armed robot.
          */
-        put: operations["putMode"];
-        post?: never;
+        post: operations["commandMode"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/set-points": {
+    "/api/robot/commands/parameters": {
         parameters: {
             query?: never;
             header?: never;
@@ -1047,19 +1023,19 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Set depths
-         * @description Set the wanted depths.
+         * Sets parameters by name, all or none, between two control ticks
+         * @description Sets parameters by name, all or none, between two control ticks.
          */
-        put: operations["putSetPoints"];
-        post?: never;
+        post: operations["commandParameters"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/robot/steering": {
+    "/api/robot/commands/steering": {
         parameters: {
             query?: never;
             header?: never;
@@ -1067,12 +1043,32 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Choose a course
-         * @description Stay, or swim towards a light beacon.
+         * Chooses the course while the robot holds its depth
+         * @description Chooses the course while the robot holds its depth.
          */
-        put: operations["putSteering"];
-        post?: never;
+        post: operations["commandSteering"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robot/commands/vision_settings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Replaces all settings of the vision node, also for later starts
+         * @description Replaces all settings of the vision node, also for later starts. None may be left out.
+         */
+        post: operations["commandVisionSettings"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1093,26 +1089,6 @@ export interface paths {
          * @description Never refused, and before everything else.
          */
         post: operations["stopRobot"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/robot/vision": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        /**
-         * Set up vision
-         * @description Set how often the vision node looks, and for which colour.
-         */
-        put: operations["putVision"];
-        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -1647,11 +1623,7 @@ export interface paths {
          * @description All settings that may change while it looks, and what robot.toml says of them.
          */
         get: operations["getVision"];
-        /**
-         * Have the vision node look otherwise
-         * @description All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that.
-         */
-        put: operations["putVisionSettings"];
+        put?: never;
         post?: never;
         delete?: never;
         options?: never;
@@ -1723,6 +1695,11 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * AcknowledgeCommand
+         * @description Acknowledges all alarms. After a failsafe the robot may be armed again from then on.
+         */
+        AcknowledgeCommand: Record<string, never>;
         /**
          * ActiveRun
          * @description The run that is on; times in s of the scenario.
@@ -1850,12 +1827,34 @@ export interface components {
             number: number;
         };
         /**
-         * Card
-         * @description The card before the simulated camera; null takes it away.
+         * ArmCommand
+         * @description Arms the robot. It is refused with every reason that stands against it.
          */
-        Card: {
-            /** Colour */
-            colour: string | null;
+        ArmCommand: {
+            /**
+             * Alone
+             * @description s for which it may go on without the server
+             * @default 0
+             */
+            alone: number;
+            /**
+             * Mode
+             * @description who steers: controller or pilot
+             * @default automatic
+             * @enum {string}
+             */
+            mode: "automatic" | "manual";
+        };
+        /**
+         * CardCommand
+         * @description Holds a card before the simulated camera, or takes it away.
+         */
+        CardCommand: {
+            /**
+             * Colour
+             * @description the card's; null: no card
+             */
+            colour?: string | null;
         };
         /**
          * Cell
@@ -1960,6 +1959,11 @@ export interface components {
             tests: components["schemas"]["CheckedTest"][];
         };
         /**
+         * CheckFinsCommand
+         * @description Arms for some seconds and moves each fin. An event says which fins followed; then it disarms.
+         */
+        CheckFinsCommand: Record<string, never>;
+        /**
          * CheckedTest
          * @description A test of a document that can be run; `seconds` is about how long its cells take in the test's time.
          */
@@ -1997,9 +2001,36 @@ export interface components {
         };
         /**
          * ColourRange
-         * @description Lowest and highest hue, saturation and value, as OpenCV counts them; hues may run through 0.
+         * @description The range of one colour: lowest and highest hue, saturation and value, both included.
+         *
+         *     A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
+         *     where another one does.
          */
-        ColourRange: {
+        "ColourRange-Input": {
+            /** Hue */
+            hue: [
+                number,
+                number
+            ];
+            /** Saturation */
+            saturation: [
+                number,
+                number
+            ];
+            /** Value */
+            value: [
+                number,
+                number
+            ];
+        };
+        /**
+         * ColourRange
+         * @description The range of one colour: lowest and highest hue, saturation and value, both included.
+         *
+         *     A hue range whose first number is above its second runs through 0, where red lies. Raises ValueError
+         *     where another one does.
+         */
+        "ColourRange-Output": {
             /** Hue */
             hue: [
                 number,
@@ -2128,21 +2159,6 @@ export interface components {
             holder: components["schemas"]["Holder"] | null;
         };
         /**
-         * Controller
-         * @description A controller, and the gains that are to change.
-         */
-        Controller: {
-            /**
-             * Gains
-             * @default {}
-             */
-            gains: {
-                [key: string]: number;
-            };
-            /** Name */
-            name: string;
-        };
-        /**
          * ControllerChoice
          * @description A controller that can be chosen, and its gains as they stand.
          */
@@ -2153,18 +2169,6 @@ export interface components {
             name: string;
             /** Title */
             title: string;
-        };
-        /**
-         * Course
-         * @description Where it swims while it holds its depth.
-         */
-        Course: {
-            /**
-             * By
-             * @description none: nowhere; beacons: to the light that its detectors see
-             * @enum {string}
-             */
-            by: "none" | "beacons";
         };
         /**
          * DeviceChanges
@@ -2326,17 +2330,6 @@ export interface components {
              * @default 0
              */
             too_old: number;
-        };
-        /**
-         * Driver
-         * @description Who steers: the depth controller, or the pilot by hand.
-         */
-        Driver: {
-            /**
-             * Mode
-             * @enum {string}
-             */
-            mode: "automatic" | "manual";
         };
         /**
          * EndedRun
@@ -2730,20 +2723,27 @@ export interface components {
             set_point: number;
         };
         /**
-         * LoopChange
-         * @description What is to change about a loop; what is left out stays as it is.
+         * LoopCommand
+         * @description Changes one control loop: all of it or nothing. What is left out stays as it is.
          */
-        LoopChange: {
-            /** Controller */
+        LoopCommand: {
+            /**
+             * Controller
+             * @description the controller's name
+             */
             controller?: string | null;
             /**
              * Gains
-             * @description of this or the chosen controller
-             * @default {}
+             * @description by name, of this or the chosen controller
              */
-            gains: {
+            gains?: {
                 [key: string]: number;
             };
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "depth" | "heading" | "pitch" | "roll";
             /**
              * On
              * @description steer it; in manual: hold it
@@ -2831,6 +2831,18 @@ export interface components {
             robot: string;
             /** Signed In */
             signed_in: boolean;
+        };
+        /**
+         * ModeCommand
+         * @description Lets the pilot or the depth controller steer the armed robot.
+         */
+        ModeCommand: {
+            /**
+             * Mode
+             * @description who steers: controller or pilot
+             * @enum {string}
+             */
+            mode: "automatic" | "manual";
         };
         /**
          * Moment
@@ -2966,16 +2978,6 @@ export interface components {
             role: "viewer" | "operator";
         };
         /**
-         * NewValues
-         * @description Parameters that are to change, by name: all or none.
-         */
-        NewValues: {
-            /** Values */
-            values: {
-                [key: string]: boolean | number | string;
-            };
-        };
-        /**
          * NextEvent
          * @description What happens next.
          */
@@ -3042,6 +3044,29 @@ export interface components {
             time: number;
         };
         /**
+         * ParametersCommand
+         * @description Sets parameters by name, all or none, between two control ticks.
+         */
+        ParametersCommand: {
+            /**
+             * Expected
+             * @description refused where one has another value now
+             */
+            expected?: {
+                [key: string]: number | string | boolean;
+            };
+            /**
+             * Partly
+             * @description leave out what cannot be set, instead of refusing all
+             * @default false
+             */
+            partly: boolean;
+            /** Values */
+            values: {
+                [key: string]: number | string | boolean;
+            };
+        };
+        /**
          * PartHealth
          * @description One part, and how it does in words.
          */
@@ -3091,7 +3116,7 @@ export interface components {
          * @description The range that was found, and how much of the picture it holds.
          */
         PickedColour: {
-            colour: components["schemas"]["ColourRange"];
+            colour: components["schemas"]["ColourRange-Output"];
             /** Share */
             share: number;
         };
@@ -3237,7 +3262,7 @@ export interface components {
         RelayStart: {
             /**
              * Amplitude
-             * @description d, share of the most command
+             * @description d, share of the largest command
              */
             amplitude: number;
             /**
@@ -3810,19 +3835,6 @@ export interface components {
             topic: string;
         };
         /**
-         * SetPoints
-         * @description Wanted depths, m; what is left out stays as it is.
-         */
-        SetPoints: {
-            /** Default */
-            default?: number | null;
-            /**
-             * Detected
-             * @description while the wanted colour is seen
-             */
-            detected?: number | null;
-        };
-        /**
          * ShownChart
          * @description What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds.
          */
@@ -3940,6 +3952,18 @@ export interface components {
             vision_colour: string;
             /** Vision Rate */
             vision_rate: number;
+        };
+        /**
+         * SteeringCommand
+         * @description Chooses the course while the robot holds its depth.
+         */
+        SteeringCommand: {
+            /**
+             * By
+             * @description none: stay; beacons: swim to the light that its detectors see
+             * @enum {string}
+             */
+            by: "none" | "beacons";
         };
         /**
          * StepStart
@@ -4380,51 +4404,36 @@ export interface components {
             name: "follow" | "side" | "top";
         };
         /**
-         * Vision
-         * @description What the vision node does; what is left out stays as it is.
-         */
-        Vision: {
-            /** Colour */
-            colour?: string | null;
-            /**
-             * Rate
-             * @description Hz
-             */
-            rate?: number | null;
-        };
-        /**
-         * VisionInForce
-         * @description The settings now, and those of robot.toml.
-         */
-        VisionInForce: {
-            configured: components["schemas"]["VisionSettings"];
-            settings: components["schemas"]["VisionSettings"];
-        };
-        /**
          * VisionSettings
-         * @description How the vision node looks, all of it; docs/use/vision.md explains each.
+         * @description Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
+         *
+         *     `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
+         *     fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
+         *     (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
+         *     the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
+         *     ConfigError on what does not go together.
          */
         VisionSettings: {
-            /**
-             * Actions
-             * @description m, by colour or “marker 7”; the first goes
-             */
-            actions: {
+            /** Actions */
+            actions?: {
                 [key: string]: number;
             };
             /**
              * Area Max
-             * @description share of the picture
+             * @default 1
              */
             area_max: number;
             /**
              * Area Min
-             * @description share of the picture
+             * @default 0.01
              */
             area_min: number;
             /**
              * Aspect
-             * @description width over height
+             * @default [
+             *       0.05,
+             *       20
+             *     ]
              */
             aspect: [
                 number,
@@ -4432,49 +4441,103 @@ export interface components {
             ];
             /**
              * Circularity Min
-             * @description least 4π area over perimeter²
+             * @default 0
              */
             circularity_min: number;
             /**
              * Colour
-             * @description the wanted one, of the colours
+             * @default yellow
              */
             colour: string;
             /** Colours */
-            colours: {
-                [key: string]: components["schemas"]["ColourRange"];
+            colours?: {
+                [key: string]: components["schemas"]["ColourRange-Output"];
             };
             /**
              * Fill Min
-             * @description least area over that of the upright box
+             * @default 0
              */
             fill_min: number;
             /**
              * Marker Numbers
-             * @description those that count; empty: all
+             * @default []
              */
             marker_numbers: number[];
             /**
              * Markers
-             * @description dictionary of ArUco markers
+             * @default none
              * @enum {string}
              */
             markers: "none" | "4x4_50" | "5x5_100" | "6x6_250" | "7x7_1000" | "original" | "april_36h11";
             /**
              * Opening
-             * @description share of the picture's width
+             * @default 0.01
              */
             opening: number;
             /**
              * Rate
-             * @description Hz
+             * @default 4
              */
+            rate: number;
+            /**
+             * White Balance
+             * @default none
+             * @enum {string}
+             */
+            white_balance: "none" | "grey_world" | "underwater";
+        };
+        /**
+         * VisionSettingsCommand
+         * @description Replaces all settings of the vision node, also for later starts. None may be left out.
+         */
+        VisionSettingsCommand: {
+            /** Actions */
+            actions: {
+                [key: string]: number;
+            };
+            /** Area Max */
+            area_max: number;
+            /** Area Min */
+            area_min: number;
+            /** Aspect */
+            aspect: [
+                number,
+                number
+            ];
+            /** Circularity Min */
+            circularity_min: number;
+            /** Colour */
+            colour: string;
+            /** Colours */
+            colours: {
+                [key: string]: components["schemas"]["ColourRange-Input"];
+            };
+            /** Fill Min */
+            fill_min: number;
+            /** Marker Numbers */
+            marker_numbers: number[];
+            /**
+             * Markers
+             * @enum {string}
+             */
+            markers: "none" | "4x4_50" | "5x5_100" | "6x6_250" | "7x7_1000" | "original" | "april_36h11";
+            /** Opening */
+            opening: number;
+            /** Rate */
             rate: number;
             /**
              * White Balance
              * @enum {string}
              */
             white_balance: "none" | "grey_world" | "underwater";
+        };
+        /**
+         * VisionSetup
+         * @description The settings now, and those of robot.toml.
+         */
+        VisionSetup: {
+            configured: components["schemas"]["VisionSettings"];
+            settings: components["schemas"]["VisionSettings"];
         };
         /**
          * VisionText
@@ -6346,84 +6409,6 @@ export interface operations {
             };
         };
     };
-    changeParameters: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["NewValues"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Restored"];
-                };
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
     listParameterChanges: {
         parameters: {
             query?: never;
@@ -6960,79 +6945,7 @@ export interface operations {
             };
         };
     };
-    acknowledgeAlarms: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    armRobot: {
+    commandAcknowledge: {
         parameters: {
             query?: never;
             header?: never;
@@ -7041,7 +6954,7 @@ export interface operations {
         };
         requestBody?: {
             content: {
-                "application/json": components["schemas"]["Driver"] | null;
+                "application/json": components["schemas"]["AcknowledgeCommand"] | null;
             };
         };
         responses: {
@@ -7108,7 +7021,235 @@ export interface operations {
             };
         };
     };
-    putCard: {
+    commandArm: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["ArmCommand"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    commandCard: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["CardCommand"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    commandCheckFins: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["CheckFinsCommand"] | null;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description The runtime refuses */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The request is not valid */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Control is with somebody else */
+            423: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime is not running */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The runtime did not answer within 2 s */
+            504: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
+            "4XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    commandLoop: {
         parameters: {
             query?: never;
             header?: never;
@@ -7117,16 +7258,18 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Card"];
+                "application/json": components["schemas"]["LoopCommand"];
             };
         };
         responses: {
             /** @description Successful Response */
-            204: {
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content?: never;
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
             };
             /** @description The runtime refuses */
             409: {
@@ -7184,79 +7327,7 @@ export interface operations {
             };
         };
     };
-    checkFins: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    putController: {
+    commandMode: {
         parameters: {
             query?: never;
             header?: never;
@@ -7265,7 +7336,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Controller"];
+                "application/json": components["schemas"]["ModeCommand"];
             };
         };
         responses: {
@@ -7332,85 +7403,7 @@ export interface operations {
             };
         };
     };
-    putLoop: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                name: "depth" | "heading" | "pitch" | "roll";
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["LoopChange"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    putMode: {
+    commandParameters: {
         parameters: {
             query?: never;
             header?: never;
@@ -7419,16 +7412,18 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Driver"];
+                "application/json": components["schemas"]["ParametersCommand"];
             };
         };
         responses: {
             /** @description Successful Response */
-            204: {
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content?: never;
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
             };
             /** @description The runtime refuses */
             409: {
@@ -7486,7 +7481,7 @@ export interface operations {
             };
         };
     };
-    putSetPoints: {
+    commandSteering: {
         parameters: {
             query?: never;
             header?: never;
@@ -7495,16 +7490,18 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["SetPoints"];
+                "application/json": components["schemas"]["SteeringCommand"];
             };
         };
         responses: {
             /** @description Successful Response */
-            204: {
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content?: never;
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
             };
             /** @description The runtime refuses */
             409: {
@@ -7562,7 +7559,7 @@ export interface operations {
             };
         };
     };
-    putSteering: {
+    commandVisionSettings: {
         parameters: {
             query?: never;
             header?: never;
@@ -7571,16 +7568,18 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Course"];
+                "application/json": components["schemas"]["VisionSettingsCommand"];
             };
         };
         responses: {
             /** @description Successful Response */
-            204: {
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content?: never;
+                content: {
+                    "application/json": components["schemas"]["Restored"];
+                };
             };
             /** @description The runtime refuses */
             409: {
@@ -7653,82 +7652,6 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    putVision: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["Vision"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
             };
             /** @description The runtime is not running */
             503: {
@@ -9352,83 +9275,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["VisionInForce"];
-                };
-            };
-            /** @description The runtime is not running */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The runtime did not answer within 2 s */
-            504: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    putVisionSettings: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["VisionSettings"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description The runtime refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Control is with somebody else */
-            423: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
+                    "application/json": components["schemas"]["VisionSetup"];
                 };
             };
             /** @description The runtime is not running */

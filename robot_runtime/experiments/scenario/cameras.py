@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 from robot_runtime.clock import Clock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.commands import CardCommand
 from robot_runtime.contract.documents import Truth
 from robot_runtime.experiments.scenario.document import Scenario, Scene
-from robot_runtime.experiments.scenario.events import Card
+from robot_runtime.experiments.scenario.events import CommandEvent
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Target
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.vision.camera import Camera, CameraFrame
@@ -15,7 +16,9 @@ from robot_runtime.vision.cards import CameraCard as Held
 
 def needs_camera(scenario: Scenario) -> bool:
     """True if the scenario shows anything to its camera; a card camera sees only cards."""
-    return scenario.vision.camera == "scene" or any(isinstance(event, Card) for event in scenario.events)
+    return scenario.vision.camera == "scene" or any(
+        isinstance(one, CommandEvent) and isinstance(one.command, CardCommand) for one in scenario.events
+    )
 
 
 class RenderedSceneCamera(Camera):

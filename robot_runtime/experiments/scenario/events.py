@@ -1,18 +1,22 @@
-"""What can happen during a scenario: one dataclass for each `do`, with the arguments of the like-named
-command of the runtime or question to the simulator."""
+"""Events of a scenario: commands to the robot, and changes of water, serial line and recording."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields, make_dataclass
 from math import hypot
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from robot_runtime.contract.documents import Steering
-from robot_runtime.contract.limits import SET_POINT, VISION_RATE, ConfigError, Range
+from robot_runtime.contract.commands import (
+    COMMANDS,
+    CardCommand,
+    ControllerCommand,
+    LoopCommand,
+    RobotCommand,
+    VisionCommand,
+)
+from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import parse, place
 from robot_runtime.control.controllers import CONTROLLERS
-from robot_runtime.control.loop import SET_POINTS, LoopName
-from robot_runtime.control.supervisor import ALONE_MAX
 from robot_runtime.simulation.water.faults import Kind, SimulatedFault, check_sensor
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.surroundings import Current, Trim, Waves, check_beacons
@@ -21,6 +25,8 @@ Colour = Literal["red", "yellow", "green", "blue"]
 Addressee = Literal["runtime", "simulator", "board", "session"]
 LineKind = Literal["bit_errors", "drop", "double", "insert", "burst", "stall", "cut", "clean"]
 TEXT_MAX = 200
+AT = Range(0, 3600)
+"""s since the start."""
 
 _LINE_NUMBERS: dict[str, tuple[str, ...]] = {
     "burst": ("rate", "length"),
@@ -37,7 +43,7 @@ class Event(ABC):
     do: ClassVar[str]
     to: ClassVar[Addressee]
 
-    at: Annotated[float, Range(0, 3600)]
+    at: Annotated[float, AT]
 
     @property
     def question(self) -> dict[str, Any]:
@@ -52,172 +58,22 @@ class Event(ABC):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Arm(Event):
-    """Arm the robot; it may go on without the server for `alone` s."""
+class CommandEvent(Event):
+    """A command to the robot; `do` is the command's name."""
 
-    do = "arm"
     to = "runtime"
 
-    alone: Annotated[float, Range(0, ALONE_MAX)] = 0.0
+    command: RobotCommand
+
+    @property
+    def do(self) -> str:  # type: ignore[override]
+        """The command's name."""
+        return self.command.policy.name
 
     @property
     def words(self) -> str:
         """What happens, in a few words."""
-        return "Arm"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stop(Event):
-    """Disarm it."""
-
-    do = "stop"
-    to = "runtime"
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        return "STOP"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Acknowledge(Event):
-    """Acknowledge the alarms, so that the robot may be armed again after a failsafe."""
-
-    do = "acknowledge"
-    to = "runtime"
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        return "Alarms acknowledged"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SetPoints(Event):
-    """Wanted depths, m."""
-
-    do = "set_points"
-    to = "runtime"
-
-    default: Annotated[float | None, SET_POINT] = None
-    detected: Annotated[float | None, SET_POINT] = None
-
-    def __post_init__(self) -> None:
-        if self.default is None and self.detected is None:
-            raise ValueError("set_points needs default, detected or both")
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        parts = [] if self.default is None else [f"set point {self.default:g} m"]
-        parts += [] if self.detected is None else [f"{self.detected:g} m where the colour is seen"]
-        words = ", ".join(parts)
-        return words[0].upper() + words[1:]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChooseController(Event):
-    """Another controller, or other gains of it."""
-
-    do = "controller"
-    to = "runtime"
-
-    name: str
-    gains: dict[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        check_controller("depth", self.name, {self.name: self.gains})
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
-        return f"Controller {self.name}" + (f": {gains}" if gains else "")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChangeLoop(Event):
-    """Steer heading, pitch or roll, or the depth, otherwise; set point in rad, the depth's in m."""
-
-    do = "loop"
-    to = "runtime"
-
-    name: LoopName
-    on: bool | None = None
-    set_point: float | None = None
-    controller: str | None = None
-    gains: dict[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        if self.on is None and self.set_point is None and self.controller is None:
-            raise ValueError("loop needs on, set_point or controller")
-        span = SET_POINTS[self.name]
-        if self.set_point is not None and not span.minimum <= self.set_point <= span.maximum:
-            raise ValueError(f"set_point must lie between {span.minimum:.3g} and {span.maximum:.3g}")
-        if self.gains and self.controller is None:
-            raise ValueError("gains need the controller whose they are")
-        if self.controller is not None:
-            check_controller(self.name, self.controller, {self.controller: self.gains})
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        parts = [] if self.on is None else ["on" if self.on else "off"]
-        parts += [] if self.set_point is None else [f"set point {self.set_point:g}"]
-        parts += [] if self.controller is None else [self.controller]
-        return f"{self.name.capitalize()}: {', '.join(parts)}"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Steer(Event):
-    """Where it swims while it holds its depth."""
-
-    do = "steering"
-    to = "runtime"
-
-    by: Steering
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        return "Swim towards the light" if self.by == "beacons" else "Stay"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Card(Event):
-    """Hold a card before the camera; without a colour: take it away."""
-
-    do = "card"
-    to = "runtime"
-
-    colour: Colour | None = None
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        return f"{self.colour.capitalize()} card" if self.colour else "Card away"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Look(Event):
-    """How often the camera looks (Hz), and for which colour."""
-
-    do = "vision"
-    to = "runtime"
-
-    rate: Annotated[float | None, VISION_RATE] = None
-    colour: Colour | None = None
-
-    def __post_init__(self) -> None:
-        if self.rate is None and self.colour is None:
-            raise ValueError("vision needs rate, colour or both")
-
-    @property
-    def words(self) -> str:
-        """What happens, in a few words."""
-        parts = [] if self.rate is None else [f"at {self.rate:g} Hz"]
-        parts += [] if self.colour is None else [f"for {self.colour}"]
-        return f"Look {' '.join(parts)}"
+        return self.command.words
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -390,25 +246,24 @@ class Mark(Event):
         return self.text
 
 
-EVENTS: tuple[type[Event], ...] = (
-    Arm,
-    Stop,
-    Acknowledge,
-    SetPoints,
-    ChooseController,
-    ChangeLoop,
-    Steer,
-    Card,
-    Look,
-    Beacons,
-    CurrentChange,
-    WavesChange,
-    TrimChange,
-    SensorFault,
-    Line,
-    Mark,
-)
-_CLASSES = {event.do: event for event in EVENTS}
+EVENTS: dict[str, type[Event]] = {
+    event.do: event
+    for event in (
+        Beacons,
+        CurrentChange,
+        WavesChange,
+        TrimChange,
+        SensorFault,
+        Line,
+        Mark,
+    )
+}
+"""Of the water, the line and the recording; those of the robot are its commands."""
+
+
+def event_names() -> list[str]:
+    """Every `do` that a scenario may have."""
+    return [*(name for name, cls in COMMANDS.items() if cls.policy.in_scenarios), *EVENTS]
 
 
 def read_event(table: Any, where: str) -> Event:
@@ -416,11 +271,40 @@ def read_event(table: Any, where: str) -> Event:
     if not isinstance(table, Mapping):
         raise ConfigError(f"{where} must be a table")
     do = table.get("do")
-    event = _CLASSES.get(do) if isinstance(do, str) else None
-    if event is None:
+    if do not in (names := event_names()):
         what = "is missing" if do is None else f"is {do!r}"
-        raise ConfigError(f"{place(where, 'do')} {what}; it must be one of {', '.join(_CLASSES)}")
-    return parse(event, {name: value for name, value in table.items() if name != "do"}, where)
+        raise ConfigError(f"{place(where, 'do')} {what}; it must be one of {', '.join(names)}")
+    rest = {name: value for name, value in table.items() if name != "do"}
+    if do in EVENTS:
+        return parse(EVENTS[do], rest, where)
+    cls = COMMANDS[do]
+    timed: Any = parse(make_dataclass(do, [], bases=(cls, _Timed), frozen=True, kw_only=True), rest, where)
+    command = cls(**{one.name: getattr(timed, one.name) for one in fields(cls)})
+    _check_command(command, where)
+    return CommandEvent(at=timed.at, command=command)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Timed:
+    at: Annotated[float, AT]
+
+
+def _check_command(command: RobotCommand, where: str) -> None:
+    """Raises ConfigError where a scenario's robot could not perform it."""
+    try:
+        match command:
+            case ControllerCommand(name=name, gains=gains):
+                check_controller("depth", name, {name: gains})
+            case LoopCommand(controller=None, gains=gains) if gains:
+                raise ValueError("gains need the controller whose they are")
+            case LoopCommand(name=loop, controller=str(name), gains=gains):
+                check_controller(loop, name, {name: gains})
+            case CardCommand(colour=str(colour)) | VisionCommand(colour=str(colour)):
+                if colour not in get_args(Colour):
+                    known = ", ".join(map(repr, get_args(Colour)))
+                    raise ValueError(f"colour is {colour!r}; it must be one of {known}")
+    except ValueError as problem:
+        raise ConfigError(place(where, str(problem))) from problem
 
 
 def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:

@@ -9,12 +9,13 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from robot_runtime.commands import Commands
+from robot_runtime.contract.commands import ArmCommand
 from robot_runtime.control.supervisor import ARM_WAIT, Arming
 from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.cameras import needs_camera
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import Arm, Event, Line, Mark
+from robot_runtime.experiments.scenario.events import CommandEvent, Event, Line, Mark
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.link.link_driver import PERIOD as GATHERING
 from robot_runtime.simulation.boards.stepped_board import PERIOD
@@ -96,10 +97,10 @@ class _RunLoop:
         self._rig = rig
         self._listener = listener
         self._stopped = stopped
-        self._commands = Commands(rig.robot).do
+        self._commands = Commands(rig.robot)
         self._changes = changes(rig.simulator)
         self._remarks: list[str] = []
-        self._arming: tuple[Arming, Arm] | None = None
+        self._arming: tuple[Arming, Event] | None = None
         self._ask_again = 0.0
         self._heard = b""
         self._look_at = now = rig.clock.now()
@@ -181,18 +182,19 @@ class _RunLoop:
         except (RefusedError, ValueError) as problem:
             self._refuse(event, str(problem))
         else:
-            if not isinstance(event, Arm):
+            if not _arms(event):
                 self._mark(event.words)
 
     def _do(self, event: Event, now: float) -> None:
         rig = self._rig
-        if isinstance(event, Arm):
-            self._arming = rig.robot.supervisor.begin_arming(alone=event.alone), event
+        if isinstance(event, CommandEvent) and isinstance(command := event.command, ArmCommand):
+            arming = rig.robot.supervisor.begin_arming(command.mode, command.alone)
+            self._arming = arming, event
             self._ask_again = now + ARM_WAIT
+        elif isinstance(event, CommandEvent):
+            self._commands.perform(event.command)
         elif isinstance(event, Line):
             rig.board.line(event.command)
-        elif event.to == "runtime":
-            self._commands[event.do](event.question)
         elif event.to == "simulator":
             self._changes[event.do](_as_asked(event.question))
             rig.break_devices()
@@ -224,6 +226,10 @@ class _RunLoop:
 
     def _tell_progress(self) -> None:
         self._listener.event("progress", time=_tidy(self._rig.clock.now()))
+
+
+def _arms(event: Event) -> bool:
+    return isinstance(event, CommandEvent) and isinstance(event.command, ArmCommand)
 
 
 def _as_asked(question: Mapping[str, Any]) -> dict[str, Any]:

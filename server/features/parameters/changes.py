@@ -7,7 +7,9 @@ before the runtime's last start cannot be undone, for a start brings the default
 import asyncio
 import json
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from time import time
 from typing import Any
@@ -15,6 +17,7 @@ from typing import Any
 from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, desc, select
 
+from robot_runtime.contract.commands import ParametersCommand, RobotCommand
 from robot_runtime.errors import RefusedError
 from server.features.parameters.schemas import Change, ChangedValue, LeftOut, Restored
 from server.platform.models import ParameterChangeRow
@@ -27,28 +30,62 @@ SHOWN = 100
 KEPT = 1000
 
 
-class Changes:
-    """Every command that may change parameters passes here.
+Send = Callable[[RobotCommand], Awaitable[None]]
 
-    Every method raises RefusedError, RuntimeSilentError, or StoreError where the history cannot be read.
+
+@dataclass(slots=True)
+class _Group:
+    """Changes that are noted as one: each parameter's first and last value."""
+
+    who: str
+    why: str
+    changed: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+
+
+class Changes:
+    """Sends commands to the runtime and notes in the history of parameters what they changed.
+
+    Every command passes here, whoever sends it; STOP alone goes to the bridge directly. Every method raises
+    RefusedError, RuntimeSilentError, or StoreError where the history cannot be read.
     """
 
     def __init__(self, store: Store, bridge: Bridge) -> None:
         self._store = store
         self._bridge = bridge
         self._undoing = asyncio.Lock()
+        self._groups: list[_Group] = []
 
-    async def command(self, who: str, name: str, payload: Mapping[str, Any], why: str = "") -> Restored:
-        """Have the runtime do it, and note what that changed; answers what was changed and what was not."""
-        answer = await self._bridge.tune(name, payload)
-        changed = [
-            ChangedValue(name=one, before=before, after=after)
-            for one, (before, after) in answer.get("changed", {}).items()
-        ]
-        left_out = [LeftOut(name=one, why=reason) for one, reason in answer.get("left_out", {}).items()]
+    async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
+        """Send a command; the parameters that it changed, and those that it left out."""
+        answer = await self._send(command)
+        changed = answer.get("changed", {})
         if changed:
+            await self._note_groups()
             await self._note(who, why, changed)
-        return Restored(changed=changed, left_out=left_out)
+        left_out = [LeftOut(name=one, why=reason) for one, reason in answer.get("left_out", {}).items()]
+        return Restored(changed=_changed_values(changed), left_out=left_out)
+
+    @asynccontextmanager
+    async def together(self, who: str, why: str) -> AsyncIterator[Send]:
+        """Sends several commands; at the end the history notes what they changed altogether."""
+        group = _Group(who, why)
+
+        async def send(command: RobotCommand) -> None:
+            answer = await self._send(command)
+            for name, (before, after) in answer.get("changed", {}).items():
+                first = group.changed[name][0] if name in group.changed else before
+                group.changed[name] = (first, after)
+
+        self._groups.append(group)
+        try:
+            yield send
+        finally:
+            self._groups.remove(group)
+            await self._note_group(group)
+
+    async def put_back(self, command: RobotCommand) -> None:
+        """Send a command that brings back values which the history has already; it is not noted."""
+        await self._send(command)
 
     def newest(self) -> list[Change]:
         """The newest first. Blocks."""
@@ -61,17 +98,19 @@ class Changes:
     async def undo(self, who: str, change: int) -> Restored:
         """Set back what this change changed, which must be the newest that is not undone."""
         async with self._undoing:
+            await self._note_groups()
             row = await asyncio.to_thread(self._find_newest)
             if row is None:
                 raise RefusedError("Nothing is left to be undone since the robot's runtime has started.")
             if row.id != change:
                 raise RefusedError("Somebody has changed something since. Look at the list, and try again.")
             values = _values(row)
-            payload = {
-                "values": {one.name: one.before for one in values},
-                "expected": {one.name: one.after for one in values},
-            }
-            await self._bridge.tune("parameters", payload)
+            await self._send(
+                ParametersCommand(
+                    values={one.name: one.before for one in values},
+                    expected={one.name: one.after for one in values},
+                )
+            )
             await self._store.write(
                 lambda connection: connection.execute(
                     update(ParameterChangeRow).where(col(ParameterChangeRow.id) == change).values(undone=who)
@@ -80,13 +119,27 @@ class Changes:
         undone = [ChangedValue(name=one.name, before=one.after, after=one.before) for one in values]
         return Restored(changed=undone, left_out=[])
 
-    async def _note(self, who: str, why: str, changed: list[ChangedValue]) -> None:
+    async def _send(self, command: RobotCommand) -> Mapping[str, Any]:
+        return await self._bridge.command(command.policy.name, command.payload())
+
+    async def _note_groups(self) -> None:
+        """Note what open groups have changed so far, so that the history stays in order."""
+        for group in self._groups:
+            await self._note_group(group)
+
+    async def _note_group(self, group: _Group) -> None:
+        changed = {name: pair for name, pair in group.changed.items() if pair[0] != pair[1]}
+        group.changed = {}
+        if changed:
+            await self._note(group.who, group.why, changed)
+
+    async def _note(self, who: str, why: str, changed: Mapping[str, tuple[Any, Any]]) -> None:
         row = ParameterChangeRow(
             time=time(),
             run=self._bridge.run,
             who=who,
             why=why,
-            changed=json.dumps([one.model_dump() for one in changed]),
+            changed=json.dumps([one.model_dump() for one in _changed_values(changed)]),
         )
         try:
             await self._store.write(lambda connection: _insert(connection, row))
@@ -99,6 +152,10 @@ class Changes:
         query = select(ParameterChangeRow).where(mine, col(ParameterChangeRow.undone) == "")
         with self._store.read() as database:
             return database.exec(query.order_by(desc(col(ParameterChangeRow.id))).limit(1)).first()
+
+
+def _changed_values(changed: Mapping[str, tuple[Any, Any]]) -> list[ChangedValue]:
+    return [ChangedValue(name=name, before=before, after=after) for name, (before, after) in changed.items()]
 
 
 def _newest(rows: Sequence[ParameterChangeRow], run: str) -> ParameterChangeRow | None:

@@ -6,6 +6,8 @@ from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from robot_runtime.contract.commands import ParametersCommand
+from robot_runtime.errors import RefusedError
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import (
     ProfileError,
@@ -102,8 +104,10 @@ async def restore_profile(
 ) -> Restored:
     """All of its parameters that can be set now; what is unknown or out of range is left out, and said."""
     found = await run_in_threadpool(profiles.find, profile)
-    wanted = {"values": found.values, "partly": True}
-    return await changes.command(caller.name, "parameters", wanted, why=f"Profile “{found.name}”")
+    if not found.values:
+        raise RefusedError(f"The profile “{found.name}” holds no parameters.")
+    wanted = ParametersCommand(values=found.values, partly=True)
+    return await changes.command(caller.name, wanted, why=f"Profile “{found.name}”")
 
 
 @router.delete(

@@ -7,7 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.documents import Parameters
 from server.features.parameters.changes import Changes
-from server.features.parameters.schemas import Change, NewValues, Restored, Undo
+from server.features.parameters.schemas import Change, Restored, Undo
 from server.http.dependencies import Provided
 from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
@@ -35,19 +35,6 @@ async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
 async def get_parameters(bridge: Provided[Bridge]) -> object:
     """Each with its type, its range, its unit, its meaning and its value, as it is now."""
     return await ask_parameters(bridge)
-
-
-@router.patch(
-    "",
-    summary="Change parameters",
-    operation_id="changeParameters",
-    openapi_extra=needs(Need.CONTROL),
-    responses=COMMAND,
-)
-async def change_parameters(changes: Provided[Changes], caller: Caller, wanted: NewValues) -> Restored:
-    """All or none, between two control ticks; what has the value already is not changed."""
-    changes = changes
-    return await changes.command(caller.name, "parameters", wanted.model_dump())
 
 
 @router.get(

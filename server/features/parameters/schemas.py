@@ -16,13 +16,6 @@ ProfileName = Annotated[str, StringConstraints(strip_whitespace=True, min_length
 ProfileNote = Annotated[str, StringConstraints(strip_whitespace=True, max_length=1000)]
 
 
-class NewValues(BaseModel):
-    """Parameters that are to change, by name: all or none."""
-
-    model_config = ConfigDict(extra="forbid")
-    values: Annotated[Values, Field(min_length=1)]
-
-
 class ChangedValue(BaseModel):
     """One parameter before and after a change."""
 

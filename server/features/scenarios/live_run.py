@@ -10,6 +10,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import Event, Line
 from robot_runtime.simulation.water.parameters import SimulationParameters
+from server.features.parameters.changes import Changes, Send
 from server.features.scenarios.live_setup import Before, Surroundings
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import Run, RunCancelledError, RunFailedError
@@ -36,6 +37,7 @@ class Live:
         store: Store,
         recorder: Recorder,
         bridge: Bridge,
+        changes: Changes,
         watch: Watch,
         parts: Parts,
         clock: Clock,
@@ -45,6 +47,7 @@ class Live:
         self._store = store
         self._recorder = recorder
         self._bridge = bridge
+        self._changes = changes
         self._watch = watch
         self._parts = parts
         self._clock = clock
@@ -66,13 +69,14 @@ class Live:
         run.phase = "preparing"
         before = await self._surroundings.read(self._state())
         await asyncio.to_thread(self._left.keep, before)
-        try:
-            await self._surroundings.prepare(run.scenario, before)
-            await run.sleep(SETTLE_SECONDS)
-            await self._record(run)
-        finally:
-            run.phase = "ending"
-            await _whole(self._put_back(before))
+        async with self._changes.together(run.who, f"Scenario “{run.scenario.title}”") as send:
+            try:
+                await self._surroundings.prepare(run.scenario, before, send)
+                await run.sleep(SETTLE_SECONDS)
+                await self._record(run, send)
+            finally:
+                run.phase = "ending"
+                await _whole(self._put_back(before, send))
 
     async def recover(self) -> None:
         """End what a killed server has left running: disarm, close the recording, put everything back."""
@@ -91,7 +95,7 @@ class Live:
             await self._finish(session)
             # A runtime that has started since is as robot.toml says.
             if before is not None and state["run"] == before.robot["run"]:
-                await self._put_back(before)
+                await self._put_back(before, self._changes.put_back)
             await asyncio.to_thread(self._left.forget)
         finally:
             self._recovering = False
@@ -100,11 +104,11 @@ class Live:
         )
         self._tell("scenario", "caution", words)
 
-    async def _record(self, run: Run) -> None:
+    async def _record(self, run: Run, send: Send) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
         session = await begin(self._recorder, self._store, run, row)
         try:
-            await self._play(run, row.started_steady)
+            await self._play(run, row.started_steady, send)
         except RunCancelledError as why:
             await mark(self._store, session, self._clock.now(), str(why))
             raise
@@ -112,7 +116,7 @@ class Live:
             run.phase = "ending"
             await _whole(self._finish(session))
 
-    async def _play(self, run: Run, began: float) -> None:
+    async def _play(self, run: Run, began: float, send: Send) -> None:
         processes = self._processes()
         coming = list(run.scenario.events)
         while True:
@@ -120,18 +124,18 @@ class Live:
             self._look(run, processes)
             while coming and coming[0].at <= run.elapsed:
                 run.check()
-                await self._happen(run, coming.pop(0), began)
+                await self._happen(run, coming.pop(0), began, send)
             if run.elapsed >= run.scenario.duration:
                 return
             until = min([run.scenario.duration, *(event.at for event in coming[:1])])
             await run.sleep(min(until - run.elapsed, LOOK_SECONDS))
 
-    async def _happen(self, run: Run, event: Event, began: float) -> None:
+    async def _happen(self, run: Run, event: Event, began: float, send: Send) -> None:
         assert run.session is not None
         words = event.words
         if event.to != "session":
             try:
-                await self._surroundings.apply(event)
+                await self._surroundings.apply(event, send)
             except (RefusedError, RuntimeSilentError) as problem:
                 # As with an operator, whom the robot may refuse something: the experiment goes on.
                 words = f"{words}: refused. {problem}"
@@ -159,8 +163,8 @@ class Live:
         if self._recorder.session is not None and self._recorder.session.id == session:
             await self._recorder.stop(session)
 
-    async def _put_back(self, before: Before) -> None:
-        if problems := await self._surroundings.put_back(before):
+    async def _put_back(self, before: Before, send: Send) -> None:
+        if problems := await self._surroundings.put_back(before, send):
             told = " ".join(problems)
             self._tell("scenario", "caution", f"Not everything is as before the scenario. {told}")
         await asyncio.to_thread(self._left.forget)

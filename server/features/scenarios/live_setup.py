@@ -6,17 +6,29 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from robot_runtime.contract.commands import (
+    CardCommand,
+    ControllerCommand,
+    LoopCommand,
+    RobotCommand,
+    SetPointsCommand,
+    SteeringCommand,
+    StopCommand,
+    VisionCommand,
+)
+from robot_runtime.contract.limits import SET_POINTS, LoopName
 from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import Event, Line
+from robot_runtime.experiments.scenario.events import CommandEvent, Event, Line
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
+from server.features.parameters.changes import Send
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 Question = Mapping[str, Any]
 STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
-TURNING = tuple(loop for loop in CONTROLLERS if loop != "depth")
+TURNING: tuple[LoopName, ...] = tuple(loop for loop in SET_POINTS if loop != "depth")
 DIRECTIONS = ("to_board", "from_board")
 
 
@@ -51,7 +63,7 @@ class Surroundings:
         except RuntimeSilentError:
             return Before(robot, water, None)
 
-    async def prepare(self, scenario: Scenario, before: Before) -> None:
+    async def prepare(self, scenario: Scenario, before: Before, send: Send) -> None:
         """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
         await self._set_water(_water_of(scenario), before.water)
         start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
@@ -60,62 +72,41 @@ class Surroundings:
             await self._set_sight(_sight_of(scenario))
         await self._clean_line(scenario.seed)
         for name, gains in _gains_of(scenario).items():
-            await self._bridge.command("controller", {"name": name, "gains": gains})
+            await send(ControllerCommand(name=name, gains=gains))
         control, vision = scenario.control, scenario.vision
-        await self._bridge.command("controller", {"name": control.controller})
-        await self._bridge.command(
-            "set_points", {"default": control.set_point, "detected": control.set_point_detected}
-        )
+        await send(ControllerCommand(name=control.controller))
+        await send(SetPointsCommand(default=control.set_point, detected=control.set_point_detected))
         for loop in TURNING:
-            await self._bridge.command("loop", _at_rest(loop))
-        await self._bridge.command("steering", {"by": control.steering})
-        await self._bridge.command("vision", {"rate": vision.rate, "colour": vision.colour})
+            await send(_at_rest(loop))
+        await send(SteeringCommand(by=control.steering))
+        await send(VisionCommand(rate=vision.rate, colour=vision.colour))
         if vision.camera == "card":
-            await self._bridge.command("card", {"colour": None})
+            await send(CardCommand())
 
-    async def apply(self, event: Event) -> None:
+    async def apply(self, event: Event, send: Send) -> None:
         """Do what an event says to runtime, simulator or board."""
         if isinstance(event, Line):
             await self._order(event.command)
-        elif event.to == "simulator":
+        elif not isinstance(event, CommandEvent):
             await self._bridge.ask_simulator(event.do, event.question)
-        elif event.do == "stop":
+        elif isinstance(event.command, StopCommand):
             await self._bridge.disarm()
         else:
-            await self._bridge.command(event.do, event.question)
+            await send(event.command)
 
     async def disarm(self) -> None:
         """Let the fins rest."""
         await self._bridge.disarm()
 
-    async def put_back(self, before: Before) -> list[str]:
+    async def put_back(self, before: Before, send: Send) -> list[str]:
         """Make everything as it was; what could not be, in words."""
         robot = before.robot
         steps: list[Callable[[], Awaitable[None]]] = [
             lambda: self._clean_line(0),
             lambda: self._set_water(before.water, None),
             lambda: self._set_sight(before.sight),
-            *(
-                lambda one=one: self._bridge.command(
-                    "controller",
-                    {"name": one["name"], "gains": _values(one["gains"])},
-                )
-                for one in robot["controllers"]
-            ),
-            lambda: self._bridge.command("controller", {"name": robot["controller"]}),
-            lambda: self._bridge.command(
-                "set_points",
-                {"default": robot["set_point_default"], "detected": robot["set_point_detected"]},
-            ),
-            *(
-                lambda question=question: self._bridge.command("loop", question)
-                for question in _loops_of(robot)
-            ),
-            lambda: self._bridge.command("steering", {"by": robot["steering"]}),
-            lambda: self._bridge.command(
-                "vision", {"rate": robot["vision_rate"], "colour": robot["vision_colour"]}
-            ),
-            lambda: self._put_card_back(robot["card"]),
+            *(lambda command=command: send(command) for command in _commands_of(robot)),
+            lambda: _put_card_back(robot["card"], send),
         ]
         problems = []
         for step in steps:
@@ -124,14 +115,6 @@ class Surroundings:
             except (RefusedError, RuntimeSilentError) as problem:
                 problems.append(str(problem))
         return list(dict.fromkeys(problems))
-
-    async def _put_card_back(self, colour: str | None) -> None:
-        try:
-            await self._bridge.command("card", {"colour": colour})
-        except RefusedError:
-            # A camera without cards had none before, either.
-            if colour is not None:
-                raise
 
     async def _set_water(self, wanted: Question, present: Question | None) -> None:
         ask = self._bridge.ask_simulator
@@ -200,32 +183,48 @@ def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
     }
 
 
-def _at_rest(loop: str) -> Question:
+def _at_rest(loop: LoopName) -> LoopCommand:
     """The command that leaves a loop as it is at the runtime's start."""
     first = CONTROLLERS[loop][0]
-    return {
-        "name": loop,
-        "on": False,
-        "set_point": 0.0,
-        "controller": first.name,
-        "gains": _defaults(first),
-    }
+    return LoopCommand(name=loop, on=False, set_point=0.0, controller=first.name, gains=_defaults(first))
 
 
-def _loops_of(robot: Question) -> list[Question]:
+def _commands_of(robot: Question) -> list[RobotCommand]:
+    """The commands that make control and vision as this state of the robot says."""
+    return [
+        *(ControllerCommand(name=one["name"], gains=_values(one["gains"])) for one in robot["controllers"]),
+        ControllerCommand(name=robot["controller"]),
+        SetPointsCommand(default=robot["set_point_default"], detected=robot["set_point_detected"]),
+        *_loops_of(robot),
+        SteeringCommand(by=robot["steering"]),
+        VisionCommand(rate=robot["vision_rate"], colour=robot["vision_colour"]),
+    ]
+
+
+def _loops_of(robot: Question) -> list[LoopCommand]:
     """The commands that make heading, pitch and roll as they were."""
-    questions: list[Question] = []
+    commands: list[LoopCommand] = []
     for loop in robot["loops"]:
         if loop["name"] not in TURNING:
             continue
-        name, chosen = {"name": loop["name"]}, {"controller": loop["controller"]}
-        questions += [
-            name
-            | {"controller": one["name"], "gains": {gain["name"]: gain["value"] for gain in one["gains"]}}
+        name = loop["name"]
+        commands += [
+            LoopCommand(name=name, controller=one["name"], gains=_values(one["gains"]))
             for one in loop["controllers"]
         ]
-        questions.append(name | chosen | {"on": loop["on"], "set_point": loop["set_point"]})
-    return questions
+        commands.append(
+            LoopCommand(name=name, controller=loop["controller"], on=loop["on"], set_point=loop["set_point"])
+        )
+    return commands
+
+
+async def _put_card_back(colour: str | None, send: Send) -> None:
+    try:
+        await send(CardCommand(colour=colour))
+    except RefusedError:
+        # A camera without cards had none before, either.
+        if colour is not None:
+            raise
 
 
 def _values(gains: Sequence[Question]) -> dict[str, float]:

@@ -19,6 +19,7 @@ from server.features.scenarios.schemas import (
 )
 from server.http.dependencies import Provided
 from server.http.problems import answers
+from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.settings import Settings
 
@@ -79,12 +80,12 @@ async def get_state(scenarios: Provided[ScenarioRuns]) -> ScenarioState:
     responses=START,
 )
 async def start(
-    request: Request, scenarios: Provided[ScenarioRuns], wanted: ScenarioStart
+    request: Request, scenarios: Provided[ScenarioRuns], caller: Caller, wanted: ScenarioStart
 ) -> ScenarioStarted:
     """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
     if wanted.place == "live":
         require_control(request)
-    run = scenarios.start(wanted.text, wanted.place, wanted.board)
+    run = scenarios.start(wanted.text, wanted.place, wanted.board, caller.name)
     return ScenarioStarted(run=run)
 
 

@@ -33,6 +33,8 @@ class Run:
     text: str
     place: Place
     board: BoardKind
+    who: str = ""
+    """Who started it."""
     phase: Phase = "waiting"
     elapsed: float = 0.0
     session: int | None = None

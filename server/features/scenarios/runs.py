@@ -62,7 +62,7 @@ class Runs:
             last=self._last,
         )
 
-    def start(self, text: str, place: Place, board: BoardKind) -> int:
+    def start(self, text: str, place: Place, board: BoardKind, who: str = "") -> int:
         """Run a scenario, or let it wait for its turn; its number. Raises ScenarioError, RefusedError."""
         scenario = read_scenario(text)
         if place == "live" and self._active is not None:
@@ -73,7 +73,7 @@ class Runs:
             raise RefusedError(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
         self._stages[place].check(scenario)
         self._number += 1
-        run = Run(self._number, scenario, text, place, board)
+        run = Run(self._number, scenario, text, place, board, who)
         self._queue.append(run)
         if self._task is None or self._task.done():
             # Now, and not when the task begins: whoever asks next must find it occupied.

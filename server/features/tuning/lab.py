@@ -10,9 +10,11 @@ from math import degrees
 from typing import Any
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.commands import EndExperimentCommand
 from robot_runtime.contract.documents import ExperimentPhase
 from robot_runtime.contract.topics import Block
 from robot_runtime.errors import RefusedError
+from server.features.parameters.changes import Changes
 from server.features.tuning.curve import Gathering
 from server.features.tuning.figure_definitions import is_angle
 from server.features.tuning.runs import Runs
@@ -35,6 +37,7 @@ SILENCE = 5.0
 """s without a word of the experiment, which speaks twice a second, after which it is lost."""
 LOOK_SECONDS = 1.0
 PID = "pid"
+SERVER = "the server"
 OVER = ("complete", "stopped", "failed")
 
 
@@ -79,6 +82,7 @@ class TuningLab:
         self,
         runs: Runs,
         bridge: Bridge,
+        changes: Changes,
         clock: Clock,
         tell: Callable[[dict[str, Any]], None],
         notice: Tell,
@@ -86,6 +90,7 @@ class TuningLab:
     ) -> None:
         self.runs = runs
         self._bridge = bridge
+        self._changes = changes
         self._clock = clock
         self._tell = tell
         self._notice = notice
@@ -101,7 +106,7 @@ class TuningLab:
         active = None if self._active is None else self._active.describe()
         return TuningState(active=active, last=self._last)
 
-    async def start(self, wanted: StepStart | RelayStart) -> int:
+    async def start(self, who: str, wanted: StepStart | RelayStart) -> int:
         """Begin a run; its number. Raises RefusedError, RuntimeSilentError, StoreError."""
         self._check()
         self._starting = True
@@ -112,7 +117,7 @@ class TuningLab:
             now = self._clock.now()
             self._active = _Active(run, wanted, Gathering(wanted.loop), began=now, since=now, heard=now)
             try:
-                await self._bridge.command("experiment", {"number": run, **wanted.model_dump()})
+                await self._changes.command(who, wanted.command(run))
             except BaseException:
                 self._active = None
                 await asyncio.shield(self.runs.forget(run))
@@ -139,7 +144,7 @@ class TuningLab:
         """
         if self._active is None:
             raise RefusedError("No experiment runs.")
-        await self._bridge.command("end_experiment", {})
+        await self._changes.command(SERVER, EndExperimentCommand())
 
     def see(self, block: Block) -> None:
         """Something came from the robot."""
@@ -166,14 +171,14 @@ class TuningLab:
             if self._stray:
                 self._stray = False
                 with suppress(RefusedError, RuntimeSilentError):
-                    await self._bridge.command("end_experiment", {})
+                    await self._changes.command(SERVER, EndExperimentCommand())
 
     async def close(self) -> None:
         """End what runs, and keep what there is of it."""
         active = self._active
         if active is not None and not active.over:
             with suppress(RefusedError, RuntimeSilentError):
-                await self._bridge.command("end_experiment", {})
+                await self._changes.command(SERVER, EndExperimentCommand())
             active.phase, active.text = "stopped", "The server ended."
             self._end(active)
         if self._ending is not None:

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
+from robot_runtime.contract.limits import LoopName
 from server.features.tuning.rules import RULES
-from server.features.tuning.schemas import LimitCycleFound, LoopName, Proposal
+from server.features.tuning.schemas import LimitCycleFound, Proposal
 
 DIGITS = 4
 """Significant digits: more than the limit cycle is known to, few enough to be read."""

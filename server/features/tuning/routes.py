@@ -5,11 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 
+from robot_runtime.contract.limits import LoopName
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.lab import TuningLab
 from server.features.tuning.runs import UnknownTuningRunError
 from server.features.tuning.schemas import (
-    LoopName,
     Start,
     TuningName,
     TuningRunDetail,
@@ -19,6 +19,7 @@ from server.features.tuning.schemas import (
 )
 from server.http.dependencies import Provided
 from server.http.problems import COMMAND, answers
+from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import ConflictError
 from server.platform.models import IDENTIFIER_MAX
@@ -53,9 +54,9 @@ def get_runs(tuning: Provided[TuningLab], loop: LoopName = "depth") -> TuningRun
     openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def start(tuning: Provided[TuningLab], wanted: Start) -> TuningStarted:
+async def start(tuning: Provided[TuningLab], caller: Caller, wanted: Start) -> TuningStarted:
     """On the armed robot, in automatic. Afterwards the loop goes on as before."""
-    return TuningStarted(run=await tuning.start(wanted))
+    return TuningStarted(run=await tuning.start(caller.name, wanted))
 
 
 @router.post(

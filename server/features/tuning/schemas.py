@@ -5,13 +5,25 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
+from robot_runtime.contract.commands import (
+    ExperimentCommand,
+    RelayExperimentCommand,
+    StepExperimentCommand,
+)
 from robot_runtime.contract.documents import ExperimentKind, ExperimentPhase
+from robot_runtime.contract.limits import (
+    ConfigError,
+    ExperimentSeconds,
+    LoopName,
+    RelayAmplitude,
+    RelayCycles,
+    SettleSeconds,
+)
+from robot_runtime.errors import RefusedError
 from server.features.metrics.figure import Figure, FigureMeaning
 
-LoopName = Literal["depth", "heading", "pitch", "roll"]
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
 RunName = Annotated[str, Field(min_length=1, max_length=100)]
-Seconds = Annotated[FiniteFloat, Field(ge=0, le=300, description="s")]
 Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle rad")]
 
 
@@ -33,8 +45,12 @@ class StepStart(Limits):
     tolerance: Annotated[
         FiniteFloat, Field(gt=0, le=20, description="how near to the start counts as settled")
     ]
-    settle: Annotated[Seconds, Field(description="s for which the start is held at most")]
-    duration: Annotated[Seconds, Field(description="s from the step on")]
+    settle: Annotated[SettleSeconds, Field(description="s for which the start is held at most")]
+    duration: Annotated[ExperimentSeconds, Field(description="s from the step on")]
+
+    def command(self, run: int) -> ExperimentCommand:
+        """The command that begins it. Raises RefusedError."""
+        return _command(StepExperimentCommand, self, run)
 
 
 class RelayStart(Limits):
@@ -43,10 +59,21 @@ class RelayStart(Limits):
     kind: Literal["relay"]
     loop: LoopName = "depth"
     set_point: Value
-    amplitude: Annotated[FiniteFloat, Field(ge=0.1, le=1, description="d, share of the most command")]
+    amplitude: Annotated[RelayAmplitude, Field(description="d, share of the largest command")]
     hysteresis: Annotated[FiniteFloat, Field(ge=0, le=20, description="ε, in the loop's unit")]
-    cycles: Annotated[int, Field(ge=3, le=20, description="that are measured")]
-    duration: Annotated[Seconds, Field(description="s after which it gives up")]
+    cycles: Annotated[RelayCycles, Field(description="that are measured")]
+    duration: Annotated[ExperimentSeconds, Field(description="s after which it gives up")]
+
+    def command(self, run: int) -> ExperimentCommand:
+        """The command that begins it. Raises RefusedError."""
+        return _command(RelayExperimentCommand, self, run)
+
+
+def _command(cls: type[ExperimentCommand], wanted: Limits, run: int) -> ExperimentCommand:
+    try:
+        return cls(number=run, **wanted.model_dump(exclude={"kind"}))
+    except ConfigError as problem:
+        raise RefusedError(str(problem)) from problem
 
 
 Start = Annotated[StepStart | RelayStart, Field(discriminator="kind")]

@@ -1,23 +1,14 @@
 """The vision node's settings, and the colour at a place in its picture."""
 
-from typing import Any
-
 from fastapi import APIRouter
 from fastapi.responses import PlainTextResponse
 
-from server.features.parameters.changes import Changes
-from server.features.vision.schemas import (
-    PickedColour,
-    PickPlace,
-    VisionInForce,
-    VisionSettings,
-    VisionText,
-    as_model,
-)
-from server.features.vision.toml_document import check, read_document, write_document
+from robot_runtime.contract.parsing import parse
+from robot_runtime.contract.vision_settings import VisionSettings
+from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
+from server.features.vision.toml_document import read_document, write_document
 from server.http.dependencies import Provided
-from server.http.problems import COMMAND, SILENT, answers
-from server.http.sign_in.identity import Caller
+from server.http.problems import SILENT, answers
 from server.http.sign_in.policy import Need, needs
 from server.stream.bridge import Bridge
 
@@ -30,26 +21,12 @@ router = APIRouter(prefix="/api/vision", tags=["vision"])
     operation_id="getVision",
     openapi_extra=needs(Need.VIEWER),
     responses=SILENT,
+    response_model=VisionSetup,
 )
-async def get_vision(bridge: Provided[Bridge]) -> VisionInForce:
+async def get_vision(bridge: Provided[Bridge]) -> object:
     """All settings that may change while it looks, and what robot.toml says of them."""
     told = await bridge.query("vision")
-    return VisionInForce(settings=as_model(told["settings"]), configured=as_model(told["configured"]))
-
-
-@router.put(
-    "",
-    status_code=204,
-    summary="Have the vision node look otherwise",
-    operation_id="putVisionSettings",
-    openapi_extra=needs(Need.CONTROL),
-    responses=COMMAND,
-)
-async def put_settings(changes: Provided[Changes], caller: Caller, settings: VisionSettings) -> None:
-    """All of it holds from the next picture on, and over restarts; the settings of robot.toml undo that."""
-    table = settings.model_dump(mode="json")
-    check(table)
-    await changes.command(caller.name, "vision_settings", table)
+    return {name: told[name] for name in ("settings", "configured")}
 
 
 @router.post(
@@ -91,5 +68,4 @@ async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
 )
 def read(document: VisionText) -> VisionSettings:
     """What its table [vision] says. It changes nothing."""
-    table: dict[str, Any] = read_document(document.text)
-    return as_model(table)
+    return parse(VisionSettings, read_document(document.text))

@@ -7,7 +7,7 @@ import tomli_w
 
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.limits import ConfigError
-from robot_runtime.contract.parsing import parse, read_value
+from robot_runtime.contract.parsing import read_value
 
 
 def write_document(table: dict[str, Any]) -> str:
@@ -29,8 +29,3 @@ def read_document(text: str) -> dict[str, Any]:
     # A whole robot.toml names the camera, too, which cannot be changed while the robot runs.
     config: VisionConfig = read_value(VisionConfig, document["vision"], "vision")
     return config.settings.table()
-
-
-def check(table: dict[str, Any]) -> None:
-    """Raises ConfigError where settings do not go together."""
-    parse(VisionConfig, table)

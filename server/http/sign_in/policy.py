@@ -1,24 +1,12 @@
 """The need of each operation: declared at its route. An operation without one is refused to everybody."""
 
 from collections.abc import Iterable
-from enum import IntEnum
 from typing import Any
 
 from fastapi.routing import iter_route_contexts
 from starlette.routing import BaseRoute
 
-
-class Need(IntEnum):
-    """What somebody must have; each includes those before it."""
-
-    NOTHING = 0
-    VIEWER = 1
-    """To be signed in."""
-    OPERATOR = 2
-    """The role of an operator."""
-    CONTROL = 3
-    """To hold the control of the robot, which one page or program has at a time."""
-
+from robot_runtime.contract.commands import Need as Need
 
 DECLARED = "x-need"
 """The entry of an operation in the interface's document that says its need."""

@@ -5,8 +5,9 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, State
-from robot_runtime.control.experiment import RelayExperiment, RelaySettings, StepExperiment, StepSettings
+from robot_runtime.control.experiment import RelayExperiment, StepExperiment
 from robot_runtime.errors import RefusedError
 from tests.runtime.control.flight import Flight
 
@@ -36,6 +37,11 @@ RELAY: dict[str, Any] = {
 }
 
 
+def begin(flight: Flight, wanted: dict[str, Any]) -> None:
+    kind, fields = wanted["kind"], {name: value for name, value in wanted.items() if name != "kind"}
+    flight.command(f"{kind}_experiment", **fields)
+
+
 class Lab:
     """A flight whose experiments are told."""
 
@@ -49,7 +55,7 @@ class Lab:
         flight.robot.bus.on_document("state", self._hear_state)
 
     def begin(self, wanted: dict[str, Any]) -> None:
-        self.flight.command("experiment", **wanted)
+        begin(self.flight, wanted)
 
     def until_over(self, limit: float) -> Experiment:
         self.flight.until(lambda: bool(self.told) and self.told[-1].phase in OVER, limit)
@@ -91,7 +97,17 @@ def test_a_step_waits_until_it_has_settled_and_puts_everything_back() -> None:
 
 
 def test_a_start_that_never_settles_is_left_after_the_time_for_it() -> None:
-    wanted = StepSettings(start=0.4, target=0.7, tolerance=0.01, settle=5.0, duration=2.0, low=0.0, high=1.0)
+    wanted = StepExperimentCommand(
+        number=1,
+        loop="depth",
+        start=0.4,
+        target=0.7,
+        tolerance=0.01,
+        settle=5.0,
+        duration=2.0,
+        low=0.0,
+        high=1.0,
+    )
     clock = SimulatedClock(10.0)
     experiment = StepExperiment(wanted, clock)
     set_points = []
@@ -120,8 +136,16 @@ def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
 @pytest.mark.parametrize("load", [-0.2, 0.0, 0.15])
 def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
     """On an integrator with friction and a constant load, where the answer is known."""
-    wanted = RelaySettings(
-        set_point=1.0, amplitude=0.4, hysteresis=0.005, cycles=4, duration=300.0, low=0.0, high=2.0
+    wanted = RelayExperimentCommand(
+        number=1,
+        loop="depth",
+        set_point=1.0,
+        amplitude=0.4,
+        hysteresis=0.005,
+        cycles=4,
+        duration=300.0,
+        low=0.0,
+        high=2.0,
     )
     clock = SimulatedClock(0.0)
     experiment = RelayExperiment(wanted, clock)
@@ -181,8 +205,8 @@ def test_a_relay_without_cycles_gives_up() -> None:
 
 NAN = float("nan")
 WRONG = [
-    (STEP | {"loop": "depths"}, "no loop 'depths'"),
-    (STEP | {"kind": "sine"}, "no experiment 'sine'"),
+    (STEP | {"loop": "depths"}, "loop is 'depths'; it must be one of"),
+    (STEP | {"cycles": 3}, "'cycles' is not known here"),
     (STEP | {"target": NAN}, "target is nan"),
     (STEP | {"target": 11.0, "high": 20.0}, "between 0 and 10"),
     (STEP | {"target": 1.3}, "between the limits"),
@@ -201,20 +225,20 @@ WRONG = [
 def test_what_cannot_be_is_refused() -> None:
     with Flight() as flight:
         with pytest.raises(RefusedError, match="The robot is disarmed"):
-            flight.command("experiment", **STEP)
+            begin(flight, STEP)
         flight.arm()
         for wanted, why in WRONG:
             with pytest.raises(RefusedError, match=why):
-                flight.command("experiment", **wanted)
+                begin(flight, wanted)
         flight.robot.experiments.require_none()
 
 
 def test_nothing_else_changes_meanwhile() -> None:
     with Flight() as flight:
         flight.arm()
-        flight.command("experiment", **STEP)
+        begin(flight, STEP)
         for name, question in (
-            ("experiment", STEP),
+            ("step_experiment", {name: value for name, value in STEP.items() if name != "kind"}),
             ("controller", {"name": "bang_bang"}),
             ("loop", {"name": "depth", "gains": {"kp": 1.0}}),
             ("set_points", {"default": 1.0}),

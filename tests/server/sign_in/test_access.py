@@ -136,7 +136,7 @@ def test_viewers_look_and_stop_and_nothing_else(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "viewer") as viewer:
             assert (await viewer.api.post("/robot/stop")).status_code == 204
-            refused = await viewer.api.post("/robot/arm")
+            refused = await viewer.api.post("/robot/commands/arm")
             assert (refused.status_code, "operator" in refused.json()["detail"]) == (403, True)
             for method, path, body in (
                 ("GET", "/access/devices", None),
@@ -159,17 +159,17 @@ def test_a_cookie_alone_changes_nothing(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with browser(served, "operator") as one:
             for spoilt in ({"x-mucat": ""}, {"x-mucat": "Page"}, {"origin": ""}, {"origin": "null"}):
-                answer = await one.api.post("/robot/arm", headers=spoilt)
+                answer = await one.api.post("/robot/commands/arm", headers=spoilt)
                 assert answer.status_code == 403, spoilt
             for missing in ("x-mucat", "origin"):
                 kept = one.api.headers.pop(missing)
-                assert (await one.api.post("/robot/arm")).status_code == 403, missing
+                assert (await one.api.post("/robot/commands/arm")).status_code == 403, missing
                 one.api.headers[missing] = kept
             with pytest.raises(InvalidStatus):
                 await one.connect(origin=None)
             assert served.runtime.asked == []
             # Let in; all that it lacks is control.
-            assert (await one.api.post("/robot/arm")).status_code == 423
+            assert (await one.api.post("/robot/commands/arm")).status_code == 423
 
     play(settings, scenario)
 
@@ -211,7 +211,7 @@ def test_a_new_role_closes_live_sockets_and_holds_at_once(settings: Settings) ->
                     answer = await boss.api.patch(place, json={"role": role})
                     assert (answer.status_code, answer.json()["role"]) == (200, role)
                     assert await closing_of(socket) == (1008, f"The role is now {role}.")
-                assert (await guest.api.post("/robot/arm")).status_code == status
+                assert (await guest.api.post("/robot/commands/arm")).status_code == status
                 async with guest.connect() as socket:
                     assert (await next_text(socket, "hello"))["you"]["role"] == role
             renamed = await boss.api.patch(place, json={"name": "  a   tablet "})

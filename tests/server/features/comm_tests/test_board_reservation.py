@@ -101,7 +101,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
             for name in ("runtime", "link", "board"):
                 assert parts[name][0] == "absent"
                 assert "lent to the communication test “grid”" in parts[name][1]
-            for path, body in (("robot/arm", None), ("sessions", {})):
+            for path, body in (("robot/commands/arm", None), ("sessions", {})):
                 answer = await served.api.post(f"/{path}", json=body)
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
@@ -112,7 +112,7 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
         assert "--restore" in robot.uploads.read_text()
         assert not robot.marker.exists()
         await until(lambda: runtime_state(served) == "running", "the runtime again")
-        assert (await served.api.post("/robot/arm")).status_code == 204
+        assert (await served.api.post("/robot/commands/arm")).status_code == 204
         assert (await served.api.post("/sessions", json={})).status_code == 201
 
     robot.play(scenario)
@@ -144,7 +144,7 @@ def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
             async with served.container.handover.lend("tested"):
                 pass
         assert (runtime_state(served), robot.marker.exists()) == ("running", False)
-        assert (await served.api.post("/robot/arm")).status_code == 204
+        assert (await served.api.post("/robot/commands/arm")).status_code == 204
 
     robot.play(scenario)
 
@@ -204,7 +204,7 @@ def test_an_interrupted_test_s_firmware_is_brought_back_before_the_runtime_start
         await until(robot.started.exists, "the runtime")
         assert robot.started.read_text() == "True"
         assert not robot.marker.exists()
-        assert (await served.api.post("/robot/arm")).status_code == 204
+        assert (await served.api.post("/robot/commands/arm")).status_code == 204
 
     robot.play(scenario)
 

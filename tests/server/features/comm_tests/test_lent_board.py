@@ -76,7 +76,7 @@ def test_a_server_killed_in_the_middle_brings_the_firmware_back_at_its_next_star
         assert away.exists()
         link = next(part for part in stack.api.get("/health").json()["parts"] if part["name"] == "link")
         assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
-        assert stack.api.post("/robot/arm").status_code == 409
+        assert stack.api.post("/robot/commands/arm").status_code == 409
         assert stack.api.post("/sessions", json={}).status_code == 409
         lab = stack.child("robot_runtime.experiments.comm_test")
         board = stack.child("build/board")

@@ -97,7 +97,7 @@ def test_a_driver_whose_line_is_cut_lets_the_fins_rest_and_then_the_robot_stops(
         ) as socket:
             session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
             driver = Driver(stack, socket)
-            driver.order("POST", "/robot/arm", {"mode": "manual"})
+            driver.order("POST", "/robot/commands/arm", {"mode": "manual"})
             moved: list[bool] = []
 
             def swims() -> bool:

@@ -23,9 +23,9 @@ def command(served: Served) -> None:
     """Arm the robot, as a command in a shell does it."""
     folder = served.settings.data
     with in_control(folder):
-        ask(folder, "POST", "/robot/arm")
+        ask(folder, "POST", "/robot/commands/arm")
         renew_control(folder)
-        ask(folder, "POST", "/robot/arm")
+        ask(folder, "POST", "/robot/commands/arm")
 
 
 def test_a_command_takes_control_and_releases_it(settings: Settings) -> None:
@@ -58,7 +58,7 @@ def test_a_command_whose_control_is_taken_over_stays_without(settings: Settings)
                 with in_control(folder):
                     asyncio.run_coroutine_threadsafe(page.ask("/control/take?over=true"), loop).result()
                     renew_control(folder)
-                    ask(folder, "POST", "/robot/arm")
+                    ask(folder, "POST", "/robot/commands/arm")
 
             loop = asyncio.get_running_loop()
             with pytest.raises(SetupError, match="Control is with"):

@@ -98,7 +98,7 @@ def test_control_goes_from_page_to_page_and_everybody_and_the_runtime_are_told(s
             assert (await anna.told(ben.client))["epoch"] == taken["epoch"] == first + 1
             assert (await served.api.get("/control")).json()["holder"]["client"] == ben.client
             await until(lambda: served.runtime.epochs[-1:] == [first + 1], "the runtime to be told")
-            assert (await anna.ask("/robot/arm")).status_code == 423
+            assert (await anna.ask("/robot/commands/arm")).status_code == 423
             # Of one that has no control nothing is freed.
             assert (await anna.ask("/control/release")).json()["holder"]["client"] == ben.client
             assert (await ben.ask("/control/release")).json()["holder"] is None
@@ -119,7 +119,7 @@ def test_with_the_socket_goes_the_page_s_control(settings: Settings) -> None:
                 await ben.told(None)
             for over in (False, True):
                 assert (await anna.ask(f"/control/take?over={over}")).status_code == 409
-            refused = await anna.ask("/robot/arm")
+            refused = await anna.ask("/robot/commands/arm")
             assert (refused.status_code, served.runtime.asked) == (423, [])
 
     play(settings, scenario)
@@ -129,11 +129,11 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
     async def scenario(served: Served) -> None:
         bare = {"X-Mucat-Client": ""}
         robot = [
-            ("POST", "/robot/arm", None),
-            ("PUT", "/robot/controller", {"name": "pid"}),
-            ("PUT", "/robot/set-points", {"default": 0.4}),
-            ("PUT", "/robot/card", {"colour": "red"}),
-            ("PUT", "/robot/vision", {"rate": 4}),
+            ("POST", "/robot/commands/arm", None),
+            ("POST", "/robot/commands/loop", {"name": "depth", "controller": "pid"}),
+            ("POST", "/robot/commands/parameters", {"values": {"control.set_point": 0.4}}),
+            ("POST", "/robot/commands/card", {"colour": "red"}),
+            ("POST", "/robot/commands/steering", {"by": "beacons"}),
             ("PUT", "/simulator", {"here": False}),
             ("POST", "/scenarios/runs", {"text": SCENARIO, "place": "live"}),
             ("POST", "/comm-tests/runs", {"text": "[]", "place": "robot"}),
@@ -154,7 +154,7 @@ def test_commands_are_the_holder_s_alone_and_stop_is_everybody_s(settings: Setti
         assert (await served.api.post("/robot/stop", headers=bare)).status_code == 204
         assert served.runtime.asked == [("stop", {})] * 2
         await free(served)
-        answer = await served.api.post("/robot/arm")
+        answer = await served.api.post("/robot/commands/arm")
         assert (answer.status_code, answer.json()["detail"][:19]) == (423, "Nobody has control.")
 
     play(settings, scenario)
@@ -170,7 +170,7 @@ def test_a_program_that_is_silent_loses_control(settings: Settings) -> None:
             client.until = served.container.clock.now() + 0.05
             arbiter.announce()
             await page.told(None)
-            assert (await served.api.post("/robot/arm")).status_code == 423
+            assert (await served.api.post("/robot/commands/arm")).status_code == 423
             assert (await served.api.post("/control/take")).status_code == 200
 
     play(settings, scenario)

@@ -43,7 +43,7 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
 
 async def change(served: Served, before: float, after: float) -> None:
     served.runtime.answer = {"changed": {"depth.pid.kp": [before, after]}}
-    answer = await served.api.patch("/parameters", json={"values": {"depth.pid.kp": after}})
+    answer = await served.api.post("/robot/commands/parameters", json={"values": {"depth.pid.kp": after}})
     assert answer.raise_for_status().json()["changed"] == [
         {"name": "depth.pid.kp", "before": before, "after": after}
     ]
@@ -52,8 +52,8 @@ async def change(served: Served, before: float, after: float) -> None:
 def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         await change(served, 3.0, 4.0)
-        served.runtime.answer = {"changed": {"control.set_point": [0.5, 1.0]}}
-        (await served.api.put("/robot/set-points", json={"default": 1.0})).raise_for_status()
+        served.runtime.answer = {"changed": {"control.steering": ["none", "beacons"]}}
+        (await served.api.post("/robot/commands/steering", json={"by": "beacons"})).raise_for_status()
         newest, first = (await served.api.get("/parameters/changes")).json()
         assert [one["who"] for one in (newest, first)] == ["the shell of this computer"] * 2
         assert (newest["undoable"], first["undoable"]) == (True, False)
@@ -63,7 +63,7 @@ def test_changes_are_listed_with_who_made_them_and_undone_one_by_one(settings: S
         (await served.api.post("/parameters/undo", json={"change": newest["id"]})).raise_for_status()
         assert served.runtime.asked[-1] == (
             "parameters",
-            {"values": {"control.set_point": 0.5}, "expected": {"control.set_point": 1.0}},
+            {"values": {"control.steering": "none"}, "expected": {"control.steering": "beacons"}},
         )
         newest, first = (await served.api.get("/parameters/changes")).json()
         assert (newest["undone"], newest["undoable"], first["undoable"]) == (
@@ -89,11 +89,13 @@ def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Setti
     async def scenario(served: Served) -> None:
         await change(served, 3.0, 4.0)
         served.runtime.answer = {"changed": {"depth.pid.kp": [4.0, 6.5]}}
-        proposed = {"controller": "pid", "gains": {"kp": 6.5}}
-        (await served.api.put("/robot/loops/depth", json=proposed)).raise_for_status()
+        proposed = {"name": "depth", "controller": "pid", "gains": {"kp": 6.5}}
+        (await served.api.post("/robot/commands/loop", json=proposed)).raise_for_status()
         served.runtime.answer = {"changed": {"vision.colour": ["red", "green"]}}
         looks = (await served.api.get("/vision")).json()["settings"]
-        (await served.api.put("/vision", json=looks | {"colour": "green"})).raise_for_status()
+        (
+            await served.api.post("/robot/commands/vision_settings", json=looks | {"colour": "green"})
+        ).raise_for_status()
 
         listed = (await served.api.get("/parameters/changes")).json()
         assert [(one["values"][0]["name"], one["values"][0]["after"]) for one in listed] == [
@@ -117,15 +119,16 @@ def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Setti
         '{"values": {"depth.pid.kp": [1]}}',
         '{"values": {}}',
         '{"values": [1]}',
-        '{"values": {"depth.pid.kp": 1}, "partly": true}',
+        '{"values": {"depth.pid.kp": 1}, "partly": 2}',
+        '{"values": {"depth.pid.kp": 1}, "whole": true}',
         "{}",
         "no JSON",
     ],
 )
 def test_what_is_no_value_does_not_reach_the_runtime(settings: Settings, body: str) -> None:
     async def scenario(served: Served) -> None:
-        answer = await served.api.patch(
-            "/parameters", content=body, headers={"content-type": "application/json"}
+        answer = await served.api.post(
+            "/robot/commands/parameters", content=body, headers={"content-type": "application/json"}
         )
         assert answer.status_code == 422
         assert [name for name, _ in served.runtime.asked] == []

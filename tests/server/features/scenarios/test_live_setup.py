@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import pytest
 
+from robot_runtime.contract.commands import RobotCommand
 from robot_runtime.control.controllers.angle import HeadingPid
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -97,8 +98,8 @@ class DirectBridge:
         self.sight: dict[str, Any] = {"world": {"turbidity": 0.2}, "targets": {"targets": []}}
         self._changes = changes(simulator)
 
-    async def command(self, name: str, payload: Mapping[str, Any]) -> None:
-        self.commands.append((name, payload))
+    async def send(self, command: RobotCommand) -> None:
+        self.commands.append((command.policy.name, command.payload()))
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
         if name == "contents":
@@ -138,7 +139,7 @@ def surroundings(bridge: DirectBridge, board: EmulatorProcess) -> Surroundings:
 
 def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge) -> None:
     async def work() -> None:
-        await surroundings.prepare(SCENARIO, await surroundings.read(STATE))
+        await surroundings.prepare(SCENARIO, await surroundings.read(STATE), bridge.send)
 
     simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
     asyncio.run(work())
@@ -156,7 +157,7 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
     loops = {question["name"]: question for name, question in bridge.commands if name == "loop"}
     assert [(loop["on"], loop["set_point"]) for loop in loops.values()] == [(False, 0.0)] * 3
     assert loops["heading"]["gains"] == HeadingPid().gains
-    assert bridge.commands[-1] == ("card", {"colour": None})
+    assert bridge.commands[-1] == ("card", {})
     assert bridge.sight["world"] == {"kind": "pool", "turbidity": 0.1}
     target = {"colour": "green", "position": [2.0, 0.0, 1.0], "size": 0.2}
     assert bridge.sight["targets"] == {"targets": [target]}
@@ -167,11 +168,11 @@ def test_everything_is_put_back(
 ) -> None:
     async def work() -> list[str]:
         before = await surroundings.read(STATE)
-        await surroundings.prepare(SCENARIO, before)
+        await surroundings.prepare(SCENARIO, before, bridge.send)
         for event in SCENARIO.events:
-            await surroundings.apply(event)
+            await surroundings.apply(event, bridge.send)
         bridge.commands.clear()
-        return await surroundings.put_back(before)
+        return await surroundings.put_back(before, bridge.send)
 
     simulator.set_fault("battery", SimulatedFault(kind="drift", speed=0.1))
     was, seen = simulator.surroundings(), dict(bridge.sight)
@@ -183,7 +184,7 @@ def test_everything_is_put_back(
         ("controller", {"name": "bang_bang"}),
         ("set_points", {"default": 0.9, "detected": 1.1}),
         ("loop", {"name": "heading", "controller": "pid", "gains": {"kp": 2.0}}),
-        ("loop", {"name": "heading", "controller": "bang_bang_dead_zone", "gains": {}}),
+        ("loop", {"name": "heading", "controller": "bang_bang_dead_zone"}),
         ("loop", {"name": "heading", "controller": "pid", "on": True, "set_point": 0.4}),
         ("steering", {"by": "beacons"}),
         ("vision", {"rate": 4.0, "colour": "yellow"}),
@@ -202,8 +203,8 @@ def test_what_cannot_be_put_back_is_told_and_the_rest_done(
         surroundings = Surroundings(cast(Bridge, bridge), Path("/nowhere/socket"))
         before = await surroundings.read(STATE)
         with pytest.raises(RefusedError, match="The emulated board: no emulated board answers"):
-            await surroundings.prepare(SCENARIO, before)
-        return await surroundings.put_back(before)
+            await surroundings.prepare(SCENARIO, before, bridge.send)
+        return await surroundings.put_back(before, bridge.send)
 
     was = simulator.surroundings()
     (problem,) = asyncio.run(work())

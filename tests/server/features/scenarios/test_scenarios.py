@@ -136,8 +136,10 @@ def test_what_is_wrong_is_told(stack: Stack) -> None:
 
 
 def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) -> None:
-    stack.api.put("/robot/controller", json={"name": "pid", "gains": {"kp": 7}}).raise_for_status()
-    stack.api.put("/robot/set-points", json={"default": 0.9, "detected": 1.1}).raise_for_status()
+    chosen = {"name": "depth", "controller": "pid", "gains": {"kp": 7}}
+    stack.api.post("/robot/commands/loop", json=chosen).raise_for_status()
+    points = {"control.set_point": 0.9, "control.set_point_detected": 1.1}
+    stack.api.post("/robot/commands/parameters", json={"values": points}).raise_for_status()
     wait(lambda: robot(stack)["set_point_default"] == 0.9, "the set points")
     before = settings_of(stack)
     start(stack, SHORT)
@@ -213,7 +215,7 @@ def test_what_is_refused_says_why(stack: Stack) -> None:
     fast = SHORT.replace("[control]", "[control]\nrate = 20")
     assert refusal(stack, fast).startswith("It wants control at 20 Hz; this robot's runs at 10 Hz")
     session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]
-    stack.api.post("/robot/arm").raise_for_status()
+    stack.api.post("/robot/commands/arm").raise_for_status()
     wait(lambda: robot(stack)["armed"], "the robot to be armed")
     words = refusal(stack, SHORT)
     assert "“mine” is being recorded." in words

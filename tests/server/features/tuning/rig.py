@@ -59,7 +59,8 @@ class Rig:
 
     def _run(self, wanted: StepStart | RelayStart) -> dict[str, Any]:
         self._gathering, self._told = Gathering("depth"), []
-        self.flight.command("experiment", number=1, **wanted.model_dump())
+        command = wanted.command(1)
+        self.flight.command(command.policy.name, **command.payload())
         self.flight.until(lambda: bool(self._told) and self._told[-1].phase in OVER, 250.0)
         starts: dict[str, float] = {}
         for one in self._told:

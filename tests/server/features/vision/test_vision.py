@@ -25,6 +25,8 @@ SETTINGS = VisionSettings(
     actions={"marker 7": 1.5, "red": 0.25},
 ).table()
 
+SET = "/robot/commands/vision_settings"
+
 
 def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> None:
     async def run() -> None:
@@ -36,7 +38,7 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
 
 def test_settings_are_handed_on_whole_and_read_back(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        assert (await served.api.put("/vision", json=SETTINGS)).status_code == 204
+        assert (await served.api.post(SET, json=SETTINGS)).status_code == 200
         assert served.runtime.asked == [("vision_settings", SETTINGS)]
         usual = VisionSettings().table()
         assert (await served.api.get("/vision")).json() == {"settings": usual, "configured": usual}
@@ -65,14 +67,14 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 def test_settings_that_cannot_be_are_refused_at_the_edge(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for change, words in WRONG:
-            answer = await served.api.put("/vision", json={**SETTINGS, **change})
+            answer = await served.api.post(SET, json={**SETTINGS, **change})
             assert answer.status_code == 422, change
             assert words in answer.json()["detail"]
         short = {name: value for name, value in SETTINGS.items() if name != "opening"}
-        assert (await served.api.put("/vision", json=short)).status_code == 422
+        assert (await served.api.post(SET, json=short)).status_code == 422
         text = '{"rate": NaN}'
         json = {"Content-Type": "application/json"}
-        assert (await served.api.put("/vision", content=text, headers=json)).status_code == 422
+        assert (await served.api.post(SET, content=text, headers=json)).status_code == 422
         assert served.runtime.asked == []
 
     play(settings, scenario)

@@ -78,7 +78,7 @@ export class VisionTuning {
     let sent: VisionSettings | null;
     do {
       sent = this.#draft;
-      this.problem = sent === null ? '' : ((await api.changeVision(sent)) ?? '');
+      this.problem = sent === null ? '' : ((await api.command('vision_settings', sent)) ?? '');
     } while (sent !== this.#draft && this.problem === '');
     this.#sending = false;
     if (this.problem === '') this.#loaded = sent;

@@ -1,0 +1,429 @@
+"""Every command to the robot, each declared once as a dataclass with its fields, limits and policy.
+
+From a declaration come the runtime's parser, the HTTP route with its body and access rule, the scenario's
+event, the entry in the history of parameters, the page's types and docs/reference/commands.md. The runtime
+performs commands in `robot_runtime.commands`.
+"""
+
+from collections.abc import Callable
+from dataclasses import MISSING, Field, asdict, dataclass, field, fields, make_dataclass
+from enum import IntEnum
+from typing import Any, ClassVar, Literal, TypeVar, get_type_hints
+
+from robot_runtime.contract.documents import ParameterValue, Steering
+from robot_runtime.contract.limits import (
+    SET_POINTS,
+    AloneSeconds,
+    ConfigError,
+    DepthSetPoint,
+    ExperimentSeconds,
+    LoopName,
+    RelayAmplitude,
+    RelayCycles,
+    SettleSeconds,
+    VisionRate,
+)
+from robot_runtime.contract.vision_settings import VisionSettings
+
+Piloting = Literal["automatic", "manual"]
+
+
+class Need(IntEnum):
+    """Rights that an HTTP operation needs; each includes those before it."""
+
+    NOTHING = 0
+    VIEWER = 1
+    """To be signed in."""
+    OPERATOR = 2
+    """The role of an operator."""
+    CONTROL = 3
+    """To hold the control of the robot, which one page or program has at a time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandPolicy:
+    """Rules for one command.
+
+    `need`: the rights for its HTTP route; None: only the server and scenarios send it. `tunes`: it may
+    change parameters, which the history notes. `in_scenarios`: a scenario may have it as an event.
+    `disturbs_experiment`: it is refused while an experiment measures a loop.
+    """
+
+    name: str
+    need: Need | None
+    tunes: bool
+    in_scenarios: bool
+    disturbs_experiment: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotCommand:
+    """Base of every command."""
+
+    __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "allow_inf_nan": False}
+    policy: ClassVar[CommandPolicy]
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return summary(type(self))
+
+    def payload(self) -> dict[str, Any]:
+        """Its fields as a JSON object, without those that have their default value."""
+        given = {one.name for one in fields(self) if getattr(self, one.name) != _default(one)}
+        return {name: value for name, value in asdict(self).items() if name in given}
+
+
+C = TypeVar("C", bound=RobotCommand)
+COMMANDS: dict[str, type[RobotCommand]] = {}
+
+
+def command(
+    name: str,
+    need: Need | None,
+    *,
+    tunes: bool = False,
+    in_scenarios: bool = False,
+    disturbs_experiment: bool = False,
+) -> Callable[[type[C]], type[C]]:
+    """Declares a command; see `CommandPolicy`."""
+
+    def declare(cls: type[C]) -> type[C]:
+        cls.policy = CommandPolicy(
+            name=name,
+            need=need,
+            tunes=tunes,
+            in_scenarios=in_scenarios,
+            disturbs_experiment=disturbs_experiment,
+        )
+        COMMANDS[name] = cls
+        return cls
+
+    return declare
+
+
+def summary(cls: type[RobotCommand]) -> str:
+    """The first sentence of a command's description, without its full stop."""
+    return (cls.__doc__ or "").partition(". ")[0].partition("\n")[0].removesuffix(".")
+
+
+@command("arm", Need.CONTROL, in_scenarios=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmCommand(RobotCommand):
+    """Arms the robot. It is refused with every reason that stands against it."""
+
+    mode: Piloting = field(default="automatic", metadata={"description": "who steers: controller or pilot"})
+    alone: AloneSeconds = field(
+        default=0.0, metadata={"description": "s for which it may go on without the server"}
+    )
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return "Arm"
+
+
+@command("stop", Need.VIEWER, in_scenarios=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopCommand(RobotCommand):
+    """Disarms the robot at once. It is never refused."""
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return "STOP"
+
+
+@command("mode", Need.CONTROL)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeCommand(RobotCommand):
+    """Lets the pilot or the depth controller steer the armed robot."""
+
+    mode: Piloting = field(metadata={"description": "who steers: controller or pilot"})
+
+
+@command("check_fins", Need.CONTROL)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckFinsCommand(RobotCommand):
+    """Arms for some seconds and moves each fin. An event says which fins followed; then it disarms."""
+
+
+@command("acknowledge", Need.CONTROL, in_scenarios=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcknowledgeCommand(RobotCommand):
+    """Acknowledges all alarms. After a failsafe the robot may be armed again from then on."""
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return "Alarms acknowledged"
+
+
+@command("lease", None)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeaseCommand(RobotCommand):
+    """Starts a new epoch of control. The pilot's inputs of earlier epochs are dropped."""
+
+    epoch: int = field(metadata={"description": "number of the control lease"})
+
+
+@command("set_points", None, tunes=True, in_scenarios=True, disturbs_experiment=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetPointsCommand(RobotCommand):
+    """Sets the depths to hold. What is left out stays as it is."""
+
+    default: DepthSetPoint | None = field(default=None, metadata={"description": "m"})
+    detected: DepthSetPoint | None = field(
+        default=None, metadata={"description": "m, while the colour is seen"}
+    )
+
+    def __post_init__(self) -> None:
+        if self.default is None and self.detected is None:
+            raise ValueError("set_points needs default, detected or both")
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        parts = [] if self.default is None else [f"set point {self.default:g} m"]
+        parts += [] if self.detected is None else [f"{self.detected:g} m where the colour is seen"]
+        words = ", ".join(parts)
+        return words[0].upper() + words[1:]
+
+
+@command("controller", None, tunes=True, in_scenarios=True, disturbs_experiment=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControllerCommand(RobotCommand):
+    """Chooses the depth controller and sets gains of it."""
+
+    name: str = field(metadata={"description": "the controller's"})
+    gains: dict[str, float] = field(
+        default_factory=dict, metadata={"description": "by name; the others stay"}
+    )
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        gains = ", ".join(f"{name} {value:g}" for name, value in self.gains.items())
+        return f"Controller {self.name}" + (f": {gains}" if gains else "")
+
+
+@command("loop", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopCommand(RobotCommand):
+    """Changes one control loop: all of it or nothing. What is left out stays as it is."""
+
+    name: LoopName
+    on: bool | None = field(default=None, metadata={"description": "steer it; in manual: hold it"})
+    set_point: float | None = field(default=None, metadata={"description": "m, of the angles rad"})
+    controller: str | None = field(default=None, metadata={"description": "the controller's name"})
+    gains: dict[str, float] = field(
+        default_factory=dict, metadata={"description": "by name, of this or the chosen controller"}
+    )
+
+    def __post_init__(self) -> None:
+        if self.on is None and self.set_point is None and self.controller is None and not self.gains:
+            raise ValueError("loop needs on, set_point, controller or gains")
+        span = SET_POINTS[self.name]
+        if self.set_point is not None and not span.minimum <= self.set_point <= span.maximum:
+            raise ValueError(f"set_point must lie between {span.minimum:.3g} and {span.maximum:.3g}")
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        parts = [] if self.on is None else ["on" if self.on else "off"]
+        parts += [] if self.set_point is None else [f"set point {self.set_point:g}"]
+        parts += [] if self.controller is None else [self.controller]
+        return f"{self.name.capitalize()}: {', '.join(parts)}"
+
+
+@command("parameters", Need.CONTROL, tunes=True, disturbs_experiment=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParametersCommand(RobotCommand):
+    """Sets parameters by name, all or none, between two control ticks."""
+
+    values: dict[str, ParameterValue]
+    expected: dict[str, ParameterValue] = field(
+        default_factory=dict, metadata={"description": "refused where one has another value now"}
+    )
+    partly: bool = field(
+        default=False, metadata={"description": "leave out what cannot be set, instead of refusing all"}
+    )
+
+    def __post_init__(self) -> None:
+        if not self.values:
+            raise ValueError("values must name one parameter at least")
+
+
+@command("steering", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SteeringCommand(RobotCommand):
+    """Chooses the course while the robot holds its depth."""
+
+    by: Steering = field(
+        metadata={"description": "none: stay; beacons: swim to the light that its detectors see"}
+    )
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return "Swim towards the light" if self.by == "beacons" else "Stay"
+
+
+@command("card", Need.CONTROL, in_scenarios=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CardCommand(RobotCommand):
+    """Holds a card before the simulated camera, or takes it away."""
+
+    colour: str | None = field(default=None, metadata={"description": "the card's; null: no card"})
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        return f"{self.colour.capitalize()} card" if self.colour else "Card away"
+
+
+@command("vision", None, tunes=True, in_scenarios=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionCommand(RobotCommand):
+    """Sets the rate of the vision node and the colour that it searches. What is left out stays."""
+
+    rate: VisionRate | None = field(default=None, metadata={"description": "Hz"})
+    colour: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.rate is None and self.colour is None:
+            raise ValueError("vision needs rate, colour or both")
+
+    @property
+    def words(self) -> str:
+        """The command in a few words, for a person."""
+        parts = [] if self.rate is None else [f"at {self.rate:g} Hz"]
+        parts += [] if self.colour is None else [f"for {self.colour}"]
+        return f"Look {' '.join(parts)}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VisionSettingsBase(RobotCommand):
+    """Replaces all settings of the vision node, also for later starts. None may be left out."""
+
+    def __post_init__(self) -> None:
+        _ = self.settings
+
+    @property
+    def settings(self) -> VisionSettings:
+        """The settings. Raises ConfigError where they contradict each other."""
+        return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
+
+
+_VISION_HINTS = get_type_hints(VisionSettings, include_extras=True)
+# The fields of VisionSettings, without their defaults.
+VisionSettingsCommand: type[VisionSettingsBase] = command("vision_settings", Need.CONTROL, tunes=True)(
+    make_dataclass(
+        "VisionSettingsCommand",
+        [(one.name, _VISION_HINTS[one.name], field(metadata=one.metadata)) for one in fields(VisionSettings)],
+        bases=(VisionSettingsBase,),
+        namespace={"__doc__": VisionSettingsBase.__doc__},
+        frozen=True,
+        slots=True,
+        kw_only=True,
+    )
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExperimentCommand(RobotCommand):
+    """Base of the commands that begin an experiment on one loop; values in the loop's unit."""
+
+    number: int = field(metadata={"description": "names the experiment in its documents"})
+    loop: LoopName
+    low: float = field(metadata={"description": "a lower value ends the experiment"})
+    high: float = field(metadata={"description": "a higher value ends the experiment"})
+    duration: ExperimentSeconds = field(metadata={"description": "s"})
+
+    def __post_init__(self) -> None:
+        if self.low >= self.high:
+            raise ConfigError(f"low is {self.low:g} and high {self.high:g}; the limits must be apart")
+
+    def _require_within(self, name: str, value: float) -> None:
+        if not self.low < value < self.high:
+            raise ConfigError(
+                f"{name} is {value:g}; it must lie between the limits {self.low:g} and {self.high:g}"
+            )
+
+    def _require_set_point(self, name: str, value: float) -> None:
+        span = SET_POINTS[self.loop]
+        _require_between(name, value, span.minimum, span.maximum)
+
+
+@command("step_experiment", None, tunes=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepExperimentCommand(ExperimentCommand):
+    """Begins a step response: the set point goes from `start` to `target` and stays for `duration`.
+
+    The start is held until the value stays within `tolerance` of it, and for `settle` s at most.
+    """
+
+    start: float
+    target: float
+    tolerance: float = field(metadata={"description": "distance from the start that counts as settled"})
+    settle: SettleSeconds = field(metadata={"description": "s for which the start is held at most"})
+
+    def __post_init__(self) -> None:
+        ExperimentCommand.__post_init__(self)
+        self._require_set_point("start", self.start)
+        self._require_set_point("target", self.target)
+        _require_between("tolerance", self.tolerance, 0, self.high - self.low)
+        if self.start == self.target:
+            raise ConfigError("start and target are the same; a step leads from one to the other")
+        self._require_within("start", self.start)
+        self._require_within("target", self.target)
+
+
+@command("relay_experiment", None, tunes=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelayExperimentCommand(ExperimentCommand):
+    """Begins a relay experiment: a relay of ±`amplitude` about `set_point` in the controller's place.
+
+    It switches `hysteresis` beyond the set point, measures `cycles` and gives up after `duration`.
+    """
+
+    set_point: float
+    amplitude: RelayAmplitude = field(metadata={"description": "share of the largest command"})
+    hysteresis: float
+    cycles: RelayCycles
+
+    def __post_init__(self) -> None:
+        ExperimentCommand.__post_init__(self)
+        self._require_set_point("set_point", self.set_point)
+        _require_between("hysteresis", self.hysteresis, 0, HYSTERESIS_SHARE * (self.high - self.low))
+        self._require_within("set_point", self.set_point)
+
+
+HYSTERESIS_SHARE = 0.25
+"""Of the distance between the limits: the largest hysteresis of a relay."""
+
+
+@command("end_experiment", None, tunes=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndExperimentCommand(RobotCommand):
+    """Ends the running experiment. The loop goes on as before it."""
+
+
+HTTP_COMMANDS = tuple(
+    cls for cls in COMMANDS.values() if cls.policy.need is not None and cls is not StopCommand
+)
+"""Commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
+
+
+def _require_between(name: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise ConfigError(f"{name} is {value:g}; it must lie between {low:g} and {high:g}")
+
+
+def is_required(one: Field[Any]) -> bool:
+    """Whether a command must have a value for this field."""
+    return one.default is MISSING and one.default_factory is MISSING
+
+
+def _default(one: Field[Any]) -> Any:
+    return one.default_factory() if one.default_factory is not MISSING else one.default
