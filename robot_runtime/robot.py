@@ -91,9 +91,7 @@ class Robot(Core):
             else:
                 self._vision_file.write(settings)
         except OSError as problem:
-            self._publish_vision_event(
-                f"The settings hold, but could not be kept over a restart: {problem.strerror}"
-            )
+            self._publish_vision_event(f"The settings apply, but could not be stored: {problem.strerror}")
 
     def run(self) -> None:
         """Run until `close` is called; afterwards the board is disarmed and everything is closed."""
@@ -121,7 +119,7 @@ class Robot(Core):
         try:
             settings = self._vision_file.read() if self._vision_file is not None else None
         except ConfigError as problem:
-            self._publish_vision_event(f"What was set up last cannot be used, robot.toml's holds: {problem}")
+            self._publish_vision_event(f"The stored settings cannot be used; robot.toml applies: {problem}")
         else:
             if settings is not None:
                 super().set_vision(settings)

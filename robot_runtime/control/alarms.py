@@ -100,6 +100,6 @@ class Alarms:
             del self._alarms[alarm.fault]
         else:
             self._alarms[alarm.fault] = replace(alarm, active=False)
-        text = f"It is over: {alarm.what}"
+        text = f"Cleared: {alarm.what}"
         self._on_event(Event(time=self._clock.now(), kind=OVER, severity="info", text=text))
         self._changed()

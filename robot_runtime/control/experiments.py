@@ -14,7 +14,7 @@ REPORT_PERIOD = 0.5
 """s."""
 _LEFT: dict[Mode, str] = {
     "manual": "The pilot took over.",
-    "failsafe": "The robot was stopped for a fault; its alarms tell more.",
+    "failsafe": "The robot was stopped for a fault; see its alarms.",
 }
 
 

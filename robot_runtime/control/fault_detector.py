@@ -163,7 +163,7 @@ class FaultDetector:
             return [f"There is no connection to the board: {self._line.text}."]
         status = self.status
         if status is None or self._age(self._status_time) > self._status_stale:
-            return ["The board says nothing of its state. Wait a moment, or reset it."]
+            return ["The board sends no status. Wait a moment, or reset it."]
         if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
             return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
         reasons = self._loop.refusals() if self._loop else []
@@ -176,12 +176,9 @@ class FaultDetector:
         if self._age(self._depth_time) > self._depth_stale:
             return ["There is no fresh depth. Check the pressure sensor."]
         if self._frozen():
-            return ["The pressure does not change by a single count. Check the sensor, or the simulator."]
+            return ["The pressure reading is frozen. Check the sensor, or the simulator."]
         if self._age(self._depth_sane) > self._depth_stale:
-            return [
-                f"The depth is {self._depth:.1f} m, where this robot cannot be. Switch the board off and on "
-                "at the surface."
-            ]
+            return [f"The depth of {self._depth:.1f} m is out of range. Restart the board at the surface."]
         return []
 
     def _other_refusals(self, status: Status) -> list[str]:
@@ -260,8 +257,8 @@ _FINS = {
     SensorFault.FIN_FRONT_LEFT: "front left",
 }
 _WRONG_FIRMWARE = (
-    "The board runs the firmware for hardware in the loop, which moves nothing. Upload the robot's own, or "
-    "set robot.mode to hil."
+    "The board runs the firmware for hardware in the loop, which drives no motors. Upload the "
+    "robot's own, or set robot.mode to hil."
 )
 _NO_HIL_FIRMWARE = (
     "The board does not run the firmware for hardware in the loop. Upload build/firmware/hil/robot.hex."

@@ -225,9 +225,9 @@ class ControlNode:
 
     def _check_on(self, loop: ControlLoop) -> None:
         if loop is self.depth and self.mode != "manual":
-            raise RefusedError("The depth is always held in automatic. Its hold is for driving by hand.")
+            raise RefusedError("Automatic always holds the depth. Its hold is for manual.")
         if self.mode == "manual" and loop.measured is None:
-            raise RefusedError(f"Nothing is known of the {loop.name} yet. Look at the sensors.")
+            raise RefusedError(f"The {loop.name} is not measured yet. Check the sensors.")
 
     def _find(self, name: str) -> ControlLoop:
         loop = self.loops.get(name)

@@ -155,7 +155,7 @@ class Supervisor:
                 self._ask_to_arm(arming)
                 return arming
             if self._arming.mode != mode:
-                raise RefusedError(f"The robot is being armed for {self._arming.mode} just now.")
+                raise RefusedError(f"The robot is already being armed for {self._arming.mode}.")
             return self._arming
 
     def go_on_arming(self) -> None:
@@ -173,7 +173,7 @@ class Supervisor:
                 self._ask_to_arm(arming)
             else:
                 self._line.send(Stop())
-                self._end_arming("The board did not arm; the console says why. Try again in a moment.")
+                self._end_arming("The board did not arm; the console shows the reason. Try again.")
 
     def change_mode(self, mode: Mode) -> None:
         """Changes between manual and automatic while armed. Raises RefusedError with all reasons."""
@@ -181,9 +181,7 @@ class Supervisor:
             if self.mode == mode:
                 return
             if mode not in _CHANGE or follow(self.mode, _CHANGE[mode]) is None:
-                raise RefusedError(
-                    f"The robot is {self.mode}; only while it is armed can it change to {mode}."
-                )
+                raise RefusedError(f"The robot is {self.mode}; it can change to {mode} only while armed.")
             if mode == "automatic" and (reasons := self.detector.depth_refusals()):
                 raise RefusedError(" ".join(reasons))
             self.pilot.begin()
@@ -269,7 +267,7 @@ class Supervisor:
         self._all_stop()
 
     def _all_stop(self) -> None:
-        if self._leave("fault", "alarm", f"All-stop: the fins rest. {_ACKNOWLEDGE}"):
+        if self._leave("fault", "alarm", f"All-stop: the fins are stopped. {_ACKNOWLEDGE}"):
             self._line.send(Stop())
 
     def _leave(self, trigger: Trigger, severity: Severity, why: str, kind: str = "disarmed") -> bool:

@@ -21,11 +21,11 @@ class Transition(NamedTuple):
 
 
 TRANSITIONS = (
-    Transition("disarmed", "arm", "automatic", "nothing stands against it, and the board followed"),
+    Transition("disarmed", "arm", "automatic", "no reason against it, and the board is armed"),
     Transition("disarmed", "arm manual", "manual", "the same"),
     Transition("disarmed", "check fins", "test", "the same"),
     Transition("automatic", "take over", "manual", "the operator takes the sticks"),
-    Transition("manual", "hand back", "automatic", "the operator lets go, and the depth is fresh"),
+    Transition("manual", "hand back", "automatic", "the operator hands back, and the depth is fresh"),
     Transition("test", "checked", "disarmed", "the fin check is over"),
     Transition("automatic", "stop", "disarmed", "STOP, or the end of a scenario or of the runtime"),
     Transition("manual", "stop", "disarmed", "the same"),
@@ -35,7 +35,7 @@ TRANSITIONS = (
     Transition("automatic", "fault", "failsafe", "a fault whose action is all-stop"),
     Transition("manual", "fault", "failsafe", "the same"),
     Transition("test", "fault", "failsafe", "the same"),
-    Transition("failsafe", "acknowledge", "disarmed", "somebody has seen what happened"),
+    Transition("failsafe", "acknowledge", "disarmed", "the operator has seen the alarms"),
 )
 _AFTER = {(one.before, one.trigger): one.after for one in TRANSITIONS}
 

@@ -10,7 +10,7 @@ The supervisor is always in one of five states. It starts in `disarmed`. A fault
 runtime detects by itself. [Safety](safety.md) explains both and says what the chip does alone.
 """
 FAULTS_INTRODUCTION = """\
-The runtime looks for these at least ten times a second, and with each message from the board. *Within* is
+The runtime checks these at least ten times a second, and at each message of the board. *Within* is
 the time from the fault to the action, on a line of 115200 baud or more. *All-stop* sends STOP to the board
 and no command after it; the robot floats up. The alarm stays until the fault is over and acknowledged.
 """
@@ -45,6 +45,6 @@ def _states() -> str:
 
 
 def _fault(fault: FaultRule) -> tuple[str, ...]:
-    action = f"{fault.action}; alarm only by hand" if fault.steered_by else fault.action
+    action = f"{fault.action}; alarm only in manual" if fault.steered_by else fault.action
     message = f"{fault.what} {fault.cause} *{fault.remedy}*"
     return f"`{fault.name}`", f"{fault.limit:g} s", action, fault.severity, message

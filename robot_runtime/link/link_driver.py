@@ -183,8 +183,8 @@ class LinkDriver:
 def _words(stage: SessionStage, session: LinkSession) -> str:
     if stage is SessionStage.GREETING and session.garbled:
         return (
-            "bytes come from the board, but no valid frame: does its firmware run at another speed than"
-            f" link.baud, {session.baud} baud? `make firmware` builds it for that; then upload it"
+            "bytes come from the board, but no valid frame: its firmware may run at another speed than"
+            f" link.baud, {session.baud} baud. Build it with `make firmware` and upload it"
         )
     if stage is not SessionStage.REFUSED or session.board is None:
         return stage.value

@@ -22,7 +22,7 @@ def test_a_fault_is_told_acknowledged_and_left_behind(page: Page, stack: Stack) 
     alarms = page.get_by_role("button", name=re.compile("not acknowledged$"))
     alarms.click()
     expect(
-        page.get_by_role("listitem").filter(has_text="The depth is too old to steer by.").first
+        page.get_by_role("listitem").filter(has_text="The depth is too old for control.").first
     ).to_contain_text("Do:")
     page.keyboard.press("Escape")
     expect(page.get_by_label("Connection lost")).to_be_hidden()

@@ -176,7 +176,7 @@ def _examine(database: Path, report: Report) -> None:
             elif topic == "event":
                 for event in decode_documents(data):
                     told[event["text"].partition(";")[0]] += 1
-    report.stops = told["The server fell silent"]
+    report.stops = told["The server sends no heartbeat"]
     report.tick_longest = max((after - before for before, after in pairwise(ticks)))
 
 

@@ -252,7 +252,7 @@ def test_the_depths_set_point_is_the_default_one_but_where_it_is_held_by_hand() 
         ("heading", {"set_point": float("nan")}, "not between"),
         ("pitch", {"set_point": -0.6}, "-34 is not between"),
         ("depth", {"set_point": 10.1}, "10.1 is not between 0 and 10 m"),
-        ("depth", {"on": True}, "always held in automatic"),
+        ("depth", {"on": True}, "Automatic always holds the depth"),
         ("heading", {"controller": "bang_bang"}, "no controller 'bang_bang'; there are pid"),
         ("heading", {"gains": {"kp": 1e9}}, "kp is 1000000000.0"),
         ("heading", {"on": True, "set_point": 1.0, "gains": {"kq": 1.0}}, "no gain 'kq'"),
@@ -268,5 +268,5 @@ def test_what_is_wrong_is_refused_and_changes_nothing(name: str, change: dict[st
 
 def test_nothing_is_held_that_is_not_measured() -> None:
     rig = Rig("manual")
-    with pytest.raises(RefusedError, match="Nothing is known of the heading yet"):
+    with pytest.raises(RefusedError, match="The heading is not measured yet"):
         rig.node.set_loop("heading", on=True)

@@ -142,7 +142,7 @@ def test_no_arming_without_a_connection_or_a_word_from_the_board(rig: Rig) -> No
     assert "the port does not exist" in rig.supervisor.refusals()[0]
     rig.board.connected = True
     rig.clock.forward(0.6)
-    assert "says nothing" in rig.supervisor.refusals()[0]
+    assert "sends no status" in rig.supervisor.refusals()[0]
 
 
 def test_a_board_that_does_not_arm_is_stopped_and_the_reason_told(rig: Rig) -> None:
