@@ -1,10 +1,11 @@
-"""Requests to the running simulator, by name. Names and types are checked here, ranges at their use."""
+"""Requests to the running water, by name."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
-from typing import Any, cast
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
-from robot_runtime.errors import RefusedError
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse
 from robot_runtime.simulation.water.faults import Kind, SimulatedFault
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.simulator import Simulator
@@ -14,45 +15,70 @@ Question = Mapping[str, Any]
 Change = Callable[[Question], Question | None]
 
 
+@dataclass(frozen=True, slots=True)
+class Reset(StartPose):
+    """A new start; `seed` is that of the sensors' noise."""
+
+    seed: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BeaconPositions:
+    """The light beacons; north, east, down in m."""
+
+    positions: tuple[Vector, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SensorFault:
+    """A sensor and its fault, as `SimulatedFault` has it."""
+
+    sensor: str
+    kind: Kind
+    share: float | None = None
+    size: float | None = None
+    speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Nothing:
+    """The arguments of a question that has none."""
+
+
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """Returns the handler of each request. Handlers that raise RefusedError or ValueError change nothing.
+    """The function of each request. They raise ValueError, in words, and change nothing then.
 
     `surroundings` changes nothing and is answered with the questions that would make everything as it is.
     """
 
     def reset(question: Question) -> None:
-        _expect(question, (), ("north", "east", "down", "heading", "seed"))
-        numbers = {name: value for name, value in question.items() if name != "seed"}
-        simulator.reset(StartPose(**_numbers(numbers)), _whole(question, "seed"))
+        start = parse(Reset, question)
+        simulator.reset(start, start.seed)
 
     def current(question: Question) -> None:
-        _expect(question, ("north", "east", "down"), ("turning",))
-        simulator.set_current(Current(**_numbers(question)))
+        _require(question, "north", "east", "down")
+        simulator.set_current(parse(Current, question))
 
     def waves(question: Question) -> None:
-        _expect(question, ("amplitude", "period", "direction"))
-        simulator.set_waves(Waves(**_numbers(question)))
+        _require(question, "amplitude", "period", "direction")
+        simulator.set_waves(parse(Waves, question))
 
     def trim(question: Question) -> None:
-        _expect(question, ("buoyancy", "forward", "right", "above"))
-        simulator.set_trim(Trim(**_numbers(question)))
+        simulator.set_trim(parse(Trim, question))
 
     def world(question: Question) -> None:
-        _expect(question, ("depth",), ("length", "width"))
-        simulator.set_basin(Basin(**_numbers(question)))
+        simulator.set_basin(parse(Basin, question))
 
     def beacons(question: Question) -> None:
-        _expect(question, ("positions",))
-        simulator.set_beacons(_positions(question["positions"]))
+        simulator.set_beacons(parse(BeaconPositions, question).positions)
 
     def fault(question: Question) -> None:
-        _expect(question, ("sensor", "kind"), ("share", "size", "speed"))
-        sensor, kind = _text(question, "sensor"), _text(question, "kind")
-        numbers = _numbers({name: question[name] for name in question.keys() - {"sensor", "kind"}})
-        simulator.set_fault(sensor, SimulatedFault(kind=cast(Kind, kind), **numbers))
+        named = parse(SensorFault, question)
+        fault = SimulatedFault(kind=named.kind, share=named.share, size=named.size, speed=named.speed)
+        simulator.set_fault(named.sensor, fault)
 
     def surroundings(question: Question) -> Question:
-        _expect(question)
+        parse(Nothing, question)
         basin, current, waves, trim, positions, faults = simulator.surroundings()
         return {
             "world": _given(basin),
@@ -67,54 +93,12 @@ def changes(simulator: Simulator) -> dict[str, Change]:
     return {change.__name__: change for change in made}
 
 
-def _expect(question: Question, names: Sequence[str] = (), more: Sequence[str] = ()) -> None:
-    given = set(question)
-    if not set(names) <= given <= {*names, *more}:
-        takes = ", ".join(sorted(names)) or "nothing"
-        if more:
-            takes += f" and perhaps {', '.join(sorted(more))}"
-        raise RefusedError(f"this command takes {takes}, not {', '.join(sorted(given)) or 'nothing'}")
-
-
-def _numbers(question: Question) -> dict[str, float]:
-    return {name: _number(name, value) for name, value in question.items()}
-
-
-def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise RefusedError(f"{name} must be a number, not {value!r}")
-    try:
-        return float(value)
-    except OverflowError:
-        raise RefusedError(f"{name} is a number of {len(str(value))} digits; take a smaller one") from None
-
-
-def _whole(question: Question, name: str) -> int | None:
-    value = question.get(name)
-    if value is not None and type(value) is not int:
-        raise RefusedError(f"{name} must be a whole number, not {value!r}")
-    return value
+def _require(question: Question, *names: str) -> None:
+    """In a question these have no defaults."""
+    missing = [f"{name} is missing" for name in names if name not in question]
+    if missing:
+        raise ConfigError(*missing)
 
 
 def _given(setting: Basin | Current | Waves | Trim | SimulatedFault) -> dict[str, Any]:
     return {name: value for name, value in asdict(setting).items() if value is not None}
-
-
-def _text(question: Question, name: str) -> str:
-    value = question[name]
-    if not isinstance(value, str):
-        raise RefusedError(f"{name} must be a text, not {value!r}")
-    return value
-
-
-def _positions(value: object) -> tuple[Vector, ...]:
-    if not isinstance(value, list):
-        raise RefusedError(f"positions must be a list of [north, east, down] in m, not {value!r}")
-    return tuple(_position(position) for position in value)
-
-
-def _position(value: object) -> Vector:
-    if not isinstance(value, list) or len(value) != 3:
-        raise RefusedError(f"a position must be [north, east, down] in m, not {value!r}")
-    north, east, down = (_number("each part of a position", part) for part in value)
-    return north, east, down
