@@ -23,10 +23,7 @@ from server.features.parameters import profile_routes as profiles
 from server.features.parameters import routes as parameters
 from server.features.people import routes as access
 from server.features.scenarios import routes as scenarios
-from server.features.sessions import bookmark_routes as marks
-from server.features.sessions import replay_routes as replay
 from server.features.sessions import routes as sessions
-from server.features.sessions import storage_routes as storage
 from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
 from server.features.vision import routes as vision
@@ -43,8 +40,8 @@ from server.platform.settings import Settings
 from server.processes.supervisor import Command
 
 ROUTES = (
-    *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, marks, panels),
-    *(parameters, profiles, replay, robot, scenarios, scene, sessions, simulator, storage, tuning, vision),
+    *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, panels),
+    *(parameters, profiles, robot, scenarios, scene, sessions, simulator, tuning, vision),
 )
 
 

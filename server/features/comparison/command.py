@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from server.features.sessions.presence import UnknownSessionError
+from server.features.sessions.session import UnknownSessionError
 from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
 

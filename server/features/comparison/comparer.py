@@ -43,9 +43,8 @@ from server.features.comparison.schemas import (
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
-from server.features.sessions.presence import UnknownSessionError
 from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.features.sessions.session import UnknownSessionError, find_row
 from server.features.sessions.timeline import Moment, read_events
 from server.platform.models import SessionRow
 from server.platform.store import Reader

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from server.features.comparison.comparisons import Comparisons
 from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
 from server.features.comparison.signals import Signal
-from server.features.sessions.presence import UnknownSessionError
+from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs

@@ -18,8 +18,8 @@ from server.features.exports.tables import stream_tables
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import UNKNOWN as UNKNOWN_SESSION
 from server.features.sessions.dependencies import Identifier as SessionIdentifier
-from server.features.sessions.presence import UnknownSessionError
-from server.features.sessions.session import Session, find_row, from_row
+from server.features.sessions.schemas import Session
+from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
 from server.http.problems import answers

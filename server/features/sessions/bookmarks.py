@@ -8,9 +8,9 @@ from sqlalchemy import Connection, delete, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from server.features.sessions.presence import SessionStateError, require
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.session import Mark
+from server.features.sessions.schemas import Mark
+from server.features.sessions.session import SessionStateError, require
 from server.platform.errors import NotFoundError
 from server.platform.models import Marker, SessionRow
 from server.platform.store import Store

@@ -12,18 +12,16 @@ from sqlmodel import col, desc, func, select
 
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.chunks import row_layout
-from server.features.sessions.presence import SessionStateError, UnknownSessionError, require
 from server.features.sessions.recorder import Recorder
+from server.features.sessions.schemas import RecordedColumn, RecordedTopic, Session, SessionDetail, SessionGap
 from server.features.sessions.session import (
     HIDDEN,
     REMOVING,
-    RecordedColumn,
-    RecordedTopic,
-    Session,
-    SessionDetail,
-    SessionGap,
+    SessionStateError,
+    UnknownSessionError,
     find_row,
     from_row,
+    require,
 )
 from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.platform.store import Reader, Store

@@ -15,7 +15,7 @@ from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 
 if TYPE_CHECKING:
-    from server.features.sessions.session import Session, SessionDetail
+    from server.features.sessions.schemas import Session, SessionDetail
 
 SESSION = click.argument("session", type=int)
 REQUESTS = {
@@ -53,7 +53,7 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
 def show(settings: Settings, session: int) -> None:
     """Show a session: contents, bookmarks, gaps."""
     from server.features.sessions.catalogue import Listing
-    from server.features.sessions.presence import UnknownSessionError
+    from server.features.sessions.session import UnknownSessionError
     from server.platform.shell_store import open_reader
 
     try:
@@ -71,7 +71,7 @@ def show(settings: Settings, session: int) -> None:
 def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
     """Add tags to a session, or remove some."""
     from server.features.sessions.catalogue import Listing
-    from server.features.sessions.presence import UnknownSessionError
+    from server.features.sessions.session import UnknownSessionError
     from server.platform.shell_store import open_reader
 
     try:
@@ -142,7 +142,7 @@ def stop(settings: Settings) -> None:
 def _change(folder: DataFolder, session: int, **values: Any) -> None:
     from pydantic import ValidationError
 
-    from server.features.sessions.session import SessionChanges
+    from server.features.sessions.schemas import SessionChanges
 
     try:
         changes = SessionChanges(**values).model_dump(exclude_unset=True)
@@ -169,7 +169,7 @@ def _perform(
 
 def _perform_here(folder: DataFolder, action: str, session: int, changes: dict[str, Any]) -> str:
     from server.features.sessions.catalogue import Catalogue
-    from server.features.sessions.presence import SessionStateError, UnknownSessionError
+    from server.features.sessions.session import SessionStateError, UnknownSessionError
     from server.platform.shell_store import open_writer
 
     try:

@@ -5,8 +5,8 @@ from typing import Annotated
 from fastapi import Depends, Path
 
 from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.presence import UnknownSessionError
 from server.features.sessions.recording import Recording
+from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.platform.errors import ConflictError

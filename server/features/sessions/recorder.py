@@ -25,7 +25,8 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME, NUMBERS, RECORDED, Block, Topic
 from server.features.sessions.chunks import encode
 from server.features.sessions.resume import Left, Missing, find_left
-from server.features.sessions.session import Session, from_row
+from server.features.sessions.schemas import Session
+from server.features.sessions.session import from_row
 from server.platform.errors import ConflictError
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices

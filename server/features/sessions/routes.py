@@ -1,47 +1,59 @@
-"""Sessions: start, stop, find, describe, delete, download."""
+"""Sessions: recording, search, description, bookmarks, replay, and the storage that they take."""
 
 import json
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Path, Query
 from fastapi.concurrency import run_in_threadpool
-from pydantic import BaseModel, ConfigDict
-from starlette.responses import Response
+from fastapi.responses import Response
 
 from robot_runtime.clock import Clock
+from server.features.sessions.bookmarks import Markers
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import STORING, UNKNOWN, Identifier, OpenRecording
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
+from server.features.sessions.replay import HISTORY_MAX, read_stretch
 from server.features.sessions.retention import Tidying
-from server.features.sessions.session import (
-    Name,
-    Note,
+from server.features.sessions.schemas import (
+    Mark,
+    MarkChanges,
+    NewMark,
+    NewSession,
     Origin,
     Session,
     SessionChanges,
     SessionDetail,
-    new_row,
 )
+from server.features.sessions.session import new_row
+from server.features.sessions.storage import Storage, measure
+from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import Watch
 from server.http.dependencies import Provided
+from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
-from server.platform.errors import NotFoundError
+from server.platform.errors import InvalidError, NotFoundError
+from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
+from server.platform.store import Store
 from server.stream.bridge import Bridge
 
-router = APIRouter(prefix="/api/sessions", tags=["sessions"])
+SECONDS_MAX = 1e9
+LEFT_OUT = "Left-Out"
+"""The header that says how many samples could not be given."""
 
+router = APIRouter(prefix="/api", tags=["sessions"])
 
-class NewSession(BaseModel):
-    """A session that is to begin; without a name it is called after its moment."""
+UNKNOWN_MARK = answers(_404="There is no such session, or it has no such mark")
 
-    model_config = ConfigDict(extra="forbid")
-    name: Name = ""
-    note: Note = ""
+MarkIdentifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 
 
 @router.get(
-    "", summary="Sessions, newest first", operation_id="listSessions", openapi_extra=needs(Need.VIEWER)
+    "/sessions",
+    summary="Sessions, newest first",
+    operation_id="listSessions",
+    openapi_extra=needs(Need.VIEWER),
 )
 def get_sessions(
     catalogue: Provided[Catalogue],
@@ -57,7 +69,7 @@ def get_sessions(
 
 
 @router.post(
-    "",
+    "/sessions",
     status_code=201,
     summary="Start recording",
     operation_id="startSession",
@@ -86,7 +98,7 @@ async def start_session(
 
 
 @router.get(
-    "/{session}",
+    "/sessions/{session}",
     summary="One session",
     operation_id="getSession",
     openapi_extra=needs(Need.VIEWER),
@@ -98,7 +110,7 @@ def get_session(catalogue: Provided[Catalogue], session: Identifier) -> SessionD
 
 
 @router.patch(
-    "/{session}",
+    "/sessions/{session}",
     summary="Name, note, tag or keep a session",
     operation_id="changeSession",
     openapi_extra=needs(Need.OPERATOR),
@@ -112,7 +124,7 @@ async def change_session(
 
 
 @router.post(
-    "/{session}/stop",
+    "/sessions/{session}/stop",
     summary="Stop recording",
     operation_id="stopSession",
     openapi_extra=needs(Need.OPERATOR),
@@ -127,7 +139,7 @@ async def stop_session(
 
 
 @router.delete(
-    "/{session}",
+    "/sessions/{session}",
     summary="Put a session into the bin",
     operation_id="deleteSession",
     openapi_extra=needs(Need.OPERATOR),
@@ -139,7 +151,7 @@ async def delete_session(catalogue: Provided[Catalogue], session: Identifier) ->
 
 
 @router.post(
-    "/{session}/restore",
+    "/sessions/{session}/restore",
     summary="Take a session out of the bin",
     operation_id="restoreSession",
     openapi_extra=needs(Need.OPERATOR),
@@ -151,7 +163,7 @@ async def restore_session(catalogue: Provided[Catalogue], session: Identifier) -
 
 
 @router.post(
-    "/{session}/purge",
+    "/sessions/{session}/purge",
     status_code=204,
     summary="Remove a session that is in the bin for good",
     operation_id="purgeSession",
@@ -167,7 +179,7 @@ async def purge_session(
 
 
 @router.get(
-    "/{session}/thumbnail",
+    "/sessions/{session}/thumbnail",
     summary="A small picture of what the camera saw",
     operation_id="getThumbnail",
     openapi_extra=needs(Need.VIEWER),
@@ -181,3 +193,101 @@ def get_thumbnail(
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
+
+
+@router.post(
+    "/sessions/{session}/markers",
+    status_code=201,
+    summary="Mark a moment",
+    operation_id="addMark",
+    openapi_extra=needs(Need.OPERATOR),
+    responses={**UNKNOWN_MARK, **STORING},
+)
+async def add_mark(
+    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, wanted: NewMark
+) -> Mark:
+    """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
+    mark = await markers.add(session, wanted.time, wanted.text)
+    catalogue.tell(session)
+    return mark
+
+
+@router.patch(
+    "/sessions/{session}/markers/{mark}",
+    summary="Change a mark",
+    operation_id="changeMark",
+    openapi_extra=needs(Need.OPERATOR),
+    responses={**UNKNOWN_MARK, **STORING},
+)
+async def change_mark(
+    markers: Provided[Markers], session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
+) -> Mark:
+    """Move it, or say something else of it."""
+    return await markers.change(session, mark, wanted.time, wanted.text)
+
+
+@router.delete(
+    "/sessions/{session}/markers/{mark}",
+    status_code=204,
+    summary="Take a mark away",
+    operation_id="removeMark",
+    openapi_extra=needs(Need.OPERATOR),
+    responses={**UNKNOWN_MARK, **STORING},
+)
+async def remove_mark(
+    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
+) -> None:
+    """Take it away for good."""
+    await markers.remove(session, mark)
+    catalogue.tell(session)
+
+
+@router.get(
+    "/sessions/{session}/timeline",
+    summary="Events and markers",
+    operation_id="getTimeline",
+    openapi_extra=needs(Need.VIEWER),
+    responses=UNKNOWN,
+)
+def get_timeline(recording: OpenRecording) -> Timeline:
+    """What happened when in a session, and where nothing was recorded."""
+    return read_timeline(recording)
+
+
+@router.get(
+    "/sessions/{session}/blocks",
+    summary="A stretch of a session",
+    operation_id="getBlocks",
+    openapi_extra=needs(Need.VIEWER),
+    response_class=Response,
+    responses={
+        200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"},
+        **UNKNOWN,
+    },
+)
+def get_blocks(
+    recording: OpenRecording,
+    start: Seconds,
+    end: Seconds,
+    history: Annotated[float | None, Query(ge=0, le=HISTORY_MAX, allow_inf_nan=False)] = None,
+) -> Response:
+    """The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+
+    With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
+    of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
+    that are damaged or cannot be said in this version's definitions.
+    """
+    if end < start:
+        raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
+    zero = recording.row.started_steady
+    stretch = read_stretch(recording, zero + start, zero + end, history)
+    headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
+    return Response(stretch.data, media_type="application/octet-stream", headers=headers)
+
+
+@router.get(
+    "/storage", summary="Storage used and free", operation_id="getStorage", openapi_extra=needs(Need.VIEWER)
+)
+def get_storage(store: Provided[Store], settings: Provided[Settings]) -> Storage:
+    """The disk that holds the data folder, and the rules by which sessions go."""
+    return measure(store, settings)

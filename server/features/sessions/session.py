@@ -1,11 +1,11 @@
-"""Sessions as the interface shows them, and how a new one begins."""
+"""The row of a session: made for a new one, found, and as the interface shows it."""
 
 import json
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from sqlalchemy import Connection
+from sqlmodel import col, select
 
 from robot_runtime.clock import Clock, boot
 from robot_runtime.contract.packets import DEFINITIONS_HASH
@@ -13,6 +13,8 @@ from robot_runtime.provenance import hash_firmware, hash_software
 from robot_runtime.simulation.boards.firmware import firmware_path
 from server import VERSION
 from server.features.sessions.chunks import describe_topics
+from server.features.sessions.schemas import Origin, Session
+from server.platform.errors import ConflictError, NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Reader
@@ -24,104 +26,16 @@ IMPORTING = "importing"
 HIDDEN = (REMOVING, IMPORTING)
 """States of rows that are no sessions to anybody but who removes or imports them."""
 
-State = Literal["recording", "complete", "interrupted"]
-Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
+
+class UnknownSessionError(NotFoundError):
+    """There is no such session"""
+
+    def __init__(self, session: int) -> None:
+        super().__init__(f"There is no session {session}; the list of sessions has those that there are.")
 
 
-Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
-Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
-Tag = Annotated[
-    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
-]
-
-
-class Session(BaseModel):
-    """One recording; "interrupted" where the server ended without closing it: what was stored is kept."""
-
-    id: int
-    name: str
-    note: str
-    tags: list[str] = Field(description="in alphabetical order")
-    markers: int = Field(description="how many moments are marked")
-    state: State
-    origin: Origin = Field(
-        description="who began it: an operator, arming, a scenario in real time, one in simulated time; "
-        "or it was imported"
-    )
-    started: datetime = Field(description="UTC")
-    ended: datetime | None = Field(description="UTC; null while it records")
-    duration: float = Field(description="s, up to the last samples that are stored")
-    samples: int = Field(description="samples stored, all topics together")
-    bytes: int = Field(description="bytes stored, compressed")
-    robot: str
-    version: str = Field(description="of the server that recorded it")
-    definitions: str = Field(description="hash of the packet definitions, 8 hexadecimal digits")
-    firmware: str = Field(description="hash of the firmware, 16 hexadecimal digits; empty where unknown")
-    software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
-    scenario_name: str = Field(description="empty without a scenario")
-    seed: int | None
-    kept: bool = Field(description="the retention rule leaves it alone")
-    deleted: datetime | None = Field(description="UTC; since when it has been in the bin")
-
-
-class Mark(BaseModel):
-    """A moment that somebody pointed out."""
-
-    id: int
-    time: float = Field(description="s since the session's start")
-    text: str
-    made: datetime = Field(description="UTC")
-
-
-class SessionGap(BaseModel):
-    """Samples that are not in the session: `missed` of them, noticed at `time`."""
-
-    topic: str
-    kind: Literal["missed", "restarted", "not stored", "damaged"]
-    time: float = Field(description="s since the session's start")
-    missed: int
-
-
-class RecordedColumn(BaseModel):
-    """One column of a topic, as it is exported."""
-
-    name: str
-    unit: str
-    meaning: str
-
-
-class RecordedTopic(BaseModel):
-    """What a session holds of one topic; times are of the first and the last sample, s since its start."""
-
-    name: str
-    meaning: str
-    kind: Literal["rows", "documents", "picture"]
-    count: int
-    first: float
-    last: float
-    columns: list[RecordedColumn]
-
-
-class SessionDetail(Session):
-    """A session with everything that is known of it but the samples."""
-
-    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
-    scenario: str = Field(description="TOML; empty without one")
-    configuration: str = Field(description="robot.toml as it was at the start")
-    robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
-    marks: list[Mark] = Field(description="in the order of their times")
-    gaps: list[SessionGap]
-    topics: list[RecordedTopic]
-
-
-class SessionChanges(BaseModel):
-    """What people say about a session; what is left out stays as it is."""
-
-    model_config = ConfigDict(extra="forbid")
-    name: Annotated[Name, Field(min_length=1)] | None = None
-    note: Note | None = None
-    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
-    kept: bool | None = None
+class SessionStateError(ConflictError):
+    """Refused now"""
 
 
 def new_row(
@@ -183,6 +97,14 @@ def find_row(store: Reader, session: int) -> SessionRow | None:
     with store.read() as database:
         row = database.get(SessionRow, session)
         return None if row is None or row.state in HIDDEN else row
+
+
+def require(connection: Connection, session: int) -> str:
+    """The state of a session, within a transaction. Raises UnknownSessionError."""
+    state = connection.execute(select(SessionRow.state).where(col(SessionRow.id) == session)).scalar()
+    if state is None or state in HIDDEN:
+        raise UnknownSessionError(session)
+    return str(state)
 
 
 def _moment(time: float | None) -> datetime | None:

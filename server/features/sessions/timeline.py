@@ -11,7 +11,8 @@ from sqlmodel import col, select
 from robot_runtime.contract.documents import Severity
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.recording import Recording
-from server.features.sessions.session import Mark, State, from_row
+from server.features.sessions.schemas import Mark, State
+from server.features.sessions.session import from_row
 from server.platform.models import Chunk, Marker
 
 EVENTS_MAX = 2000

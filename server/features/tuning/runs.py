@@ -11,7 +11,7 @@ from sqlmodel import col
 from sqlmodel import select as select_rows
 
 from robot_runtime.contract.limits import LoopName
-from server.features.sessions.presence import SessionStateError
+from server.features.sessions.session import SessionStateError
 from server.features.tuning.curve import Curve
 from server.features.tuning.proposals import propose
 from server.features.tuning.schemas import (

@@ -1,0 +1,133 @@
+"""Schemas of sessions and their bookmarks in the interface."""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+State = Literal["recording", "complete", "interrupted"]
+Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
+
+
+Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
+Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
+Tag = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
+]
+
+
+class Session(BaseModel):
+    """One recording; "interrupted" where the server ended without closing it: what was stored is kept."""
+
+    id: int
+    name: str
+    note: str
+    tags: list[str] = Field(description="in alphabetical order")
+    markers: int = Field(description="how many moments are marked")
+    state: State
+    origin: Origin = Field(
+        description="who began it: an operator, arming, a scenario in real time, one in simulated time; "
+        "or it was imported"
+    )
+    started: datetime = Field(description="UTC")
+    ended: datetime | None = Field(description="UTC; null while it records")
+    duration: float = Field(description="s, up to the last samples that are stored")
+    samples: int = Field(description="samples stored, all topics together")
+    bytes: int = Field(description="bytes stored, compressed")
+    robot: str
+    version: str = Field(description="of the server that recorded it")
+    definitions: str = Field(description="hash of the packet definitions, 8 hexadecimal digits")
+    firmware: str = Field(description="hash of the firmware, 16 hexadecimal digits; empty where unknown")
+    software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
+    scenario_name: str = Field(description="empty without a scenario")
+    seed: int | None
+    kept: bool = Field(description="the retention rule leaves it alone")
+    deleted: datetime | None = Field(description="UTC; since when it has been in the bin")
+
+
+class Mark(BaseModel):
+    """A moment that somebody pointed out."""
+
+    id: int
+    time: float = Field(description="s since the session's start")
+    text: str
+    made: datetime = Field(description="UTC")
+
+
+class SessionGap(BaseModel):
+    """Samples that are not in the session: `missed` of them, noticed at `time`."""
+
+    topic: str
+    kind: Literal["missed", "restarted", "not stored", "damaged"]
+    time: float = Field(description="s since the session's start")
+    missed: int
+
+
+class RecordedColumn(BaseModel):
+    """One column of a topic, as it is exported."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class RecordedTopic(BaseModel):
+    """What a session holds of one topic; times are of the first and the last sample, s since its start."""
+
+    name: str
+    meaning: str
+    kind: Literal["rows", "documents", "picture"]
+    count: int
+    first: float
+    last: float
+    columns: list[RecordedColumn]
+
+
+class SessionDetail(Session):
+    """A session with everything that is known of it but the samples."""
+
+    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
+    scenario: str = Field(description="TOML; empty without one")
+    configuration: str = Field(description="robot.toml as it was at the start")
+    robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
+    marks: list[Mark] = Field(description="in the order of their times")
+    gaps: list[SessionGap]
+    topics: list[RecordedTopic]
+
+
+class SessionChanges(BaseModel):
+    """What people say about a session; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Annotated[Name, Field(min_length=1)] | None = None
+    note: Note | None = None
+    tags: Annotated[list[Tag], Field(max_length=20)] | None = None
+    kept: bool | None = None
+
+
+class NewSession(BaseModel):
+    """A session that is to begin; without a name it is called after its moment."""
+
+    model_config = ConfigDict(extra="forbid")
+    name: Name = ""
+    note: Note = ""
+
+
+Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
+Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+class NewMark(BaseModel):
+    """A moment to be marked: s since the session's start, or null for now."""
+
+    model_config = ConfigDict(extra="forbid")
+    time: Moment | None = None
+    text: Text = ""
+
+
+class MarkChanges(BaseModel):
+    """What is to be different; what is left out stays as it is."""
+
+    model_config = ConfigDict(extra="forbid")
+    time: Moment | None = None
+    text: Text | None = None
