@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tests.exports import export_session
 from tests.stack import ROOT, Stack
 from tests.two_hosts import HERE, TwoHosts
 
@@ -62,7 +63,7 @@ def main() -> None:
             stack.api.post("/robot/commands/acknowledge").raise_for_status()
             wait(lambda: refusals(stack) == [], "the acknowledgement", stack)
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
-            (data / "session.zip").write_bytes(stack.api.get(f"/sessions/{session['id']}/csv").content)
+            (data / "session.zip").write_bytes(export_session(stack.api, session["id"]).content)
         finally:
             simulator.terminate()
             simulator.wait(10)

@@ -176,7 +176,6 @@ export const api = {
       undefined,
       readStretch,
     ),
-  csv: (id: Session['id']) => `/api/sessions/${id}/csv`,
   exports: () => request<ExportJob[]>('GET', '/exports'),
   startExport: (wanted: NewExport) => request<ExportJob>('POST', '/exports', wanted),
   deleteExport: (id: ExportJob['id']) => command('DELETE', `/exports/${id}`),

@@ -15,6 +15,7 @@ from playwright.sync_api import Browser, Page, StorageState, expect
 from server.platform.settings import DataFolder
 from tests.browser.conftest import PHONE
 from tests.browser.test_swim import hold_to_arm
+from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
 
@@ -100,9 +101,7 @@ def look_away(page: Page) -> float:
 
 def exported(stack: Stack, session: int) -> dict[str, list[dict[str, str]]]:
     """The tables of the session's archive."""
-    archive = zipfile.ZipFile(
-        io.BytesIO(stack.api.get(f"/sessions/{session}/csv").raise_for_status().content)
-    )
+    archive = zipfile.ZipFile(io.BytesIO(export_session(stack.api, session).content))
     return {
         name: list(csv.DictReader(io.StringIO(archive.read(name).decode())))
         for name in archive.namelist()

@@ -34,6 +34,7 @@ from server.http.page import Page
 from server.http.serving import MESSAGE_BYTES_MAX
 from server.platform.settings import Settings, SetupError, read_settings
 from server.processes.supervisor import plan
+from tests.exports import export_session
 from tests.proofs.interface import Surface, run_surface
 from tests.proofs.words import Words
 
@@ -213,7 +214,7 @@ def session_name(field: Field) -> None:
     if answer.ok:
         number = answer.json()["id"]
         assert field.ask("POST", f"sessions/{number}/stop").ok
-        found = field.surface.session.get(f"{field.surface.url}/api/sessions/{number}/csv", timeout=60)
+        found = export_session(field.surface.session, number, base=f"{field.surface.url}/api")
         assert FILE_NAME.fullmatch(found.headers["content-disposition"]), found.headers
         members = zipfile.ZipFile(BytesIO(found.content)).namelist()
         assert all(re.fullmatch(r"[a-z_]+\.(csv|json|txt)", one) for one in members), members
@@ -241,7 +242,7 @@ def mark(field: Field) -> None:
 @entrance("number of a session")
 def session_number(field: Field) -> None:
     """Numbers are numbers."""
-    ending = field.words.choose(("", "/csv", "/timeline", "/signals", "/thumbnail?time=0", "/restore"))
+    ending = field.words.choose(("", "/timeline", "/signals", "/thumbnail?time=0", "/restore"))
     field.ask("GET", f"sessions/{escape(field.words.word())}{ending}")
 
 

@@ -87,7 +87,6 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/sessions/{session}/restore"): "operator",
     ("POST", "/api/sessions/{session}/purge"): "operator",
     ("GET", "/api/sessions/{session}/thumbnail"): "viewer",
-    ("GET", "/api/sessions/{session}/csv"): "viewer",
     ("GET", "/api/sessions/{session}/timeline"): "viewer",
     ("GET", "/api/sessions/{session}/blocks"): "viewer",
     ("GET", "/api/sessions/{session}/signals"): "viewer",

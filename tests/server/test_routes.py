@@ -7,6 +7,7 @@ import sys
 import zipfile
 from typing import Any
 
+import httpx
 import pytest
 
 import server.stream.bridge as bridge_module
@@ -17,6 +18,14 @@ from server.processes.supervisor import Command
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
 from tests.server.waiting import until
+
+
+async def exported(served: Served, session: int) -> httpx.Response:
+    """A session as CSV, through an export."""
+    job = (await served.api.post("/exports", json={"session": session, "format": "csv"})).json()
+    find = served.assembly.jobs.find
+    await until(lambda: (one := find(job["id"])) and one.state in ("done", "failed"), "the file", 60)
+    return (await served.api.get(f"/exports/{job['id']}/file")).raise_for_status()
 
 
 def test_health_names_every_part_and_its_words(settings: Settings) -> None:
@@ -265,7 +274,7 @@ def test_a_session_from_start_to_download(settings: Settings) -> None:
         served.runtime.publish(depth_block(0, 10, start=served.container.clock.now()))
         recorder = served.container.recorder
         await until(lambda: recorder.session is not None and recorder.session.samples >= 10, "the samples")
-        half = await api.get(f"/sessions/{session['id']}/csv")
+        half = await exported(served, session["id"])
         assert "depth.csv" in zipfile.ZipFile(io.BytesIO(half.content)).namelist()
         stopped = (await api.post(f"/sessions/{session['id']}/stop")).json()
         assert stopped["state"] == "complete"
@@ -274,9 +283,9 @@ def test_a_session_from_start_to_download(settings: Settings) -> None:
         assert stopped.items() <= detail.items()
         assert [(one["name"], one["count"]) for one in detail["topics"]][:1] == [("depth", 10)]
         assert (await api.post(f"/sessions/{session['id']}/stop")).status_code == 409
-        whole = await api.get(f"/sessions/{session['id']}/csv")
+        whole = await exported(served, session["id"])
         assert whole.headers["content-type"] == "application/zip"
-        assert '_Dive.zip"' in whole.headers["content-disposition"]
+        assert '_Dive.csv.zip"' in whole.headers["content-disposition"]
         archive = zipfile.ZipFile(io.BytesIO(whole.content))
         lines = list(csv.DictReader(io.StringIO(archive.read("depth.csv").decode())))
         assert [int(line["time [µs]"]) for line in lines] == list(range(10))
@@ -309,7 +318,7 @@ def test_sessions_that_do_not_exist(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         for answer in (
             await served.api.get("/sessions/7"),
-            await served.api.get("/sessions/7/csv"),
+            await served.api.post("/exports", json={"session": 7, "format": "csv"}),
             await served.api.post("/sessions/7/stop"),
         ):
             assert answer.status_code == 404

@@ -1295,26 +1295,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/sessions/{session}/csv": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Download a session
-         * @description One CSV file for each topic, with units in its header, and `session.json` with everything else.
-         */
-        get: operations["downloadSession"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/sessions/{session}/markers": {
         parameters: {
             query?: never;
@@ -8248,46 +8228,6 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": unknown;
-                };
-            };
-            /** @description There is no such session */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
-            "4XX": {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    downloadSession: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                session: number;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description A zip file */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/zip": unknown;
                 };
             };
             /** @description There is no such session */

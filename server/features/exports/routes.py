@@ -4,20 +4,15 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Request
 from fastapi.concurrency import run_in_threadpool
-from starlette.responses import FileResponse, StreamingResponse
+from starlette.responses import FileResponse
 
 from server.features.exports.archive_reader import ArchiveError
-from server.features.exports.description import file_name
 from server.features.exports.files import FileWriteError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
 from server.features.exports.jobs import Jobs
-from server.features.exports.schemas import Job, NewExport, Wanted
-from server.features.exports.selection import ExportRequestError, Source
-from server.features.exports.tables import stream_tables
-from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.dependencies import UNKNOWN as UNKNOWN_SESSION
-from server.features.sessions.dependencies import Identifier as SessionIdentifier
+from server.features.exports.schemas import Job, NewExport
+from server.features.exports.selection import ExportRequestError
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import Watch
@@ -148,20 +143,3 @@ def _find(jobs: Jobs, export: str) -> Job:
     if found is None:
         raise NotFoundError(f"There is no export {export}; GET /api/exports lists those there are.")
     return found
-
-
-@router.get(
-    "/sessions/{session}/csv",
-    summary="Download a session",
-    operation_id="downloadSession",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=StreamingResponse,
-    responses={200: {"content": {"application/zip": {}}, "description": "A zip file"}, **UNKNOWN_SESSION},
-)
-def get_csv(
-    store: Provided[Store], catalogue: Provided[Catalogue], session: SessionIdentifier
-) -> StreamingResponse:
-    """One CSV file for each topic, with units in its header, and `session.json` with everything else."""
-    source = Source(store, catalogue.row(session), Wanted(format="csv"))
-    headers = {"content-disposition": f'attachment; filename="{file_name(source, ".zip")}"'}
-    return StreamingResponse(stream_tables(store, source), media_type="application/zip", headers=headers)

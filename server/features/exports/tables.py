@@ -5,7 +5,7 @@ import io
 import json
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
-from typing import Any, BinaryIO, cast
+from typing import Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.selection import Source
@@ -14,32 +14,23 @@ from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
 
-def stream_tables(store: Reader, source: Source) -> Iterator[bytes]:
-    """A zip file of `session.json`, a CSV file for each topic and JPEG files, piece by piece.
+def write_tables(store: Reader, source: Source, output: BinaryIO) -> None:
+    """Write a zip file of `session.json`, a CSV file for each topic and JPEG files.
 
     Raises StoreError, RecordingError.
     """
-    sink = _Sink()
-    packing = Packing(cast("BinaryIO", sink))
+    packing = Packing(output)
     packing.text("session.json", as_text(describe_session(store, source)))
     for name in source.names:
         if source.topics[name]["kind"] == "picture":
             for time, jpeg in source.pictures(name, source.start, source.end):
                 with packing.member(f"{name}/{source.since_start(time):010.3f}.jpg") as file:
                     file.write(jpeg)
-                yield from sink.take()
             continue
         with packing.member(f"{name}.csv") as file:
             for lines in _lines(source, name):
                 file.write(lines.encode())
-                yield from sink.take()
     packing.close()
-    yield from sink.take()
-
-
-def write_tables(store: Reader, source: Source, output: BinaryIO) -> None:
-    """The same, into a file."""
-    output.writelines(stream_tables(store, source))
 
 
 def csv_text(lines: Iterable[Iterable[str]]) -> str:
@@ -47,21 +38,6 @@ def csv_text(lines: Iterable[Iterable[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(lines)
     return text.getvalue()
-
-
-class _Sink:
-    """Keeps what is written until it is taken."""
-
-    def __init__(self) -> None:
-        self._pieces: list[bytes] = []
-
-    def write(self, data: bytes) -> None:
-        self._pieces.append(bytes(data))
-
-    def take(self) -> Iterator[bytes]:
-        pieces, self._pieces = self._pieces, []
-        if pieces:
-            yield b"".join(pieces)
 
 
 def _lines(source: Source, name: str) -> Iterator[str]:

@@ -5,7 +5,8 @@ import json
 import struct
 import zipfile
 from datetime import UTC, datetime
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, BinaryIO, cast
 
 import pytest
 from sqlalchemy import Connection, text
@@ -17,7 +18,7 @@ from robot_runtime.contract.topics import BY_NAME, Block, read_rows, row
 from server.features.exports.description import file_name
 from server.features.exports.schemas import Wanted
 from server.features.exports.selection import Source
-from server.features.exports.tables import stream_tables
+from server.features.exports.tables import write_tables
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.recording import CHUNKS_AT_ONCE, RecordingError
 from server.features.sessions.session import find_row, new_row
@@ -55,7 +56,9 @@ def make(store: Store, session: int, **wanted: Any) -> Source:
 
 
 def unpack(store: Store, source: Source) -> zipfile.ZipFile:
-    archive = zipfile.ZipFile(io.BytesIO(b"".join(stream_tables(store, source))))
+    output = io.BytesIO()
+    write_tables(store, source, output)
+    archive = zipfile.ZipFile(output)
     assert archive.testzip() is None
     return archive
 
@@ -155,12 +158,15 @@ def test_a_recording_is_read_as_it_was_defined_then(store: Store, settings: Sett
     assert "warmth [°C]" in table(unpack(store, make(store, session)), "depth")[0]
 
 
-def test_the_file_is_written_while_it_is_read(store: Store, settings: Settings) -> None:
+def test_the_file_is_never_in_memory_as_a_whole(store: Store, settings: Settings) -> None:
     batches = [[depth_block(1000 * number, 1000)] for number in range(CHUNKS_AT_ONCE * 4)]
     source = make(store, record(store, settings, *batches))
-    pieces = list(stream_tables(store, source))
+    pieces: list[int] = []
+    write_tables(
+        store, source, cast("BinaryIO", SimpleNamespace(write=lambda data: pieces.append(len(data))))
+    )
     assert len(pieces) > 10
-    assert max(map(len, pieces)) < 0.2 * sum(map(len, pieces))
+    assert max(pieces) < 0.2 * sum(pieces)
 
 
 def test_the_file_name_is_safe(store: Store, settings: Settings) -> None:

@@ -1,0 +1,34 @@
+"""Exports of a running server, as clients of its interface make them."""
+
+import time
+from typing import Any, Protocol
+
+_PATIENCE = 60.0
+_POLL = 0.05
+
+
+class Client(Protocol):
+    """A client of httpx, or a session of requests."""
+
+    def get(self, url: str) -> Any: ...
+
+    def post(self, url: str, *, json: Any) -> Any: ...
+
+    def delete(self, url: str) -> Any: ...
+
+
+def export_session(client: Client, session: int, format_: str = "csv", base: str = "") -> Any:
+    """The answer with the file of a session in this format; the server has deleted it by then."""
+    answer = client.post(f"{base}/exports", json={"session": session, "format": format_})
+    answer.raise_for_status()
+    job: dict[str, Any] = answer.json()
+    end = time.monotonic() + _PATIENCE
+    while job["state"] not in ("done", "failed"):
+        assert time.monotonic() < end, job
+        time.sleep(_POLL)
+        job = client.get(f"{base}/exports/{job['id']}").json()
+    assert job["state"] == "done", job
+    file = client.get(f"{base}/exports/{job['id']}/file")
+    file.raise_for_status()
+    client.delete(f"{base}/exports/{job['id']}").raise_for_status()
+    return file
