@@ -23,7 +23,7 @@ from tests.server.waiting import until
 async def exported(served: Served, session: int) -> httpx.Response:
     """A session as CSV, through an export."""
     job = (await served.api.post("/exports", json={"session": session, "format": "csv"})).json()
-    find = served.assembly.jobs.find
+    find = served.container.jobs.find
     await until(lambda: (one := find(job["id"])) and one.state in ("done", "failed"), "the file", 60)
     return (await served.api.get(f"/exports/{job['id']}/file")).raise_for_status()
 
