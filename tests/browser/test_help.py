@@ -1,9 +1,10 @@
 """The help pages in a browser: they render, their search finds, and nothing leaves the robot."""
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import DESKTOP, PHONE
+from tests.browser.pages import PAGES, fill, show
 from tests.stack import Stack
 
 
@@ -34,3 +35,19 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     context.close()
     assert [url for url in requests if not url.startswith(f"{stack.url}/help/")] == []
     assert complaints == []
+
+
+def test_each_page_leads_to_its_chapter(any_page: Page, stack: Stack) -> None:
+    fill(stack)
+    chapters: dict[str, str] = {}
+    for view in PAGES:
+        show(any_page, stack, view)
+        link = any_page.get_by_role("link", name="Help for this page")
+        chapters[view.name] = link.get_attribute("href") or ""
+    assert chapters["operate"] == "/help/use/operate/"
+    assert len(set(chapters.values())) >= 9
+    for address in sorted(set(chapters.values())):
+        path, _, anchor = address.partition("#")
+        answer = any_page.request.get(stack.url + path)
+        assert answer.status == 200, address
+        assert not anchor or f'id="{anchor}"' in answer.text(), address

@@ -1,0 +1,22 @@
+import type { PageName } from '../router.svelte';
+
+/** The chapter of the help for each page. A key with a slash is a view within the page. */
+export const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<PageName, string>> = {
+  operate: 'use/operate/',
+  tune: 'use/tune/',
+  'tune/parameters': 'use/tune/#change-parameters',
+  'tune/vision': 'use/vision/',
+  scenarios: 'use/scenarios/',
+  'comm-tests': 'use/comm-tests/',
+  sessions: 'use/sessions/',
+  'sessions/compare': 'use/compare/',
+  replay: 'use/sessions/#replay',
+  system: 'run/troubleshoot/',
+  people: 'run/access/',
+  unknown: '',
+};
+
+/** The address of the help for what is shown. */
+export function helpAddress(page: PageName, within: readonly string[]): string {
+  return `/help/${CHAPTERS[`${page}/${within[0] ?? ''}`] ?? CHAPTERS[page]}`;
+}

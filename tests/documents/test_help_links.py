@@ -1,0 +1,18 @@
+"""The page's links into the help: each leads to a chapter, and to a heading that is there."""
+
+import re
+
+from tests.checks.links import anchors
+from tests.documents.blocks import DOCS
+
+TABLE = DOCS.parent / "frontend/src/shell/help.ts"
+
+
+def test_every_page_links_to_a_chapter_that_exists() -> None:
+    chapters = re.findall(r"^  '?[\w/-]+'?: '(.*)',$", TABLE.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(chapters) >= 10
+    for chapter in chapters:
+        path, _, anchor = chapter.partition("#")
+        page = DOCS / (path.rstrip("/") + ".md" if path else "index.md")
+        assert page.is_file(), chapter
+        assert not anchor or anchor in anchors(page.read_text(encoding="utf-8")), chapter
