@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from server.platform.command_line import CommandFailed, with_settings
+from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
 from server.processes.server_runner import ServerRunner
@@ -57,7 +57,7 @@ def _serve(settings: Settings) -> int:
             try:
                 prepare(settings.data)
             except SetupError as problem:
-                CommandFailed(str(problem)).show()
+                CommandError(str(problem)).show()
                 return 1
             announce(settings)
             # The server ends in order at these, and then sends them to itself once more; once is enough.

@@ -8,12 +8,14 @@ from typing import IO, Any
 
 import click
 
+from robot_runtime.errors import RefusedError
+from server.platform.errors import ApiError
 from server.platform.settings import SetupError, read_settings
 
 FILE = click.Path(path_type=Path)
 
 
-class CommandFailed(click.ClickException):
+class CommandError(click.ClickException):
     """The command cannot be carried out; the text says why and what to do."""
 
     def show(self, file: IO[Any] | None = None) -> None:
@@ -42,7 +44,7 @@ class RowCommand(click.Command):
 def with_settings(command: Callable[..., int | None]) -> Callable[..., int | None]:
     """Add --data and --config to a command, and call it with the settings that follow from them.
 
-    The function returns the exit status, or None for 0. A SetupError from it ends the command with status 1.
+    The function returns the exit status, or None for 0. An error of the server ends it with status 1.
     """
 
     @click.option("--data", type=FILE, help="The data folder.  [default: $MUCAT_DATA, or data]")
@@ -52,7 +54,7 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
         host, port = options.pop("host", None), options.pop("port", None)
         try:
             return command(read_settings(config, data, host, port, os.environ), **options)
-        except SetupError as problem:
-            raise CommandFailed(str(problem)) from problem
+        except (SetupError, ApiError, RefusedError) as problem:
+            raise CommandError(str(problem)) from problem
 
     return run

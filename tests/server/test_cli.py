@@ -226,7 +226,16 @@ def test_no_heavy_library_is_in_the_server_s_process() -> None:
 
 @pytest.mark.parametrize(
     ("line", "completed"),
-    [("--version", ""), ("--help", ""), ("sessions list --help", ""), ("", "mucat export 3 --format c")],
+    [
+        ("--version", ""),
+        ("--help", ""),
+        ("sessions list --help", ""),
+        ("report --help", ""),
+        ("export --help", ""),
+        ("scenario --help", ""),
+        ("commtest --help", ""),
+        ("", "mucat export 3 --format c"),
+    ],
 )
 def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, completed: str) -> None:
     program = (

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.document import CommTest
 from server.features.comm_tests import tables
 from server.features.comm_tests.board_reservation import Board
@@ -15,7 +14,7 @@ from server.features.comm_tests.lab import Lab
 from server.features.comm_tests.runs import Runs
 from server.features.comm_tests.schemas import Place
 from server.platform.models import CommTestRun
-from server.platform.settings import Settings, SetupError
+from server.platform.settings import Settings
 from server.platform.shell_store import open_writer
 
 
@@ -36,10 +35,7 @@ async def _perform(text: str, tests: list[CommTest], place: Place, settings: Set
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, lab.cancel)
-    try:
-        first = await lab.start(text, place)
-    except RefusedError as problem:
-        raise SetupError(str(problem)) from problem
+    first = await lab.start(text, place)
     await lab.wait()
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import click
 
-from server.features.sessions.session import UnknownSessionError
 from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
 
@@ -47,7 +46,6 @@ def report(
         SESSIONS_MAX,
         WantedComparison,
     )
-    from server.features.sessions.recording import RecordingError
     from server.platform.shell_store import open_reader
 
     if len(sessions) > SESSIONS_MAX:
@@ -65,8 +63,6 @@ def report(
         out.write_text(text, encoding="utf-8")
     except ValueError as problem:
         raise SetupError(f"The report cannot be made: {problem}") from problem
-    except (UnknownSessionError, RecordingError) as problem:
-        raise SetupError(str(problem)) from problem
     except OSError as problem:
         raise SetupError(f"{out} cannot be written: {problem.strerror}.") from problem
     click.echo(out)

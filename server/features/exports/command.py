@@ -32,11 +32,10 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
 
     from robot_runtime.durable_files import PART
     from server.features.exports.description import file_name
-    from server.features.exports.files import FileWriteError, put_in_place, write_part
+    from server.features.exports.files import put_in_place, write_part
     from server.features.exports.formats import check
     from server.features.exports.schemas import Wanted
-    from server.features.exports.selection import ExportRequestError, Source
-    from server.features.sessions.recording import RecordingError
+    from server.features.exports.selection import Source
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_reader
 
@@ -56,8 +55,6 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
             put_in_place(part, path)
     except ValidationError as problem:
         raise SetupError("; ".join(_words(error) for error in problem.errors())) from problem
-    except (ExportRequestError, FileWriteError, RecordingError) as problem:
-        raise SetupError(str(problem)) from problem
     click.echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
 
@@ -81,9 +78,6 @@ def import_session(settings: Settings, file: Path) -> None:
 
 
 def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
-    from robot_runtime.errors import RefusedError
-    from server.features.exports.archive_reader import ArchiveError
-    from server.features.exports.files import FileWriteError
     from server.features.exports.imports import Imports
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_writer
@@ -92,14 +86,11 @@ def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
         await imports.recover()
         return await imports.take(file)
 
-    try:
-        with open_writer(folder) as store:
-            number = asyncio.run(take(Imports(folder, store)))
-            row = find_row(store, number)
-            assert row is not None
-            return number, row.name
-    except (ArchiveError, RefusedError, FileWriteError) as problem:
-        raise SetupError(str(problem)) from problem
+    with open_writer(folder) as store:
+        number = asyncio.run(take(Imports(folder, store)))
+        row = find_row(store, number)
+        assert row is not None
+        return number, row.name
 
 
 def _words(error: Any) -> str:

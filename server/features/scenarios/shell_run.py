@@ -10,7 +10,6 @@ from time import sleep
 import click
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.errors import RefusedError
 from server.features.lease.command import in_control, renew_control
 from server.features.scenarios.runs import Runs
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
@@ -56,10 +55,7 @@ async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> 
     runs = Runs(simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message)))
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
-    try:
-        runs.start(wanted.text, wanted.place, wanted.board)
-    except RefusedError as problem:
-        raise SetupError(str(problem)) from problem
+    runs.start(wanted.text, wanted.place, wanted.board)
     await runs.wait()
     last = runs.state().last
     assert last is not None

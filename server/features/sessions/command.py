@@ -53,14 +53,10 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
 def show(settings: Settings, session: int) -> None:
     """Show a session: contents, bookmarks, gaps."""
     from server.features.sessions.catalogue import Listing
-    from server.features.sessions.session import UnknownSessionError
     from server.platform.shell_store import open_reader
 
-    try:
-        with open_reader(settings.data) as store:
-            click.echo(_describe(Listing(store).detail(session)))
-    except UnknownSessionError as problem:
-        raise SetupError(str(problem)) from problem
+    with open_reader(settings.data) as store:
+        click.echo(_describe(Listing(store).detail(session)))
 
 
 @sessions.command()
@@ -71,14 +67,10 @@ def show(settings: Settings, session: int) -> None:
 def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
     """Add tags to a session, or remove some."""
     from server.features.sessions.catalogue import Listing
-    from server.features.sessions.session import UnknownSessionError
     from server.platform.shell_store import open_reader
 
-    try:
-        with open_reader(settings.data) as store:
-            present = Listing(store).find(session).tags
-    except UnknownSessionError as problem:
-        raise SetupError(str(problem)) from problem
+    with open_reader(settings.data) as store:
+        present = Listing(store).find(session).tags
     _change(
         settings.data, session, tags=[one for one in dict.fromkeys([*present, *tags]) if one not in remove]
     )
@@ -169,15 +161,11 @@ def _perform(
 
 def _perform_here(folder: DataFolder, action: str, session: int, changes: dict[str, Any]) -> str:
     from server.features.sessions.catalogue import Catalogue
-    from server.features.sessions.session import SessionStateError, UnknownSessionError
     from server.platform.shell_store import open_writer
 
-    try:
-        with open_writer(folder) as store:
-            changed = asyncio.run(getattr(Catalogue(store), action)(session, **changes))
-            return str(changed.name)
-    except (UnknownSessionError, SessionStateError) as problem:
-        raise SetupError(str(problem)) from problem
+    with open_writer(folder) as store:
+        changed = asyncio.run(getattr(Catalogue(store), action)(session, **changes))
+        return str(changed.name)
 
 
 def _tabulate(found: "list[Session]") -> str:
