@@ -73,8 +73,8 @@ class Container:
         self._add_health(commands)
         self._add_sessions()
         self._add_comm_tests()
-        self._add_scenarios()
         self._add_tuning()
+        self._add_scenarios()
         self.downloads = Downloads(settings.data)
         self.layouts = Layouts(self.store)
 
