@@ -17,9 +17,7 @@ from server.features.lease.admission import admit
 from server.features.live import routes as live
 from server.features.operate import link_routes as link
 from server.features.operate import routes as robot
-from server.features.operate import scene_routes as scene
 from server.features.panels import routes as panels
-from server.features.parameters import profile_routes as profiles
 from server.features.parameters import routes as parameters
 from server.features.people import routes as access
 from server.features.scenarios import routes as scenarios
@@ -41,7 +39,7 @@ from server.processes.supervisor import Command
 
 ROUTES = (
     *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, panels),
-    *(parameters, profiles, robot, scenarios, scene, sessions, simulator, tuning, vision),
+    *(parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 
 

@@ -8,9 +8,8 @@ from starlette.requests import HTTPConnection
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.http.dependencies import find_service
-from server.http.sign_in.authorization import refusal
 from server.http.sign_in.identity import IDENTITY, Identity
-from server.http.sign_in.policy import Need, need_of
+from server.http.sign_in.policy import Need, need_of, refusal
 from server.platform.errors import ConflictError, ForbiddenError
 
 HEADER = "x-mucat-client"

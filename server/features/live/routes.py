@@ -23,9 +23,8 @@ from server.features.lease.driving import Drive
 from server.http.dependencies import Provided
 from server.http.page import Page
 from server.http.sign_in.access import Access
-from server.http.sign_in.authorization import may_say
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import MESSAGES, Need, needs
+from server.http.sign_in.policy import MESSAGES, Need, may_say, needs
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import POLICY_VIOLATION, Client, EvictedError, Hub
