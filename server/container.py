@@ -69,6 +69,8 @@ class Container:
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
         self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
+        self.changes = Changes(self.store, self.bridge)
+        self.profiles = Profiles(self.store)
         self._add_lease()
         self._add_health(commands)
         self._add_sessions()
@@ -127,8 +129,6 @@ class Container:
         self.bridge.on_stop = self.scenarios.see_stop
 
     def _add_tuning(self) -> None:
-        self.changes = Changes(self.store, self.bridge)
-        self.profiles = Profiles(self.store)
         self.tuning = TuningLab(
             TuningRuns(self.store),
             self.bridge,
