@@ -50,11 +50,11 @@ bool board_renew(struct board *board) {
   chip_inherit(&board->chip, &before.chip);
   eeprom_inherit(&board->eeprom, &before.eeprom);
   chip_remove(&before.chip);
-  board_feel(board, &before.devices.surroundings);
+  board_set_surroundings(board, &before.devices.surroundings);
   return true;
 }
 
-void board_feel(struct board *board, const struct surroundings *surroundings) {
+void board_set_surroundings(struct board *board, const struct surroundings *surroundings) {
   board->devices.surroundings = *surroundings;
   pins_show(&board->pins);
 }

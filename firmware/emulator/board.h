@@ -32,6 +32,6 @@ bool board_create(struct board *board, struct pty *pty);
 // flash memory, EEPROM and surroundings. The reset is the caller's, as is what hangs on the chip's timers.
 bool board_renew(struct board *board);
 
-void board_feel(struct board *board, const struct surroundings *surroundings);
+void board_set_surroundings(struct board *board, const struct surroundings *surroundings);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "clients.h"
 
-// Does what a line says and answers it; `service` is a struct service.
+// Executes a command line and answers it; `service` is a struct service.
 void commands_do(void *service, struct client *client, char *line);
 
 #endif

@@ -35,13 +35,13 @@ void line_faults_seed(struct line_faults *faults, uint64_t seed);
 // Sets a rate, a burst's length too, `cut on` or `cut off`, or `clean`; false where the words make no sense.
 bool line_faults_set(struct line_faults *faults, const char *kind, const char *value);
 
-// Whether this fault befalls the next character; counted where it does.
+// True if this fault hits the next character; counts it then.
 bool line_faults_cut(struct line_faults *faults);
 bool line_faults_drop(struct line_faults *faults);
 bool line_faults_double(struct line_faults *faults);
 bool line_faults_insert(struct line_faults *faults, uint8_t *byte);
 
-// The levels of a character's ten bits, the start bit being bit 0, after what befalls them from this cycle
+// The levels of a character's ten bits, the start bit being bit 0, after the faults from this cycle
 // on.
 unsigned line_faults_levels(struct line_faults *faults, uint8_t byte, double start, double bit);
 

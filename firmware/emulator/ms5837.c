@@ -62,11 +62,11 @@ static struct compensation compensate(const uint16_t c[MS5837_PROM_WORDS], doubl
 
 // The compensated temperature grows with the raw one, so that halving the interval finds it.
 static uint32_t raw_temperature(const struct ms5837 *sensor) {
-  double wanted = sensor->surroundings->temperature * 100;
+  double target = sensor->surroundings->temperature * 100;
   uint32_t low = 0, high = CONVERSION_MAX;
   while (low < high) {
     uint32_t middle = low + (high - low) / 2;
-    if (compensate(sensor->prom, middle).temperature < wanted) {
+    if (compensate(sensor->prom, middle).temperature < target) {
       low = middle + 1;
     } else {
       high = middle;

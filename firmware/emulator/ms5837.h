@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TE Connectivity MS5837-30BA: pressure and temperature of the water, on I2C. It shows the raw conversions
-// from which the data sheet's compensation gives the pressure and the temperature that it feels.
+// from which the data sheet's compensation gives the pressure and the temperature at the sensor.
 #ifndef MS5837_H
 #define MS5837_H
 

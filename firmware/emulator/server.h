@@ -14,7 +14,7 @@ struct server {
 
 void server_watch(struct server *server, const char *lock, double linger, double now);
 
-// Looks twice a second, at most. True where none has held the lock for longer than `linger`, or the file is
+// Checks twice a second, at most. True where none has held the lock for longer than `linger`, or the file is
 // gone.
 bool server_gone(struct server *server, double now);
 

@@ -148,8 +148,8 @@ static double idle_time(const struct service *service) {
 static void wait_for_events(struct service *service, struct pollfd polls[POLL_COUNT]) {
   const struct pty *pty = &service->pty;
   polls[POLL_SIGNALS] = (struct pollfd){.fd = service->signals, .events = POLLIN};
-  short wanted = host_port_has_room(&service->board.host) ? POLLIN : 0;
-  polls[POLL_PTY] = (struct pollfd){.fd = pty->open ? pty->master : -1, .events = wanted};
+  short events = host_port_has_room(&service->board.host) ? POLLIN : 0;
+  polls[POLL_PTY] = (struct pollfd){.fd = pty->open ? pty->master : -1, .events = events};
   clients_watch(&service->clients, &polls[POLL_CLIENTS]);
   double idle = idle_time(service);
   struct timespec timeout = {.tv_sec = 0, .tv_nsec = isfinite(idle) ? (long)(idle * 1e9) : 0};

@@ -31,7 +31,7 @@ bool service_create(struct service *service, const struct options *options, char
 // Takes the board's power away and gives it back. Time begins anew; the water stays.
 void service_power(struct service *service);
 
-// Serves until it is told to quit.
+// Serves until it is asked to quit.
 void service_run(struct service *service);
 
 // Takes away the link and the socket.

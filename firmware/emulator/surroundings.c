@@ -3,24 +3,24 @@
 
 #include <math.h>
 
-static bool possible(const struct surroundings *felt) {
-  double sum = felt->pressure + felt->temperature + felt->battery;
+static bool possible(const struct surroundings *reading) {
+  double sum = reading->pressure + reading->temperature + reading->battery;
   for (unsigned axis = 0; axis < 3; axis++) {
-    sum += felt->force[axis] + felt->rate[axis];
+    sum += reading->force[axis] + reading->rate[axis];
   }
   for (unsigned fin = 0; fin < 4; fin++) {
-    if (fabs(felt->encoder_error[fin]) > M_PI) {
+    if (fabs(reading->encoder_error[fin]) > M_PI) {
       return false;
     }
   }
-  return isfinite(sum) && felt->pressure >= 0 && felt->battery >= 0;
+  return isfinite(sum) && reading->pressure >= 0 && reading->battery >= 0;
 }
 
 bool surroundings_read(struct surroundings *surroundings, const double n[SURROUNDINGS_NUMBERS]) {
   if (!isfinite(n[8]) || !isfinite(n[9])) {
     return false;
   }
-  struct surroundings felt = {
+  struct surroundings reading = {
       .pressure = n[0],
       .temperature = n[1],
       .force = {n[2], n[3], n[4]},
@@ -30,9 +30,9 @@ bool surroundings_read(struct surroundings *surroundings, const double n[SURROUN
       .battery = n[10],
       .encoder_error = {n[11], n[12], n[13], n[14]},
   };
-  bool can_be = possible(&felt);
+  bool can_be = possible(&reading);
   if (can_be) {
-    *surroundings = felt;
+    *surroundings = reading;
   }
   return can_be;
 }

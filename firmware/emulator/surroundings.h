@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the sensors feel. Body axes are forward, right, down.
+// The physical quantities at the sensors. Body axes are forward, right, down.
 #ifndef SURROUNDINGS_H
 #define SURROUNDINGS_H
 

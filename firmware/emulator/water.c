@@ -90,12 +90,13 @@ static int read_numbers(const char *text, double *numbers, int most) {
 
 bool water_sense(struct water *water, const char *text) {
   double n[SURROUNDINGS_NUMBERS] = {0};
-  struct surroundings felt;
+  struct surroundings reading;
   int count = read_numbers(text, n, SURROUNDINGS_NUMBERS);
-  if ((count != NUMBERS_WITHOUT_ENCODERS && count != SURROUNDINGS_NUMBERS) || !surroundings_read(&felt, n)) {
+  if ((count != NUMBERS_WITHOUT_ENCODERS && count != SURROUNDINGS_NUMBERS) ||
+      !surroundings_read(&reading, n)) {
     return false;
   }
-  board_feel(water->board, &felt);
+  board_set_surroundings(water->board, &reading);
   water->waiting = false;
   return true;
 }

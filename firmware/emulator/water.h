@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The lockstep with the water: at every period of emulated time the board tells of its fins and waits for
-// what its sensors then feel.
+// the new inputs of its sensors.
 #ifndef WATER_H
 #define WATER_H
 

@@ -14,11 +14,13 @@ constexpr uint16_t kCountsMax = 1023;
 
 void start_battery() {}
 
-uint16_t take_battery() { return loop::sense().battery * static_cast<uint32_t>(kCountsMax) / kFullScale; }
+uint16_t take_battery() {
+  return loop::newest_input().battery * static_cast<uint32_t>(kCountsMax) / kFullScale;
+}
 
-bool beacon_right() { return loop::sense().right; }
+bool beacon_right() { return loop::newest_input().right; }
 
-bool beacon_left() { return loop::sense().left; }
+bool beacon_left() { return loop::newest_input().left; }
 
 }  // namespace board
 }  // namespace mucat

@@ -6,27 +6,27 @@ namespace mucat {
 namespace {
 
 Sense newest = {};
-uint8_t words = 0;
+uint8_t received = 0;
 
 }  // namespace
 
-void feel(const Sense& sense) {
+void accept_simulated_input(const Sense& sense) {
   newest = sense;
-  ++words;
+  ++received;
 }
 
 bool in_the_loop() { return true; }
 
 namespace loop {
 
-const Sense& sense() { return newest; }
+const Sense& newest_input() { return newest; }
 
 bool Listener::step() {
-  if (words == seen_) {
+  if (received == seen_) {
     if (quiet_ < kLostTicks) ++quiet_;
     return false;
   }
-  seen_ = words;
+  seen_ = received;
   quiet_ = 0;
   return true;
 }

@@ -1,18 +1,18 @@
-// What a board in the loop knows of the simulated water.
+// The simulated sensor readings of a board in the loop.
 #pragma once
 #include "packets.gen.h"
 
 namespace mucat {
 namespace loop {
 
-// The newest word; zeros before the first.
-const Sense& sense();
-// Follows the words at the pace of ticks.
+// The newest reading; zeros before the first.
+const Sense& newest_input();
+// Detects new readings, tick by tick.
 class Listener {
  public:
-  // Call every tick. True where there is a word that it has not seen.
+  // Call every tick. True if a new reading has come.
   bool step();
-  // No word for 250 ms, or none ever.
+  // No reading for 250 ms, or none ever.
   bool lost() const { return quiet_ >= kLostTicks; }
 
  private:

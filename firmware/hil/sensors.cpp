@@ -11,14 +11,14 @@ loop::Listener pressure_listener;
 
 }  // namespace
 
-// Between two words it shows the last one again, as the filter behind it counts on a reading every tick.
+// Between two readings it repeats the last one, as the filter behind it needs a reading every tick.
 bool Mpu6050::step(ImuReading* reading) {
   imu_listener.step();
   faulty_ = imu_listener.lost();
   if (faulty_) return false;
   for (uint8_t axis = 0; axis < 3; ++axis) {
-    reading->rate[axis] = loop::sense().rate[axis];
-    reading->force[axis] = loop::sense().force[axis];
+    reading->rate[axis] = loop::newest_input().rate[axis];
+    reading->force[axis] = loop::newest_input().force[axis];
   }
   return true;
 }
@@ -27,8 +27,8 @@ bool Ms5837::step(PressureReading* reading) {
   const bool fresh = pressure_listener.step();
   faulty_ = pressure_listener.lost();
   if (!fresh) return false;
-  reading->pressure = loop::sense().pressure;
-  reading->temperature = loop::sense().temperature;
+  reading->pressure = loop::newest_input().pressure;
+  reading->temperature = loop::newest_input().temperature;
   return true;
 }
 

@@ -103,7 +103,7 @@ void set_motor_power(bool on) { the_board.motor_power = on; }
 
 uint16_t next_epoch() { return ++the_board.epoch; }
 
-KeptMemory& kept_memory() { return the_board.kept; }
+RetainedMemory& retained_memory() { return the_board.retained; }
 
 uint16_t stack_free() { return 0; }
 

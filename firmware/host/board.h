@@ -20,7 +20,7 @@ struct Board {
   uint64_t ticks_taken = 0;
   ResetCause cause = ResetCause::kPowerOn;
   uint16_t epoch = 0;
-  board::KeptMemory kept = {};
+  board::RetainedMemory retained = {};
 
   std::deque<uint8_t> to_board;
   std::deque<uint8_t> waiting;  // written by the firmware, not yet on the line

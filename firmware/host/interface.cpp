@@ -127,8 +127,9 @@ float firmware_angle_from_counts(uint8_t fin, int16_t counts) {
 }
 PositionLoop* loop_create() { return new PositionLoop; }
 void loop_destroy(PositionLoop* loop) { delete loop; }
-int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t wanted, int16_t measured) {
-  return loop->step(kFinCalibration[fin], wanted, measured, gain_from_thousandths(Parameters()[kFinsGain]));
+int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t set_point, int16_t measured) {
+  return loop->step(kFinCalibration[fin], set_point, measured,
+                    gain_from_thousandths(Parameters()[kFinsGain]));
 }
 
 // ---- sensors ----

@@ -1,4 +1,4 @@
-// What the LED says: on while armed, a blink a second while disarmed, five a second at a fault.
+// The LED: on while armed, a blink a second while disarmed, five a second at a fault.
 #pragma once
 #include <stdint.h>
 

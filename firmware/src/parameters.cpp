@@ -13,13 +13,13 @@ Parameters::Parameters() {
   for (uint8_t i = 0; i < kParameterCount; ++i) values_[i] = read(kParameterLimits[i].initial);
 }
 
-void Parameters::take(const Parameter& wanted, bool armed) {
-  if (wanted.number >= kParameterCount) return;
-  const ParameterLimits& limits = kParameterLimits[wanted.number];
-  const bool in_range = wanted.value >= read(limits.minimum) && wanted.value <= read(limits.maximum);
+void Parameters::take(const Parameter& requested, bool armed) {
+  if (requested.number >= kParameterCount) return;
+  const ParameterLimits& limits = kParameterLimits[requested.number];
+  const bool in_range = requested.value >= read(limits.minimum) && requested.value <= read(limits.maximum);
   const bool now = !armed || pgm_read_byte(&limits.while_armed);
-  if (in_range && now) values_[wanted.number] = wanted.value;
-  unanswered_ |= 1 << wanted.number;
+  if (in_range && now) values_[requested.number] = requested.value;
+  unanswered_ |= 1 << requested.number;
 }
 
 bool Parameters::next(Parameter* answer) const {

@@ -1,4 +1,4 @@
-// What may be tuned while the board runs. A reset forgets it: the host says it anew after each greeting.
+// The tunable parameters. A reset clears them: the host sends them again after each greeting.
 #pragma once
 #include <stdint.h>
 
@@ -15,7 +15,7 @@ class Parameters {
   float value(ParameterNumber number) const { return values_[number] * 0.001f; }
   // Takes a value within its limits, and where the board is armed only what may change then. It is answered
   // either way.
-  void take(const Parameter& wanted, bool armed);
+  void take(const Parameter& requested, bool armed);
 
   // The next one to be answered; false where there is none. It stays the next until it is answered.
   bool next(Parameter* answer) const;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint8_t kTicksPerSecond = 100;
 constexpr uint16_t kNoBoot = 0;
-// How long the fins have for turning down once the battery is low; half a turn takes 0.64 s.
+// Time for the fins to turn down once the battery is low; half a turn takes 0.64 s.
 constexpr uint32_t kLoweringMs = 1500;
 
 template <typename Enum>
@@ -26,14 +26,14 @@ void Robot::start() {
   epoch_ = board::next_epoch();
   arming_.begin(epoch_);
   sensors_.start(board::reset_cause() == ResetCause::kPowerOn);
-  say_boot();
+  report_boot();
   link_.greet(epoch_);
 }
 
 void Robot::step() {
   const uint32_t started = board::microseconds();
   if (link_.receive()) {
-    arming_.hear(board::milliseconds());
+    arming_.note_reception(board::milliseconds());
     for (Message message; link_.next(&message);) handle(message);
   }
   const uint8_t ticks = board::take_ticks();
@@ -51,7 +51,7 @@ void Robot::step() {
 void Robot::handle(const Message& message) {
   switch (message.type) {
     case Stop::kType:
-      say_disarmed(arming_.stop());
+      report_disarmed(arming_.stop());
       lowering_ = false;
       // Not at the next tick: now.
       fins_.step(Motion::kOff, parameters_);
@@ -66,24 +66,24 @@ void Robot::handle(const Message& message) {
       if (arming_.navigate(board::milliseconds())) fins_.command(unpack<Navigation>(message));
       break;
     case Sense::kType:
-      feel(unpack<Sense>(message));
+      accept_simulated_input(unpack<Sense>(message));
       break;
     case Parameter::kType:
       // By other definitions its number may mean something else.
       if (!arming_.definitions_differ()) parameters_.take(unpack<Parameter>(message), armed());
       break;
     default:
-      break;  // a heartbeat has done its work by coming; the rest is the board's own to say
+      break;  // a heartbeat needs no handling; the other types are sent by the board alone
   }
 }
 
 void Robot::greet(const Hello& hello) {
-  say_disarmed(arming_.greet(hello));
+  report_disarmed(arming_.greet(hello));
   link_.answer(hello, epoch_);
 }
 
 void Robot::arm(const Start& start) {
-  // The host took it back while it was on its way.
+  // The host voided it while it was in transit.
   if (start.epoch == kNoBoot) return;
   const bool was_armed = armed();
   const Refusal refusal = arming_.start(start, board::milliseconds());
@@ -96,27 +96,27 @@ void Robot::arm(const Start& start) {
 
 void Robot::tick(uint8_t ticks) {
   const uint32_t now = board::milliseconds();
-  say_disarmed(arming_.tick(now));
+  report_disarmed(arming_.tick(now));
   watch_battery(now);
-  // First of all that takes long: a command waits no longer for its effect than it must.
+  // First, before anything slow, so that a command takes effect with the least delay.
   fins_.step(motion(now), parameters_);
   sensors_.step(ticks, !armed());
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
   if (slot_tick_ < kTicksPerSlot) ++slot_tick_;
-  // A slow line is waited for, so that what it gets is the newest.
-  if (slot_tick_ == kTicksPerSlot && (kTicksPerSlot == 1 || link_.calm())) {
+  // Telemetry waits for a slow line, so that it is the newest when it is sent.
+  if (slot_tick_ == kTicksPerSlot && (kTicksPerSlot == 1 || link_.line_idle())) {
     slot_tick_ = 0;
     send_telemetry();
     slot_ = (slot_ + 1) % kSlots;
   }
-  // Before a host has greeted, nobody reads: what the start has to say waits for it.
+  // Nothing is sent before a host has greeted: messages of the boot wait in the queue.
   if (!arming_.greeted()) return;
   answer_parameters();
   link_.step(now);
 }
 
-// What the queue has no room for is answered in a later tick.
+// Answers that do not fit the queue are sent in a later tick.
 void Robot::answer_parameters() {
   for (Parameter answer; parameters_.next(&answer) && link_.queue(answer);) {
     parameters_.answered(answer.number);
@@ -131,7 +131,7 @@ void Robot::watch_battery(uint32_t now_ms) {
   link_.say(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));
   lowering_ = armed();
   lowering_since_ms_ = now_ms;
-  say_disarmed(arming_.fail_battery());
+  report_disarmed(arming_.fail_battery());
 }
 
 Motion Robot::motion(uint32_t now_ms) {
@@ -155,9 +155,9 @@ void Robot::send_telemetry() {
     sensors_.read(&beacon);
     link_.send(beacon);
   }
-  if (slot_ == kStatusSlot) say_changed_faults();
-  // On a slow line its turn may be far, and who armed it waits for its word.
-  if (slot_ == kStatusSlot || (kSlow && armed() != said_armed_)) send_status();
+  if (slot_ == kStatusSlot) report_changed_faults();
+  // On a slow line its slot may be far away, and the host that armed the board waits for the status.
+  if (slot_ == kStatusSlot || (kSlow && armed() != reported_armed_)) send_status();
   link_.flush();
 }
 
@@ -176,7 +176,7 @@ void Robot::send_status() {
   status.debug_lost = link_.lines_lost();
   status.stack_free = board::stack_free();
   loop_worst_ = 0;
-  said_armed_ = armed();
+  reported_armed_ = armed();
   link_.send(status);
 }
 

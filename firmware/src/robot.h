@@ -1,4 +1,4 @@
-// The robot's board: the one place where all of it is put together.
+// Assembles the firmware of the robot's board: link, arming, fins and sensors.
 #pragma once
 #include <stdint.h>
 
@@ -14,7 +14,7 @@ namespace mucat {
 class Robot {
  public:
   void start();
-  // One pass of the main loop. Takes what came on the line, and does one tick's work where a tick is due.
+  // One pass of the main loop: handles received messages, and one tick's work if a tick is due.
   void step();
   bool armed() const { return arming_.armed(); }
 
@@ -30,9 +30,9 @@ class Robot {
   void send_status();
   uint8_t faults() const { return sensors_.faults() | fins_.faults(); }
   uint8_t flags() const;
-  void say_boot();
-  void say_disarmed(Disarming reason);
-  void say_changed_faults();
+  void report_boot();
+  void report_disarmed(Disarming reason);
+  void report_changed_faults();
 
   Link link_;
   Arming arming_;
@@ -48,9 +48,9 @@ class Robot {
   uint8_t tick_of_second_ = 0;
   uint8_t slot_ = 0;
   uint8_t slot_tick_ = 0;
-  uint8_t said_faults_ = 0;
-  bool said_devices_ = false;
-  bool said_armed_ = false;
+  uint8_t reported_faults_ = 0;
+  bool reported_devices_ = false;
+  bool reported_armed_ = false;
 };
 
 }  // namespace mucat

@@ -1,4 +1,4 @@
-// What the robot says in words.
+// The robot's lines of debug text.
 #include "board/board.h"
 #include "robot.h"
 
@@ -41,29 +41,29 @@ FlashText describe(SensorFault device) {
 
 }  // namespace
 
-void Robot::say_boot() {
+void Robot::report_boot() {
   const ResetCause cause = board::reset_cause();
   const bool hung = cause == ResetCause::kWatchdog;
   DebugLine line(hung ? DebugLevel::kError : DebugLevel::kInfo);
   link_.say(line << FLASH_TEXT("boot ") << epoch_ << FLASH_TEXT(", ") << describe(cause));
 }
 
-void Robot::say_disarmed(Disarming reason) {
+void Robot::report_disarmed(Disarming reason) {
   if (reason == Disarming::kNone) return;
   link_.say(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("disarmed: ") << mucat::describe(reason));
 }
 
-// Every device the first time; later those that came or went.
-void Robot::say_changed_faults() {
+// Reports every device the first time, later those whose fault has changed.
+void Robot::report_changed_faults() {
   const uint8_t now = faults();
   for (uint8_t device = 1; device <= static_cast<uint8_t>(SensorFault::kFinFrontLeft); device <<= 1) {
-    if (said_devices_ && !((now ^ said_faults_) & device)) continue;
+    if (reported_devices_ && !((now ^ reported_faults_) & device)) continue;
     DebugLine line(now & device ? DebugLevel::kWarning : DebugLevel::kInfo);
     line << describe(static_cast<SensorFault>(device));
     link_.say(line << (now & device ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found")));
   }
-  said_faults_ = now;
-  said_devices_ = true;
+  reported_faults_ = now;
+  reported_devices_ = true;
 }
 
 }  // namespace mucat

@@ -140,7 +140,7 @@ uint16_t next_epoch() {
   return current->epoch;
 }
 
-KeptMemory& kept_memory() { return current->kept; }
+RetainedMemory& retained_memory() { return current->retained; }
 
 uint16_t stack_free() { return 0; }
 

@@ -31,7 +31,7 @@ struct Board {
   uint64_t ticks_taken = 0;
   ResetCause cause = ResetCause::kPowerOn;
   uint16_t epoch = 0;
-  board::KeptMemory kept = {};
+  board::RetainedMemory retained = {};
   devices parts;
   Wire to_board, from_board;
   std::deque<uint8_t> received;  // by the board, not read yet

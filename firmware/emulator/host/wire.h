@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One direction of the serial line, a character at a time, with the faults that may befall it. Where a start
+// One direction of the serial line, a character at a time, with its faults. Where a start
 // bit is disturbed the character is lost; a receiver that takes another edge for it is left to the emulated
 // board.
 #ifndef HOST_WIRE_H

@@ -17,11 +17,13 @@ constexpr uint32_t kGarbageBytes = 200;
 // A frame that was understood: the bytes that it came as, and what the decoder says that it says.
 struct Understood {
   std::vector<uint8_t> bytes;
-  std::vector<uint8_t> says;
-  bool operator==(const Understood& other) const { return bytes == other.bytes && says == other.says; }
+  std::vector<uint8_t> contents;
+  bool operator==(const Understood& other) const {
+    return bytes == other.bytes && contents == other.contents;
+  }
 };
 
-std::vector<uint8_t> says(FrameDecoder* decoder) {
+std::vector<uint8_t> contents(FrameDecoder* decoder) {
   std::vector<uint8_t> all{decoder->open(), decoder->reliable(), decoder->acknowledged(), decoder->number()};
   for (Message message; decoder->next(&message);) {
     all.push_back(message.type);
@@ -36,7 +38,7 @@ std::vector<Understood> read_all(const std::vector<uint8_t>& line, uint32_t key)
   std::vector<Understood> frames;
   auto start = line.begin();
   for (auto at = line.begin(); at != line.end(); ++at) {
-    if (decoder.feed(*at)) frames.push_back({{start, at}, says(&decoder)});
+    if (decoder.feed(*at)) frames.push_back({{start, at}, contents(&decoder)});
     if (*at == 0) start = at + 1;
   }
   return frames;
@@ -86,9 +88,9 @@ double Corruption::share() { return (static_cast<double>(random_() >> 11) + 1) /
 Corruption::Bytes Corruption::frame(uint32_t key) {
   const uint32_t zeros = chance(2) ? 3 : 256;
   FramePacker packer;
-  const uint32_t wanted = 1 + below(5);
+  const uint32_t count = 1 + below(5);
   bool reliable = false;
-  for (uint32_t i = 0; i < wanted; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     const uint8_t type = kTypes[below(sizeof kTypes)];
     if (!packer.empty() && is_reliable(type) != reliable && type != Acknowledge::kType) continue;
     if (packer.empty()) reliable = is_reliable(type);
@@ -161,12 +163,12 @@ void Corruption::stranger(Bytes bytes) {
 void Corruption::flip_some(Bytes* bytes) {
   const uint32_t bits = 8 * static_cast<uint32_t>(bytes->size());
   std::vector<uint32_t> chosen;
-  for (uint32_t left = 1 + below(4); left > 0;) {
+  for (uint32_t remaining = 1 + below(4); remaining > 0;) {
     const uint32_t bit = below(bits);
     if (std::find(chosen.begin(), chosen.end(), bit) != chosen.end()) continue;
     chosen.push_back(bit);
     (*bytes)[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
-    --left;
+    --remaining;
   }
 }
 

@@ -67,7 +67,7 @@ class Listener {
   }
   uint8_t expected() const { return expected_; }
 
-  void hear(uint8_t byte) {
+  void receive(uint8_t byte) {
     const uint16_t invalid = decoder_.invalid();
     if (decoder_.feed(byte)) take();
     insist(decoder_.invalid() == invalid);
@@ -167,14 +167,14 @@ class Play {
       board.to_board.push_back(byte);
       if (byte != 0) continue;
       const bool armed = robot_->armed();
-      hear();
+      receive();
       insist(armed || !robot_->armed() || started_);
       insist(!stopped_ || started_ || !robot_->armed());
     }
-    hear();
+    receive();
   }
 
-  void hear() {
+  void receive() {
     started_ = stopped_ = false;
     while (!host::the_board.to_board.empty()) {
       for (uint8_t byte : host::the_board.to_board) {
@@ -219,7 +219,7 @@ class Play {
     host::Board& board = host::the_board;
     insist(board.overwritten == 0);
     insist(board.waiting.size() <= board::kLineRoom);
-    for (uint8_t byte : board.to_host) listener_.hear(byte);
+    for (uint8_t byte : board.to_host) listener_.receive(byte);
     board.to_host.clear();
   }
 

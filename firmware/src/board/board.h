@@ -49,11 +49,11 @@ void set_motor_power(bool on);
 // Counts the boots in memory that outlives a power cycle; never 0.
 uint16_t next_epoch();
 // Memory that outlives a reset but not a power cycle; anything may stand in it at power-on.
-struct KeptMemory {
+struct RetainedMemory {
   uint32_t value;
   uint32_t complement;
 };
-KeptMemory& kept_memory();
+RetainedMemory& retained_memory();
 // Bytes that the stack never touched.
 uint16_t stack_free();
 

@@ -18,8 +18,9 @@ float wrap_angle(float angle) {
 void FinLaw::start(float angle) { now_ = {wrap_angle(angle), 0}; }
 
 float FinLaw::step(const FinDemand& demand, uint16_t phase, float turn) {
-  const float left = wrap_angle(demand.direction - now_.direction);
-  now_.direction = fabsf(left) <= turn ? demand.direction : wrap_angle(now_.direction + limit(left, turn));
+  const float remaining = wrap_angle(demand.direction - now_.direction);
+  now_.direction =
+      fabsf(remaining) <= turn ? demand.direction : wrap_angle(now_.direction + limit(remaining, turn));
   now_.amplitude += limit(demand.amplitude - now_.amplitude, kAmplitudePerTick);
   // The full circle is 65536, which -32768 to 32767 covers once.
   const float angle = static_cast<int16_t>(phase) * (kPi / 32768.0f);

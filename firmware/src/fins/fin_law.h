@@ -1,4 +1,4 @@
-// How a fin flaps: wanted angle = direction + amplitude / 2 · sin(2π · frequency · t + phase).
+// How a fin flaps: set point = direction + amplitude / 2 · sin(2π · frequency · t + phase).
 #pragma once
 #include <stdint.h>
 
@@ -25,7 +25,7 @@ class FinLaw {
  public:
   // Starts at rest at this angle.
   void start(float angle);
-  // Moves one tick on, its direction by no more than `turn`; returns the wanted angle, within -π to π.
+  // Moves one tick on, its direction by no more than `turn`; returns the set point, within -π to π.
   float step(const FinDemand& demand, uint16_t phase, float turn);
   bool flapping() const { return now_.amplitude > 0; }
   // About which it flaps now (rad).

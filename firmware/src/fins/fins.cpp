@@ -31,7 +31,7 @@ void Fins::step(Motion motion, const Parameters& parameters) {
   const bool was_powered = powered();
   if (motion == Motion::kOff) {
     if (was_powered) power(false);
-    for (uint8_t i = 0; i < kFinCount; ++i) wanted_[i] = angles_[i];
+    for (uint8_t i = 0; i < kFinCount; ++i) set_points_[i] = angles_[i];
     motion_ = motion;
     return;
   }
@@ -46,18 +46,18 @@ void Fins::step(Motion motion, const Parameters& parameters) {
   const float turn = parameters.value(kFinsTurnRate) * kTickSeconds;
   const int16_t gain = gain_from_thousandths(parameters[kFinsGain]);
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    wanted_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
+    set_points_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
     const FinCalibration& fin = kFinCalibration[i];
     const bool blind = encoder_faults_ & 1 << i;
-    const int16_t wanted = counts_from_angle(fin, wanted_[i]);
-    drive(i, blind ? 0 : loops_[i].step(fin, wanted, counts_[i], gain));
+    const int16_t set_point = counts_from_angle(fin, set_points_[i]);
+    drive(i, blind ? 0 : loops_[i].step(fin, set_point, counts_[i], gain));
   }
   ask_bridges();
 }
 
 FinDemand Fins::demand(uint8_t fin) const {
   if (motion_ == Motion::kDown) return {kTipsDown, 0};
-  // A fin that is to push nothing stops where it points: one told to turn round would go on for 0.6 s.
+  // A fin that is to push nothing stops where it points: one commanded to turn round would go on for 0.6 s.
   if (motion_ == Motion::kRest || demands_[fin].amplitude == 0) return {laws_[fin].direction(), 0};
   return demands_[fin];
 }
@@ -83,7 +83,7 @@ void Fins::power(bool on) {
     laws_[i].start(angles_[i]);
     loops_[i].restart();
     demands_[i] = {angles_[i], 0};
-    wanted_[i] = angles_[i];
+    set_points_[i] = angles_[i];
   }
   board::set_motor_power(on);
 }
@@ -117,7 +117,7 @@ uint8_t Fins::faults() const {
 void Fins::report(Motor* packet) const {
   packet->time = measured_us_;
   for (uint8_t i = 0; i < kFinCount; ++i) {
-    packet->wanted[i] = lroundf(wanted_[i] * 1000);
+    packet->wanted[i] = lroundf(set_points_[i] * 1000);
     packet->angle[i] = lroundf(angles_[i] * 1000);
     packet->drive[i] = drives_[i];
   }

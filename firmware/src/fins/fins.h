@@ -28,12 +28,12 @@ class Fins {
   // One tick of 10 ms.
   void step(Motion motion, const Parameters& parameters);
 
-  // No fin flaps, and none is told to.
+  // No fin flaps, and none is commanded to.
   bool neutral() const;
   bool powered() const { return motion_ != Motion::kOff; }
   // Bits of SensorFault: encoders that gave nonsense, H-bridges that failed while powered.
   uint8_t faults() const;
-  // Wanted and measured angles and drives, as the packet carries them; its time is that of measuring.
+  // Set points, measured angles and drives for the packet; its time is that of the measurement.
   void report(Motor* packet) const;
 
  private:
@@ -48,7 +48,7 @@ class Fins {
   FinDemand demands_[kFinCount] = {};
   FinLaw laws_[kFinCount];
   PositionLoop loops_[kFinCount];
-  float wanted_[kFinCount] = {};
+  float set_points_[kFinCount] = {};
   float angles_[kFinCount] = {};
   int16_t counts_[kFinCount] = {};
   uint32_t measured_us_ = 0;

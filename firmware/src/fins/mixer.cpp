@@ -22,8 +22,8 @@ constexpr FinMount kMounts[kFinCount] = {
 
 // The part of `command` that a fin whose push has this sign can give by flapping the usual way round.
 float share(int8_t command, int8_t sign) {
-  const int16_t wanted = static_cast<int16_t>(command) * sign;
-  return wanted > 0 ? wanted : 0;
+  const int16_t demand = static_cast<int16_t>(command) * sign;
+  return demand > 0 ? demand : 0;
 }
 
 }  // namespace

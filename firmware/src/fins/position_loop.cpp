@@ -34,8 +34,8 @@ float angle_from_counts(const FinCalibration& fin, int16_t counts) {
   return turned * (2 * kPi / kCountsPerTurn);
 }
 
-int8_t PositionLoop::step(const FinCalibration& fin, int16_t wanted, int16_t measured, int16_t gain) {
-  const int16_t error = fin.encoder_sign * wrap_counts(wanted - measured);
+int8_t PositionLoop::step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain) {
+  const int16_t error = fin.encoder_sign * wrap_counts(set_point - measured);
   const int16_t change = restarted_ ? 0 : wrap_counts(error - last_error_);
   last_error_ = error;
   restarted_ = false;

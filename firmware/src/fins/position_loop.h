@@ -19,13 +19,13 @@ int16_t wrap_counts(int16_t counts);
 int16_t counts_from_angle(const FinCalibration& fin, float angle);
 // The fin angle at these counts, within -π to π.
 float angle_from_counts(const FinCalibration& fin, int16_t counts);
-// Brings one fin to where it is wanted.
+// Controls the angle of one fin.
 class PositionLoop {
  public:
   // Forgets how the fin moved: to be called where the loop was not stepped for a while.
   void restart() { restarted_ = true; }
   // One tick: the H-bridge command, within ±kDriveMax, for these counts. `gain` is in units of kGainUnit.
-  int8_t step(const FinCalibration& fin, int16_t wanted, int16_t measured, int16_t gain);
+  int8_t step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain);
 
  private:
   int16_t last_error_ = 0;

@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-void HeldFrames::keep(const FrameDecoder& frame) {
+void ReorderBuffer::insert(const FrameDecoder& frame) {
   const uint8_t size = frame.content_bytes();
   if (find(frame.number()) < used_ || size >= kBytes - used_) return;
   bytes_[used_] = size;
@@ -12,7 +12,7 @@ void HeldFrames::keep(const FrameDecoder& frame) {
   used_ += 1 + size;
 }
 
-bool HeldFrames::take(uint8_t number, FrameDecoder* frame) {
+bool ReorderBuffer::take(uint8_t number, FrameDecoder* frame) {
   const uint8_t at = find(number);
   if (at == used_) return false;
   frame->put_back(bytes_ + at + 1, bytes_[at]);
@@ -20,7 +20,7 @@ bool HeldFrames::take(uint8_t number, FrameDecoder* frame) {
   return true;
 }
 
-void HeldFrames::forget(uint8_t number) {
+void ReorderBuffer::forget(uint8_t number) {
   const uint8_t at = find(number);
   if (at == used_) return;
   const uint8_t size = 1 + bytes_[at];
@@ -28,7 +28,7 @@ void HeldFrames::forget(uint8_t number) {
   memmove(bytes_ + at, bytes_ + at + size, used_ - at);
 }
 
-uint8_t HeldFrames::after(uint8_t expected) const {
+uint8_t ReorderBuffer::after(uint8_t expected) const {
   uint8_t bits = 0;
   for (uint8_t at = 0; at < used_; at += 1 + bytes_[at]) {
     bits |= 1 << (((bytes_[at + 1] >> 4) - expected - 1) & 15);
@@ -36,7 +36,7 @@ uint8_t HeldFrames::after(uint8_t expected) const {
   return bits;
 }
 
-uint8_t HeldFrames::find(uint8_t number) const {
+uint8_t ReorderBuffer::find(uint8_t number) const {
   uint8_t at = 0;
   while (at < used_ && bytes_[at + 1] >> 4 != number) at += 1 + bytes_[at];
   return at;

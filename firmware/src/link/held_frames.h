@@ -1,4 +1,4 @@
-// Reliable frames that came before their turn, without their CRC.
+// Reliable frames received out of order, without their CRC.
 #pragma once
 #include <stdint.h>
 
@@ -6,20 +6,20 @@
 
 namespace mucat {
 
-class HeldFrames {
+class ReorderBuffer {
  public:
-  // Keeps the frame that was received, where there is room, and it is not there yet.
-  void keep(const FrameDecoder& frame);
-  // Gives the frame of that number back to the decoder and forgets it; false where it is not there.
+  // Stores the received frame if there is room and it is not stored yet.
+  void insert(const FrameDecoder& frame);
+  // Returns the frame of that number to the decoder and removes it; false if it is not stored.
   bool take(uint8_t number, FrameDecoder* frame);
   void forget(uint8_t number);
   void clear() { used_ = 0; }
   bool any() const { return used_ > 0; }
-  // A bit for each of those after `expected`, the one that is missing.
+  // A bit for each stored frame after `expected`, the missing one.
   uint8_t after(uint8_t expected) const;
 
  private:
-  // What RAM there is beside the stack: two of the longest frames and a short one, or six short ones.
+  // The RAM left beside the stack: two of the longest frames and a short one, or six short ones.
   static constexpr uint8_t kBytes = 158;
 
   uint8_t find(uint8_t number) const;

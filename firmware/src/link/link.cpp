@@ -49,17 +49,17 @@ bool Link::next(Message* message) {
       if (message->type == Hello::kType || message->type == Stop::kType) return true;
       if (!in_session()) continue;
       if (message->type == Acknowledge::kType) {
-        if (!put_back_) take_held(message->payload[0]);
+        if (!put_back_) take_selective_acknowledgement(message->payload[0]);
       } else if (fresh_ || !is_reliable(message->type)) {
         return true;
       }
     }
-  } while (next_held());
+  } while (next_reordered());
   return false;
 }
 
-bool Link::next_held() {
-  if (!fresh_ || !ready_ || !held_.take(expected_, &decoder_)) return false;
+bool Link::next_reordered() {
+  if (!fresh_ || !ready_ || !reorder_buffer_.take(expected_, &decoder_)) return false;
   put_back_ = true;
   expected_ = (expected_ + 1) & kNumberMask;
   return true;
@@ -83,34 +83,34 @@ void Link::begin(uint32_t key) {
   newest_order_ = 0;
   limit_ = kReliableMessagesBytesMax;
   expected_ = 0;
-  held_.clear();
+  reorder_buffer_.clear();
   acknowledge_ = false;
   refused_ = false;
-  tell_ready_ = false;
+  announce_ready_ = false;
 }
 
 void Link::set_ready(bool ready) {
   ready_ = ready;
   if (ready && refused_) {
     refused_ = false;
-    tell_ready_ = true;
+    announce_ready_ = true;
   }
 }
 
 void Link::take_number() {
-  if (!acknowledge_) heard_ms_ = board::milliseconds();
+  if (!acknowledge_) received_ms_ = board::milliseconds();
   acknowledge_ = true;
   if (!ready_) {
-    refused_ = tell_ready_ = true;
+    refused_ = announce_ready_ = true;
     return;
   }
   const uint8_t ahead = (decoder_.number() - expected_) & kNumberMask;
   fresh_ = ahead == 0;
   if (fresh_) {
-    held_.forget(expected_);
+    reorder_buffer_.forget(expected_);
     expected_ = (expected_ + 1) & kNumberMask;
   } else if (ahead < kWindow && !decoder_.has(Start::kType)) {
-    held_.keep(decoder_);
+    reorder_buffer_.insert(decoder_);
   }
 }
 
@@ -131,7 +131,7 @@ void Link::take_acknowledgement() {
   note_losses();
 }
 
-void Link::take_held(uint8_t held) {
+void Link::take_selective_acknowledgement(uint8_t held) {
   if (decoder_.acknowledged() != base_) return;  // an old one
   for (uint8_t i = 1; i < in_flight_; ++i) {
     Flight& flight = flights_[i];
@@ -164,13 +164,13 @@ void Link::put(uint8_t type, const void* payload, uint8_t size) {
 }
 
 void Link::flush() {
-  add_held();
+  add_selective_acknowledgement();
   flush(key_);
 }
 
 // Tells what is held beside the messages of the frame in the making, where there is room.
-void Link::add_held() {
-  if (held_.any() && !packer_.empty() && packer_.fits(sizeof(Acknowledge))) send(state());
+void Link::add_selective_acknowledgement() {
+  if (reorder_buffer_.any() && !packer_.empty() && packer_.fits(sizeof(Acknowledge))) send(state());
 }
 
 void Link::flush(uint32_t key) {
@@ -206,23 +206,23 @@ void Link::say(DebugLine& line) {
   if (!queue_.push(Debug::kType, &line.packet(), debug_bytes(line.packet()))) ++lines_lost_;
 }
 
-bool Link::calm() { return board::line_room() >= kCalmRoom; }
+bool Link::line_idle() { return board::line_room() >= kCalmRoom; }
 
 void Link::step(uint16_t now_ms) {
-  if (!calm()) return;
-  if (!tell_ready_) {
+  if (!line_idle()) return;
+  if (!announce_ready_) {
     const uint16_t bytes = bytes_in_flight();
     if (repeat(now_ms, round_trip_.timeout(bytes)) || start_flight(now_ms)) return;
     const bool stalled = queue_.more_than(messages_bytes_);
     if (stalled && repeat(now_ms, round_trip_.stalled_timeout(bytes))) return;
-    const bool late = static_cast<uint16_t>(now_ms - heard_ms_) >= kAcknowledgeMs;
+    const bool late = static_cast<uint16_t>(now_ms - received_ms_) >= kAcknowledgeMs;
     if (!acknowledge_ || !(stalled || late)) return;
   }
   acknowledge();
 }
 
 void Link::acknowledge() {
-  tell_ready_ = false;
+  announce_ready_ = false;
   send(state());
   flush(key_);
 }
@@ -236,7 +236,7 @@ bool Link::repeat(uint16_t now_ms, uint16_t timeout) {
     const bool late = static_cast<uint16_t>(now_ms - flight.sent_ms) >= timeout;
     if (!flight.held && (flight.lost || late)) {
       pack(offset, flight.bytes);
-      add_held();
+      add_selective_acknowledgement();
       flight.sent_ms = now_ms;
       flight.order = ++order_;
       if (flight.lost) flight.first_order = flight.order;
@@ -254,10 +254,10 @@ bool Link::repeat(uint16_t now_ms, uint16_t timeout) {
 bool Link::start_flight(uint16_t now_ms) {
   if (in_flight_ == kWindow) return false;
   if (in_flight_ > 0 && bytes_in_flight() + kFrameBytesMax > credit_) return false;
-  const uint8_t room = kReliableMessagesBytesMax - (held_.any() ? 1 + sizeof(Acknowledge) : 0);
+  const uint8_t room = kReliableMessagesBytesMax - (reorder_buffer_.any() ? 1 + sizeof(Acknowledge) : 0);
   const uint8_t bytes = pack(messages_bytes_, limit_ < room ? limit_ : room);
   if (bytes == 0) return false;
-  add_held();
+  add_selective_acknowledgement();
   ++order_;
   flights_[in_flight_] = Flight{now_ms, bytes, order_, order_, false, false};
   write((base_ + in_flight_) & kNumberMask, key_);

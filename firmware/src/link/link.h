@@ -34,11 +34,11 @@ class Link {
   // The received frame's next message that is new; false after the last. Ask until then.
   bool next(Message* message);
 
-  // Whether the host's reliable messages are taken, as they are at first. Where they are not, the host is
-  // told, and sends them again when it is told otherwise.
+  // Sets if the host's reliable messages are accepted, as they are at first. If not, the board reports "not
+  // ready"; the host sends them again when the board is ready.
   void set_ready(bool ready);
 
-  // Says at once who speaks, in an open frame of its own; `epoch` is this boot of the board.
+  // Sends HELLO at once, in an open frame of its own; `epoch` is this boot of the board.
   void greet(uint16_t epoch);
   // The same as an answer. Where it is another session's, numbers start anew, and reliable messages that were
   // not acknowledged are sent again.
@@ -53,8 +53,8 @@ class Link {
   // the time there is.
   void flush();
 
-  // Whether what is sent now is on the line soon.
-  static bool calm();
+  // True if the line would send new bytes soon.
+  static bool line_idle();
 
   // Queues a reliable packet of fixed length; false where there is no room for it.
   template <typename Packet>
@@ -64,11 +64,11 @@ class Link {
   }
   // Queues a line of text; where there is no room it is dropped and counted.
   void say(DebugLine& line);
-  // Sends one frame of reliable messages, or an acknowledgement, where one is due and the line is calm.
+  // Sends one frame of reliable messages, or an acknowledgement, where one is due and the line is idle.
   void step(uint16_t now_ms);
 
-  // Says now what has come. To be called now and then by whoever sends nothing else: the host takes a board
-  // that is silent for 1 s for lost.
+  // Sends an acknowledgement now. Call it regularly if nothing else is sent: the host treats a board that is
+  // silent for 1 s as lost.
   void acknowledge();
 
   uint16_t frames_invalid() const { return decoder_.invalid(); }
@@ -94,12 +94,12 @@ class Link {
   bool in_session() const { return decoder_.open() == (key_ == kOpen); }
   void take_number();
   void take_acknowledgement();
-  void take_held(uint8_t held);
-  bool next_held();
-  Acknowledge state() const { return Acknowledge{refused_ ? kNotReady : held_.after(expected_)}; }
+  void take_selective_acknowledgement(uint8_t held);
+  bool next_reordered();
+  Acknowledge state() const { return Acknowledge{refused_ ? kNotReady : reorder_buffer_.after(expected_)}; }
   void note_arrival(const Flight& flight);
   void note_losses();
-  void add_held();
+  void add_selective_acknowledgement();
   uint16_t bytes_in_flight() const;
   bool repeat(uint16_t now_ms, uint16_t timeout);
   bool start_flight(uint16_t now_ms);
@@ -108,7 +108,7 @@ class Link {
   FrameDecoder decoder_;
   FramePacker packer_;
   MessageQueue queue_;
-  HeldFrames held_;
+  ReorderBuffer reorder_buffer_;
   RoundTrip round_trip_;
   Flight flights_[kWindow];
   uint32_t key_ = kOpen;
@@ -124,12 +124,12 @@ class Link {
   uint8_t limit_ = kReliableMessagesBytesMax;  // bytes of messages in a new frame
   uint8_t expected_ = 0;                       // number of the host's next reliable frame
   bool ready_ = true;
-  bool refused_ = false;     // a reliable frame since it was last ready
-  bool tell_ready_ = false;  // whether it is, with the next step
-  bool fresh_ = false;       // the received frame's reliable messages are new
-  bool put_back_ = false;    // it was held: what it acknowledges is old
+  bool refused_ = false;         // a reliable frame since it was last ready
+  bool announce_ready_ = false;  // with the next step
+  bool fresh_ = false;           // the received frame's reliable messages are new
+  bool put_back_ = false;        // it was held: what it acknowledges is old
   bool acknowledge_ = false;
-  uint16_t heard_ms_ = 0;
+  uint16_t received_ms_ = 0;
 };
 
 }  // namespace mucat

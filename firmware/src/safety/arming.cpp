@@ -46,9 +46,9 @@ FlashText describe(Disarming reason) {
   return FLASH_TEXT("");
 }
 
-void Arming::hear(uint32_t now_ms) {
-  if (!alive_ || now_ms - heard_ms_ > kGapMs) steady_since_ms_ = now_ms;
-  heard_ms_ = now_ms;
+void Arming::note_reception(uint32_t now_ms) {
+  if (!alive_ || now_ms - received_ms_ > kGapMs) steady_since_ms_ = now_ms;
+  received_ms_ = now_ms;
   alive_ = true;
 }
 
@@ -68,7 +68,7 @@ Disarming Arming::fail_battery() {
 
 Disarming Arming::tick(uint32_t now_ms) {
   if (commanded_ && now_ms - commanded_ms_ >= kCommandMs) commanded_ = false;
-  if (!alive_ || now_ms - heard_ms_ < kSilenceMs) return Disarming::kNone;
+  if (!alive_ || now_ms - received_ms_ < kSilenceMs) return Disarming::kNone;
   alive_ = false;
   return disarm(Disarming::kSilence);
 }

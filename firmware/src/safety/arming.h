@@ -23,8 +23,8 @@ class Arming {
   void begin(uint16_t epoch) { epoch_ = epoch; }
 
   // A valid frame came, whatever is in it.
-  void hear(uint32_t now_ms);
-  // The calls below say why the board disarmed just now, or kNone where it did not.
+  void note_reception(uint32_t now_ms);
+  // The calls below return why the board disarmed, or kNone if it did not.
   Disarming greet(const Hello& hello);
   Disarming stop() { return disarm(Disarming::kStop); }
   Disarming fail_battery();
@@ -45,7 +45,7 @@ class Arming {
   Disarming disarm(Disarming reason);
   Refusal refusal(const Start& start, uint32_t now_ms) const;
 
-  uint32_t heard_ms_ = 0;
+  uint32_t received_ms_ = 0;
   uint32_t steady_since_ms_ = 0;
   uint32_t commanded_ms_ = 0;
   uint16_t epoch_ = 0;

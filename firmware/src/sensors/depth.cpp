@@ -18,9 +18,9 @@ bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <=
 }  // namespace
 
 void Surface::start(bool power_on) {
-  const board::KeptMemory& kept = board::kept_memory();
-  const int32_t pressure = static_cast<int32_t>(kept.value);
-  if (power_on || kept.complement != ~kept.value || !plausible(pressure)) return;
+  const board::RetainedMemory& retained = board::retained_memory();
+  const int32_t pressure = static_cast<int32_t>(retained.value);
+  if (power_on || retained.complement != ~retained.value || !plausible(pressure)) return;
   pressure_ = pressure;
   readings_ = kReadings;
 }
@@ -30,8 +30,8 @@ void Surface::add(int32_t pressure) {
   pressure_ += pressure;
   if (++readings_ < kReadings) return;
   pressure_ /= kReadings;
-  board::kept_memory().value = pressure_;
-  board::kept_memory().complement = ~static_cast<uint32_t>(pressure_);
+  board::retained_memory().value = pressure_;
+  board::retained_memory().complement = ~static_cast<uint32_t>(pressure_);
 }
 
 int16_t Surface::depth(int32_t pressure) const {

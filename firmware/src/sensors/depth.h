@@ -4,11 +4,11 @@
 
 namespace mucat {
 
-// The pressure at the surface: the mean of the first readings after power-on, kept over every other reset, so
-// that a restart under water does not move the surface.
+// The pressure at the surface: the mean of the first readings after power-on, retained over every other
+// reset, so that a restart under water does not move the surface.
 class Surface {
  public:
-  // Takes the kept pressure, unless this is a power-on or what is kept is nonsense.
+  // Takes the retained pressure, unless this is a power-on or it is implausible.
   void start(bool power_on);
   bool known() const { return readings_ == kReadings; }
   // A reading (Pa) at the surface; ignored once the surface is known.

@@ -2,7 +2,7 @@
 
 namespace mucat {
 
-void feel(const Sense&) {}
+void accept_simulated_input(const Sense&) {}
 
 bool in_the_loop() { return false; }
 

@@ -19,7 +19,7 @@ constexpr uint8_t kPatience = 200;
 
 bool wait_for(uint8_t control) {
   TWCR = control | _BV(TWINT) | _BV(TWEN);
-  for (uint8_t left = kPatience; left; --left) {
+  for (uint8_t remaining = kPatience; remaining; --remaining) {
     if (TWCR & _BV(TWINT)) return true;
   }
   return false;
@@ -35,7 +35,7 @@ bool send_address(uint8_t address_and_direction) {
 
 bool stop() {
   TWCR = _BV(TWINT) | _BV(TWSTO) | _BV(TWEN);
-  for (uint8_t left = kPatience; left; --left) {
+  for (uint8_t remaining = kPatience; remaining; --remaining) {
     if (!(TWCR & _BV(TWSTO))) return true;
   }
   return false;

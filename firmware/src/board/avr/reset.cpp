@@ -13,7 +13,7 @@ namespace {
 
 // Not cleared by the C runtime; written before it runs.
 __attribute__((section(".noinit"))) uint8_t reset_flags;
-__attribute__((section(".noinit"))) KeptMemory kept;
+__attribute__((section(".noinit"))) RetainedMemory retained;
 
 constexpr uint8_t kPaint = 0xC5;
 
@@ -60,7 +60,7 @@ ResetCause reset_cause() {
 
 void feed_watchdog() { wdt_reset(); }
 
-KeptMemory& kept_memory() { return kept; }
+RetainedMemory& retained_memory() { return retained; }
 
 uint16_t stack_free() {
   const uint8_t* at = &_end;

@@ -39,7 +39,7 @@ void read_encoder(uint8_t fin, uint8_t (&bytes)[kEncoderBytes]) {
   _delay_us(1);
   for (uint8_t& byte : bytes) {
     SPDR = 0;
-    for (uint8_t left = UINT8_MAX; left && !(SPSR & _BV(SPIF)); --left) {
+    for (uint8_t remaining = UINT8_MAX; remaining && !(SPSR & _BV(SPIF)); --remaining) {
     }
     byte = SPDR;
   }
