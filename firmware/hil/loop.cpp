@@ -1,6 +1,6 @@
 #include "loop.h"
 
-#include "sensors/sense.h"
+#include "sensors/simulated_input.h"
 
 namespace mucat {
 namespace {

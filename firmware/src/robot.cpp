@@ -3,7 +3,7 @@
 #include "board/board.h"
 #include "led.h"
 #include "schedule.h"
-#include "sensors/sense.h"
+#include "sensors/simulated_input.h"
 
 namespace mucat {
 namespace {

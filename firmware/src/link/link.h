@@ -20,8 +20,8 @@
 #include "board/board.h"
 #include "link/debug.h"
 #include "link/frame.h"
-#include "link/held_frames.h"
 #include "link/message_queue.h"
+#include "link/reorder_buffer.h"
 #include "link/round_trip.h"
 #include "packets.gen.h"
 

@@ -1,4 +1,4 @@
-#include "link/held_frames.h"
+#include "link/reorder_buffer.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "sensors/sense.h"
+#include "sensors/simulated_input.h"
 
 namespace mucat {
 
