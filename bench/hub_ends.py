@@ -70,7 +70,7 @@ async def _serve(data: Path, port: int, page: Path, ended: threading.Event) -> N
 def _source(data: Path, ended: threading.Event) -> None:
     messages = ZenohTransport("turtle", listen=[f"unixsock-stream/{DataFolder(data).runtime_socket}"])
     cache = ReplayCache(messages.run, SteadyClock())
-    messages.answer_bytes("query/blocks", cache.answer)
+    messages.serve_bytes("query/blocks", cache.answer)
     outbox = Outbox(messages.publish, lambda _: False, cache)
 
     tick = itertools.count()

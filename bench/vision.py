@@ -90,7 +90,7 @@ def _latencies() -> dict[str, float]:
             robot.subscribe("control", lambda _, data: ticks.extend(read_blocks(data)))
             robot.subscribe("detection", lambda _, data: looks.extend(read_blocks(data)))
             for change in range(_CHANGES):
-                robot.ask("command/card", {"colour": None if change % 2 else "yellow"})
+                robot.query("command/card", {"colour": None if change % 2 else "yellow"})
                 time.sleep(chance.uniform(0.4, 0.6))
     return _figures(ticks, looks)
 

@@ -29,7 +29,7 @@ def main() -> int:
             port = options.port or config.link.port
             vision_file = VisionSettingsFile(options.data / "vision.json")
             robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
-            robot.answer()
+            robot.serve()
             if options.server_lock is not None:
                 watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)
             for number in (signal.SIGINT, signal.SIGTERM):

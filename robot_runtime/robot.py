@@ -69,16 +69,16 @@ class Robot(Core):
         messages.subscribe(HEARTBEAT, lambda *_: detector.see_server())
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
-    def answer(self) -> None:
+    def serve(self) -> None:
         """Serves the commands and queries of the other processes."""
         for name, command in Commands(self).do.items():
-            self._messages.answer(f"command/{name}", command)
-        self._messages.answer("query/frames", lambda _: self.frames())
-        self._messages.answer("query/vision", lambda _: self.vision_settings())
-        self._messages.answer("query/pick", lambda question: asdict(self.vision.pick(question)))
-        self._messages.answer("query/state", lambda _: asdict(self.state()))
-        self._messages.answer("query/parameters", lambda _: asdict(self.list_parameters()))
-        self._messages.answer_bytes("query/blocks", self.cache.answer)
+            self._messages.serve(f"command/{name}", command)
+        self._messages.serve("query/frames", lambda _: self.frames())
+        self._messages.serve("query/vision", lambda _: self.vision_settings())
+        self._messages.serve("query/pick", lambda question: asdict(self.vision.pick(question)))
+        self._messages.serve("query/state", lambda _: asdict(self.state()))
+        self._messages.serve("query/parameters", lambda _: asdict(self.list_parameters()))
+        self._messages.serve_bytes("query/blocks", self.cache.answer)
 
     def set_vision(self, settings: VisionSettings) -> None:
         """Applies vision settings from the next picture on, and stores them for the next start."""

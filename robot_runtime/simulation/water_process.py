@@ -39,8 +39,8 @@ class WaterProcess:
         self._ending = False
         self._attached: bool | None = None
         for name, change in changes(simulator).items():
-            messages.answer(f"simulator/{name}", change)
-        messages.answer_bytes("simulator/blocks", cache.answer)
+            messages.serve(f"simulator/{name}", change)
+        messages.serve_bytes("simulator/blocks", cache.answer)
 
     def run(self) -> None:
         """Swim until `end` is called, through any number of boards."""

@@ -66,7 +66,7 @@ class ZenohTransport:
         self._queryables: list[zenoh.Queryable[None]] = []
 
     def publish(self, name: str, payload: bytes) -> None:
-        """Send to everybody who listens to `name`."""
+        """Sends to all subscribers of `name`."""
         self._publisher(name).put(payload, attachment=self.run)
 
     def watched(self, name: str) -> bool:
@@ -88,8 +88,8 @@ class ZenohTransport:
 
         return Subscription(self._session.declare_subscriber(self._prefix + pattern, receive))
 
-    def ask(self, name: str, payload: Mapping[str, Any], timeout: float = 2.0) -> Answer:
-        """The answer to a question.
+    def query(self, name: str, payload: Mapping[str, Any], timeout: float = 2.0) -> Answer:
+        """Sends a request and returns its answer.
 
         Raises RefusedError with the reason, or NoAnswerError after `timeout` seconds.
         """
@@ -101,12 +101,10 @@ class ZenohTransport:
             if not answer.get("accepted"):
                 raise RefusedError(str(answer.get("reason", "refused without a reason")))
             return answer
-        raise NoAnswerError(f"nobody answered {name} within {timeout:g} s")
+        raise NoAnswerError(f"no answer to {name} within {timeout:g} s")
 
-    def answer(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
-        """Answer `name` with what the handler returns; what it raises as RefusedError or ValueError is
-        told.
-        """
+    def serve(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
+        """Serves `name` with the handler's results; its RefusedError or ValueError becomes a refusal."""
 
         def reply(query: zenoh.Query) -> None:
             with query:
@@ -114,18 +112,18 @@ class ZenohTransport:
 
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
-    def ask_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
-        """The answer to a question, both as plain bytes; raises as `ask` does."""
+    def query_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
+        """Sends a request and returns its answer, both as plain bytes; raises as `query` does."""
         for reply in self._session.get(self._prefix + name, payload=payload, timeout=timeout):
             if reply.ok is not None:
                 return reply.ok.payload.to_bytes()
             # Zenoh puts its own errors, such as a timeout, into the same place.
             if reply.err is not None and reply.err.encoding == _REFUSAL:
                 raise RefusedError(reply.err.payload.to_string())
-        raise NoAnswerError(f"nobody answered {name} within {timeout:g} s")
+        raise NoAnswerError(f"no answer to {name} within {timeout:g} s")
 
-    def answer_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
-        """Answer `name` with the bytes that the handler returns; what it raises is told as by `answer`."""
+    def serve_bytes(self, name: str, handler: Callable[[bytes], bytes]) -> None:
+        """Serves `name` with the bytes that the handler returns; refuses as `serve` does."""
 
         def reply(query: zenoh.Query) -> None:
             with query:
@@ -139,7 +137,7 @@ class ZenohTransport:
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
     def close(self) -> None:
-        """Leave. An open Zenoh session keeps the interpreter alive, so this must be called."""
+        """Closes the session. An open Zenoh session keeps the interpreter alive, so this must be called."""
         self._session.close()  # type: ignore[no-untyped-call]
 
     def __enter__(self) -> Self:

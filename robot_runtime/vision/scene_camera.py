@@ -36,7 +36,7 @@ class SceneCamera(Camera):
         self._messages = messages
         self._card = card
         try:
-            missing = messages.ask("scene/ready", {}, READY_TIMEOUT)["missing"]
+            missing = messages.query("scene/ready", {}, READY_TIMEOUT)["missing"]
         except NoAnswerError as problem:
             raise CameraError(
                 "no scene answers; it belongs to a simulated robot, and starts with the server. A real robot "
@@ -51,7 +51,7 @@ class SceneCamera(Camera):
         card = self._card()
         request = write_request(*self._size, card.paint if card else None, marked=bool(card and card.marked))
         try:
-            picture = read_picture(self._messages.ask_bytes("scene/picture", request, PICTURE_TIMEOUT))
+            picture = read_picture(self._messages.query_bytes("scene/picture", request, PICTURE_TIMEOUT))
         except NoAnswerError as problem:
             raise CameraError(
                 "the scene does not answer any more; the System page tells more", PATIENCE

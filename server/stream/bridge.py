@@ -144,7 +144,7 @@ class Bridge:
         """
         try:
             await self._loop.run_in_executor(
-                self._leases, lambda: self._messages.ask("command/lease", {"epoch": epoch}, ANSWER_SECONDS)
+                self._leases, lambda: self._messages.query("command/lease", {"epoch": epoch}, ANSWER_SECONDS)
             )
         except NoAnswerError as problem:
             raise RuntimeSilentError(str(problem), waited=False) from problem
@@ -207,7 +207,7 @@ class Bridge:
         try:
             return await self._loop.run_in_executor(
                 self._stops if stop else self._commands,
-                lambda: self._messages.ask(name, payload, ANSWER_SECONDS),
+                lambda: self._messages.query(name, payload, ANSWER_SECONDS),
             )
         except NoAnswerError as problem:
             if stop and self.stopped:
@@ -240,7 +240,7 @@ class Bridge:
         return None
 
     def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> BacklogReply:
-        return BacklogReply.from_bytes(self._messages.ask_bytes(question, write_question(wanted), seconds))
+        return BacklogReply.from_bytes(self._messages.query_bytes(question, write_question(wanted), seconds))
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""

@@ -119,9 +119,9 @@ def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
                 ("accelerometer", SensorFault.IMU),
                 ("encoder2", SensorFault.FIN_BACK_LEFT),
             ):
-                messages.ask("simulator/fault", {"sensor": sensor, "kind": "bus"})
+                messages.query("simulator/fault", {"sensor": sensor, "kind": "bus"})
                 assert robot.status().faults == fault
-                messages.ask("simulator/fault", {"sensor": sensor, "kind": "none"})
+                messages.query("simulator/fault", {"sensor": sensor, "kind": "none"})
                 robot.listen(0.5)
                 assert robot.status().faults == 0
         finally:

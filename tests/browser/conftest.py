@@ -73,7 +73,7 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportS
     # Every test finds the robot at the surface, wherever the one before has left it.
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
     with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
-        messages.ask("simulator/reset", {}, RESET_SECONDS)
+        messages.query("simulator/reset", {}, RESET_SECONDS)
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(stack.url)
     yield page

@@ -217,7 +217,7 @@ class Rig:
         self.listener.wait(lambda: bool(self.listener.newest_state()["armed"]))
 
     def ask(self, name: str, /, **question: Any) -> None:
-        self.messages.ask(f"command/{name}", question)
+        self.messages.query(f"command/{name}", question)
 
 
 @pytest.fixture
@@ -317,14 +317,14 @@ def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None
     first = Rig(tmp_path)
     first.ready()
     first.ask("vision_settings", **changed.table())
-    assert first.messages.ask("query/vision", {})["settings"] == changed.table()
+    assert first.messages.query("query/vision", {})["settings"] == changed.table()
     with pytest.raises(RefusedError, match="colour is 'yellow'; it must be one of buoy"):
         first.ask("vision", colour="yellow")
     first.close()
 
     second = Rig(tmp_path)
     second.ready()
-    told = second.messages.ask("query/vision", {})
+    told = second.messages.query("query/vision", {})
     assert (told["settings"], told["configured"]) == (changed.table(), usual.table())
     assert second.listener.newest_state()["vision_colour"] == "buoy"
     second.ask("vision_settings", **usual.table())
@@ -334,13 +334,13 @@ def test_what_was_set_up_to_be_seen_outlasts_the_runtime(tmp_path: Path) -> None
 
 def test_the_last_frames_are_told_when_asked(rig: Rig) -> None:
     rig.ready()
-    answer = rig.messages.ask("query/frames", {})
+    answer = rig.messages.query("query/frames", {})
     assert answer["fault"] is None
     kinds = {(frame["sent"], kind) for frame in answer["frames"] for kind in frame["kinds"]}
     assert {(True, "Hello"), (False, "Depth"), (False, "Status")} <= kinds
     rig.board.close()
     rig.listener.wait(lambda: not rig.listener.newest_state()["connected"])
-    fault = rig.messages.ask("query/frames", {})["fault"]
+    fault = rig.messages.query("query/frames", {})["fault"]
     assert fault["text"] == "the port went away"
     assert any("Depth" in frame["kinds"] for frame in fault["frames"])
     rig.board = Board(rig.board.path)
@@ -445,7 +445,7 @@ def test_a_bad_configuration_is_one_clear_line(tmp_path: Path) -> None:
 def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) -> None:
     rig.ready()
     rig.ask("controller", name="pid", gains={"kp": 7.0})
-    answer = rig.messages.ask(
+    answer = rig.messages.query(
         "command/parameters", {"values": {"fins.amplitude": 0.8, "depth.pid.kp": 4, "vision.rate": 4.0}}
     )
     assert answer["changed"] == {"depth.pid.kp": [7.0, 4.0], "fins.amplitude": [1.6, 0.8]}
@@ -456,7 +456,7 @@ def test_parameters_are_changed_together_listed_and_said_to_the_board(rig: Rig) 
     assert (listed["depth.pid.kp"]["value"], listed["depth.pid.kp"]["default"]) == (4.0, 3.0)
     assert listed["depth.controller"]["value"] == "pid"
     partly = {"values": {"nothing": 1, "depth.pid.kp": 5, "vision.rate": 99}, "partly": True}
-    answer = rig.messages.ask("command/parameters", partly)
+    answer = rig.messages.query("command/parameters", partly)
     assert answer["changed"] == {"depth.pid.kp": [4.0, 5.0]}
     assert answer["left_out"].keys() == {"nothing", "vision.rate"}
 

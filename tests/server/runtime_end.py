@@ -39,24 +39,24 @@ class RuntimeEnd:
             gate.set()
             self._answer(name, gate)
         self.frames: dict[str, Any] = {"time": 1.0, "frames": [], "fault": None}
-        self._messages.answer("query/frames", lambda _: self.frames)
+        self._messages.serve("query/frames", lambda _: self.frames)
         settings = VisionSettings().table()
-        self._messages.answer("query/vision", lambda _: {"settings": settings, "configured": settings})
+        self._messages.serve("query/vision", lambda _: {"settings": settings, "configured": settings})
         self.picked: list[dict[str, Any]] = []
-        self._messages.answer("query/pick", self._pick)
+        self._messages.serve("query/pick", self._pick)
         self.state: dict[str, Any] = {"mode": "disarmed", "loops": []}
-        self._messages.answer("query/state", lambda _: self.state)
+        self._messages.serve("query/state", lambda _: self.state)
         self.parameters: dict[str, Any] = {"time": 1.0, "parameters": []}
-        self._messages.answer("query/parameters", lambda _: self.parameters)
+        self._messages.serve("query/parameters", lambda _: self.parameters)
         self.answer: dict[str, Any] = {}
         """What every command is answered with."""
         self._cache = ReplayCache(self._messages.run, SteadyClock())
         for name in ("query/blocks", "simulator/blocks"):
-            self._messages.answer_bytes(name, self._cache.answer)
-        self._messages.answer("command/lease", lambda question: self.epochs.append(question["epoch"]))
+            self._messages.serve_bytes(name, self._cache.answer)
+        self._messages.serve("command/lease", lambda question: self.epochs.append(question["epoch"]))
         self._messages.subscribe("pilot", lambda _, command: self.driven.append(json.loads(command)))
         # The last of all: who reaches this one reaches every other.
-        self._messages.answer("command/there", lambda _: None)
+        self._messages.serve("command/there", lambda _: None)
 
     def __enter__(self) -> Self:
         return self
@@ -94,4 +94,4 @@ class RuntimeEnd:
                 raise RefusedError(self.refusal)
             return self.answer
 
-        self._messages.answer(f"command/{name}", handle)
+        self._messages.serve(f"command/{name}", handle)

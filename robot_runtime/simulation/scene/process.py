@@ -80,8 +80,8 @@ class SceneProcess:
             "contents": self._tell_contents,
         }
         for name, handler in handlers.items():
-            messages.answer(f"scene/{name}", handler)
-        messages.answer_bytes("scene/picture", self._answer_picture)
+            messages.serve(f"scene/{name}", handler)
+        messages.serve_bytes("scene/picture", self._answer_picture)
 
     def run(self) -> None:
         """Render until `end` is called."""
@@ -220,7 +220,7 @@ class SceneProcess:
             return
         self._asked = now
         try:
-            answer = self._messages.ask("simulator/surroundings", {}, ASK_TIMEOUT)
+            answer = self._messages.query("simulator/surroundings", {}, ASK_TIMEOUT)
             basin = parse(Basin, answer["world"])
             beacons = tuple((north, east, down) for north, east, down in answer["beacons"]["positions"])
             check_beacons(beacons)

@@ -54,8 +54,8 @@ class HilSimulator:
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
         self._truth_due = 0.0
         for name, change in changes(simulator).items():
-            messages.answer(f"simulator/{name}", _no_bus_errors(change) if name == "fault" else change)
-        messages.answer_bytes("simulator/blocks", cache.answer)
+            messages.serve(f"simulator/{name}", _no_bus_errors(change) if name == "fault" else change)
+        messages.serve_bytes("simulator/blocks", cache.answer)
         messages.subscribe("motor", self._receive)
 
     def run(self) -> None:

@@ -217,11 +217,11 @@ class TestAttached:
         surface = board.exchange()[0]
         for _ in range(200):
             board.exchange(DIVING)
-        assert messages.ask("simulator/reset", {}) == {"accepted": True}
+        assert messages.query("simulator/reset", {}) == {"accepted": True}
         assert board.exchange()[0] == pytest.approx(surface, abs=5)
 
     def test_current_carries_it_away(self, board: Board, messages: ZenohTransport) -> None:
-        answer = messages.ask("simulator/current", {"north": 1, "east": -0.5, "down": 0.0})
+        answer = messages.query("simulator/current", {"north": 1, "east": -0.5, "down": 0.0})
         assert answer == {"accepted": True}
         board.accept()
         forces = [board.exchange()[2] for _ in range(5)]
@@ -244,21 +244,21 @@ class TestAttached:
         self, messages: ZenohTransport, question: dict[str, object]
     ) -> None:
         with pytest.raises(RefusedError, match=r"takes|number|at most 2 m/s"):
-            messages.ask("simulator/current", question)
+            messages.query("simulator/current", question)
 
     def test_bus_errors_are_told_to_the_board_once_and_to_every_new_one(
         self, board: Board, messages: ZenohTransport
     ) -> None:
         board.accept()
-        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
-        messages.ask("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
+        messages.query("simulator/fault", {"sensor": "gyroscope", "kind": "bus"})
+        messages.query("simulator/fault", {"sensor": "encoder1", "kind": "bus"})
         board.line.sendall(RESTING)
         assert board.hear() == "fault encoder1 absent"
         assert board.hear() == "fault imu absent"
         assert board.hear().startswith("sense ")
         board.line.sendall(b"ok\nok\n")
         board.exchange()
-        messages.ask("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
+        messages.query("simulator/fault", {"sensor": "gyroscope", "kind": "none"})
         board.line.sendall(RESTING)
         assert board.hear() == "fault imu none"
         assert board.hear().startswith("sense ")
@@ -280,13 +280,13 @@ class TestAttached:
     def test_everything_can_be_asked_for_over_zenoh(
         self, messages: ZenohTransport, name: str, question: dict[str, object]
     ) -> None:
-        assert messages.ask(f"simulator/{name}", question) == {"accepted": True}
+        assert messages.query(f"simulator/{name}", question) == {"accepted": True}
         with pytest.raises(RefusedError, match="takes"):
-            messages.ask(f"simulator/{name}", {})
+            messages.query(f"simulator/{name}", {})
 
     def test_reset_takes_no_depth(self, messages: ZenohTransport) -> None:
         with pytest.raises(RefusedError, match="not depth"):
-            messages.ask("simulator/reset", {"depth": 1})
+            messages.query("simulator/reset", {"depth": 1})
 
 
 def command(folder: Path, *more: str) -> list[str]:
@@ -297,7 +297,7 @@ def command(folder: Path, *more: str) -> list[str]:
 
 def accepted(messages: ZenohTransport) -> bool:
     try:
-        return messages.ask("simulator/reset", {}, timeout=0.5) == {"accepted": True}
+        return messages.query("simulator/reset", {}, timeout=0.5) == {"accepted": True}
     except NoAnswerError:
         return False
 

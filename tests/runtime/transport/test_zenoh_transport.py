@@ -23,7 +23,7 @@ def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:
     """Zenoh tells of new answerers in its own time."""
     while True:
         try:
-            return asking.ask_bytes(name, payload)
+            return asking.query_bytes(name, payload)
         except NoAnswerError:
             continue
 
@@ -31,7 +31,7 @@ def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:
 @pytest.mark.parametrize("payload", [b"", b"{}", b"\0\xff" * 1_000_000])
 def test_bytes_are_answered_with_bytes(ends: tuple[ZenohTransport, ZenohTransport], payload: bytes) -> None:
     answering, asking = ends
-    answering.answer_bytes("picture", lambda question: question[::-1])
+    answering.serve_bytes("picture", lambda question: question[::-1])
     assert ask(asking, "picture", payload) == payload[::-1]
 
 
@@ -41,7 +41,7 @@ def test_a_refusal_is_told_in_its_words(ends: tuple[ZenohTransport, ZenohTranspo
     def refuse(question: bytes) -> bytes:
         raise RefusedError(f"no picture {question.decode()} µm wide")
 
-    answering.answer_bytes("picture", refuse)
+    answering.serve_bytes("picture", refuse)
     with pytest.raises(RefusedError, match="no picture 3 µm wide"):
         ask(asking, "picture", b"3")
 
@@ -54,7 +54,7 @@ def test_an_error_inside_is_no_detail_for_others(
     def fail(_: bytes) -> bytes:
         raise RuntimeError("secret")
 
-    answering.answer_bytes("picture", fail)
+    answering.serve_bytes("picture", fail)
     with pytest.raises(RefusedError, match="its log says more"):
         ask(asking, "picture", b"")
     assert "secret" in caplog.text
@@ -63,9 +63,9 @@ def test_an_error_inside_is_no_detail_for_others(
 def test_who_does_not_answer_in_time_is_given_up(ends: tuple[ZenohTransport, ZenohTransport]) -> None:
     answering, asking = ends
     gate = threading.Event()
-    answering.answer_bytes("there", lambda _: b"")
-    answering.answer_bytes("picture", lambda _: b"late" if gate.wait(30) else b"")
+    answering.serve_bytes("there", lambda _: b"")
+    answering.serve_bytes("picture", lambda _: b"late" if gate.wait(30) else b"")
     ask(asking, "there", b"")
-    with pytest.raises(NoAnswerError, match="nobody answered picture within"):
-        asking.ask_bytes("picture", b"", timeout=0.2)
+    with pytest.raises(NoAnswerError, match="no answer to picture within"):
+        asking.query_bytes("picture", b"", timeout=0.2)
     gate.set()

@@ -49,12 +49,12 @@ class Ends:
 
     def ask(self, name: str, question: dict[str, Any]) -> dict[str, Any]:
         """Zenoh tells of new answerers in its own time."""
-        answer: dict[str, Any] = patiently(lambda: self.other.ask(f"scene/{name}", question))
+        answer: dict[str, Any] = patiently(lambda: self.other.query(f"scene/{name}", question))
         return answer
 
     def picture(self, card: tuple[int, int, int] | None = None) -> Picture:
         request = write_request(*SIZE, card)
-        return read_picture(patiently(lambda: self.other.ask_bytes("scene/picture", request, SLOW)))
+        return read_picture(patiently(lambda: self.other.query_bytes("scene/picture", request, SLOW)))
 
     def tell(self, seconds: float, where: Truth) -> None:
         """Say where the robot is, until the scene knows."""
@@ -111,7 +111,7 @@ def test_floor_walls_and_beacons_are_the_simulators() -> None:
     simulator = Simulator(SimulationParameters(), 1)
     with link() as ends:
         for name, change in changes(simulator).items():
-            ends.other.answer(f"simulator/{name}", change)
+            ends.other.serve(f"simulator/{name}", change)
         ends.tell(1.0, truth((0.0, 0.0, 1.0)))
         ends.picture()
         changes(simulator)["world"]({"depth": 2.0, "length": 8.0, "width": 5.0})
@@ -199,7 +199,7 @@ def test_a_client_that_goes_away_harms_nobody() -> None:
         ends.picture()
         with pytest.raises(NoAnswerError):
             # Gone long before there can be an answer.
-            ends.other.ask_bytes("scene/picture", write_request(1280, 960, None), timeout=0.001)
+            ends.other.query_bytes("scene/picture", write_request(1280, 960, None), timeout=0.001)
         assert ends.picture().time == 1.0
 
 

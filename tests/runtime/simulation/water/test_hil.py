@@ -121,6 +121,6 @@ def test_questions_are_answered_but_there_are_no_buses_to_break(simulator: Simul
         ZenohTransport("turtle", [f"unixsock-stream/{folder}/z"]) as here,
     ):
         HilSimulator(simulator, here)
-        here.ask("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
+        here.query("simulator/fault", {"sensor": "pressure", "kind": "stuck"})
         with pytest.raises(RefusedError, match="has no buses"):
-            here.ask("simulator/fault", {"sensor": "pressure", "kind": "bus"})
+            here.query("simulator/fault", {"sensor": "pressure", "kind": "bus"})
