@@ -17,13 +17,13 @@ from statistics import fmean
 from typing import Any
 
 from robot_runtime.contract.documents import Truth
-from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.simulation.water.geometry import rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six
+from robot_runtime.transport.blocks import read_blocks, read_rows
 
 BEST, THESIS = "predictive", "bang_bang"
 SEEDS = (3, 4, 5)

@@ -24,8 +24,9 @@ from robot_runtime.contract.documents import (
     State,
 )
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import BY_NAME, Block, Kind, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME, Kind
 from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.transport.blocks import Block, pack_documents, row
 from robot_runtime.vision.node import THUMBNAIL_SECONDS
 from robot_runtime.vision.pipeline import THUMBNAIL_WIDTH
 

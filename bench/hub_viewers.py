@@ -14,7 +14,8 @@ from websockets.protocol import State
 from websockets.uri import parse_uri
 
 from bench.hub_ends import TOPICS
-from robot_runtime.contract.topics import BY_NAME, HEADER, ROW_BYTES, TIME
+from robot_runtime.contract.topics import BY_NAME, ROW_BYTES, TIME
+from robot_runtime.transport.blocks import HEADER
 
 _TIMEOUT = 20.0
 _DRAIN_EVERY = 0.05

@@ -8,7 +8,7 @@ from pathlib import Path
 from bench.dive import Dive
 from bench.hour import CONFIG, STARTED_STEADY
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import Block
+from robot_runtime.transport.blocks import Block
 from server.features.sessions.recorder import PERIOD, Recorder
 from server.features.sessions.session import new_row
 from server.platform.notices import Notices

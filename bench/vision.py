@@ -11,8 +11,8 @@ from typing import Any
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Control
-from robot_runtime.contract.topics import Block, read_blocks, read_rows
 from robot_runtime.contract.vision_settings import COLOURS, VisionSettings
+from robot_runtime.transport.blocks import Block, read_blocks, read_rows
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card

@@ -29,7 +29,6 @@ from robot_runtime.contract.documents import (
     VisionInForce,
 )
 from robot_runtime.contract.packets import (
-    Beacon,
     Debug,
     Depth,
     Hello,
@@ -39,7 +38,7 @@ from robot_runtime.contract.packets import (
     Parameter,
     Status,
 )
-from robot_runtime.contract.topics import TOPICS, Kind
+from robot_runtime.contract.topics import TELEMETRY, TOPICS, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.controllers import Controller
 from robot_runtime.control.experiments import Experiments
@@ -63,13 +62,6 @@ from robot_runtime.vision.node import VisionNode
 
 log = logging.getLogger(__name__)
 
-_ROW_OF = {
-    Imu.type: "imu",
-    Depth.type: "depth",
-    Beacon.type: "beacon",
-    Motor.type: "motor",
-    Status.type: "status",
-}
 PUBLISH_EVERY = 0.1
 """s between two publications when no message of the board triggers one."""
 _STATE_EVERY = 1.0
@@ -112,7 +104,7 @@ class Core:
         self._piloted = False
         self.line = line
         self._paces = [
-            Pace(topic=_ROW_OF[packet.type], period=period)
+            Pace(topic=TELEMETRY[packet.type], period=period)
             for packet, period in periods(config.link.baud).items()
         ]
         self.board_parameters = BoardParameters(clock, line.send, config.link.baud)
@@ -352,7 +344,7 @@ class Core:
         detector.see_messages()
         attitude: bytes | None = None
         for message in messages:
-            topic = _ROW_OF.get(message.type)
+            topic = TELEMETRY.get(message.type)
             if topic is not None:
                 self.bus.publish_row(topic, message.time, message.payload)
             if message.type == Depth.type:

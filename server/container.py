@@ -8,9 +8,10 @@ from dataclasses import asdict
 from typing import Any
 
 from robot_runtime.clock import Clock, SteadyClock
-from robot_runtime.contract.topics import Block
+from robot_runtime.contract.topics import SENT_BY
 from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import Block
 from server.features.backup.download import Downloads
 from server.features.comm_tests.board_reservation import Board, Handover
 from server.features.comm_tests.lab import Lab
@@ -47,7 +48,7 @@ from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
-from server.stream.bridge import SENT_BY, Bridge, RuntimeSilentError
+from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Hub
 
 HEALTH_SECONDS = 1.0

@@ -421,7 +421,7 @@ def _require_between(name: str, value: float, low: float, high: float) -> None:
 
 
 def is_required(one: Field[Any]) -> bool:
-    """Whether a command must have a value for this field."""
+    """True if a command must have a value for this field."""
     return one.default is MISSING and one.default_factory is MISSING
 
 

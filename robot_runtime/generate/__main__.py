@@ -10,6 +10,7 @@ from robot_runtime.generate.configuration import configuration_page
 from robot_runtime.generate.faults import faults_page
 from robot_runtime.generate.packets import packets_page
 from robot_runtime.generate.parameters import parameters_page
+from robot_runtime.generate.topics import topics_page
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -36,6 +37,7 @@ def main() -> int:
         "docs/reference/faults.md": faults_page(),
         "docs/reference/packets.md": packets_page(),
         "docs/reference/parameters.md": parameters_page(),
+        "docs/reference/topics.md": topics_page(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

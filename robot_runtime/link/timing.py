@@ -4,7 +4,7 @@ The board sends as firmware/src/schedule.h says. In ten slots of 10 ms each, or 
 where that would be more than four, in three slots, with Depth in all of them.
 """
 
-from robot_runtime.contract.packets import FRAME_BYTES_MAX, Beacon, Depth, Imu, Motor, Packet, Status
+from robot_runtime.contract.packets import FRAME_BYTES_MAX, PACKETS, Packet
 
 TICK = 0.01
 """s, of the board's main loop."""
@@ -13,8 +13,9 @@ PERIODS_MISSED = 3
 _BITS_PER_BYTE = 10
 _FRAME_OVERHEAD = 8
 _SLOT_TICKS_MAX = 4
-_SAMPLES_IN_TEN: dict[type[Packet], int] = {Imu: 10, Motor: 5, Depth: 5, Beacon: 1, Status: 1}
-_SAMPLES_IN_THREE: dict[type[Packet], int] = {Imu: 1, Motor: 1, Depth: 3, Beacon: 1, Status: 1}
+_TELEMETRY = [(packet, packet.telemetry) for packet in PACKETS.values() if packet.telemetry is not None]
+_SAMPLES_IN_TEN = {packet: samples.in_ten for packet, samples in _TELEMETRY}
+_SAMPLES_IN_THREE = {packet: samples.in_three for packet, samples in _TELEMETRY}
 
 
 def airtime(size: int, baud: int) -> float:

@@ -9,7 +9,8 @@ from collections import defaultdict
 from collections.abc import Callable
 
 from robot_runtime.contract.documents import Document
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents, row
 from robot_runtime.transport.replay_cache import ReplayCache
 
 STREAM = "stream"

@@ -10,7 +10,8 @@ from typing import Self
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, HEADER, NUMBERS, Block, is_after, read_blocks
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import HEADER, NUMBERS, Block, is_after, read_blocks
 
 SECONDS = 300.0
 """As much as the page's charts show."""

@@ -7,9 +7,10 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
-from robot_runtime.contract.topics import TIME, Block
+from robot_runtime.contract.topics import TIME
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.transport.blocks import Block
 from server import VERSION
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -67,8 +68,8 @@ class Watch:
         """Take note of a block."""
         now = self._clock.now()
         self._newest[block.topic.name] = (now, block)
-        if block.topic.name != "notice":
-            self.heard["simulator" if block.topic.name == "truth" else "runtime"] = now
+        if block.topic.sender in self.heard:
+            self.heard[block.topic.sender] = now
         if block.topic.name == "link":
             self._see_link(block, now)
 

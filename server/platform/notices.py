@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract import documents
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents
 
 
 class Notices:

@@ -15,9 +15,10 @@ from functools import partial
 from typing import Any
 
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, RECORDED, Block, read_blocks
+from robot_runtime.contract.topics import SENT_BY
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import Block, read_blocks
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
@@ -40,14 +41,6 @@ KEPT_PAUSE = 0.1
 """s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
 CONTACT_SECONDS = 10.0
 """For which a server that starts waits for processes that a killed one has left."""
-
-_TRUTH, _NOTICE = BY_NAME["truth"], BY_NAME["notice"]
-SENT_BY = {
-    "runtime": tuple(one for one in RECORDED if one not in (_TRUTH, _NOTICE)),
-    "simulator": (_TRUTH,),
-}
-"""What the processes send that number it; notices are the server's own."""
-
 
 QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
 """Where the processes answer for what they have kept."""
@@ -277,8 +270,8 @@ class Bridge:
             if name != STREAM:
                 self._pass_on(blocks)
             elif blocks:
-                sender = "simulator" if blocks[0].topic is _TRUTH else "runtime"
-                self._sources[sender].take(run, blocks)
+                source = self._sources.get(blocks[0].topic.sender, self._sources["runtime"])
+                source.take(run, blocks)
         self._emptying = False
         self._hand_over()
 

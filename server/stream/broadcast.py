@@ -9,14 +9,13 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 
-from robot_runtime.contract.topics import BY_ID, Block, Kind, Topic
+from robot_runtime.contract.topics import BY_ID, Kind, Topic
+from robot_runtime.transport.blocks import Block
 
 CHUNK_SECONDS = 2.0
 CHUNK_BLOCKS = 100
 COUNT_MAX = 65_535
 """Samples in one block."""
-NEWEST_ONLY = frozenset({"state", "detection", "parameters"})
-"""Topics whose every document says all: a page that connects has no use for the earlier ones."""
 
 Totals = dict[int, int]
 """Samples of each topic, by its number, since the server started."""
@@ -139,7 +138,7 @@ class History:
     def add(self, block: Block, tick: int, now: float) -> None:
         """Keep a block that goes out at `tick`, at `now` (s, steady clock)."""
         past = self._topics.setdefault(block.topic.id, _Past(block.topic))
-        if block.topic.name in NEWEST_ONLY:
+        if block.topic.newest_only:
             past.forget_all()
         # What a server takes over from an earlier one is older than now.
         past.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)

@@ -8,7 +8,8 @@ While a question for them is out, what arrives waits, so that everything is pass
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 
-from robot_runtime.contract.topics import Block, Topic
+from robot_runtime.contract.topics import Topic
+from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.replay_cache import BacklogReply
 
 Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]

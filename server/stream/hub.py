@@ -13,7 +13,8 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import Block, Kind
+from robot_runtime.contract.topics import Kind
+from robot_runtime.transport.blocks import Block
 from server.stream.broadcast import History, Lane, Totals
 
 HISTORY_SECONDS = 600.0

@@ -19,8 +19,9 @@ from sqlalchemy import Engine
 from sqlalchemy.pool import Pool
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import BY_NAME, Block, row
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.experiments.comm_test.document import read_document
+from robot_runtime.transport.blocks import Block, row
 from server.cli import main
 from server.features.comm_tests.runs import Runs
 from server.features.exports.jobs import Jobs

@@ -10,7 +10,8 @@ from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from robot_runtime.contract.topics import Kind, read_blocks
+from robot_runtime.contract.topics import Kind
+from robot_runtime.transport.blocks import read_blocks
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack

@@ -32,10 +32,11 @@ from robot_runtime.contract.packets import (
     StatusFlag,
     Stop,
 )
-from robot_runtime.contract.topics import Kind, read_blocks, read_rows
+from robot_runtime.contract.topics import Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.pilot import PILOT
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import ZenohTransport

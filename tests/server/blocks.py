@@ -5,7 +5,8 @@ from typing import Any
 
 from robot_runtime.contract import documents, packets
 from robot_runtime.contract.link_statistics import LinkStatistics
-from robot_runtime.contract.topics import BY_NAME, Block, Kind, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME, Kind
+from robot_runtime.transport.blocks import Block, pack_documents, row
 
 
 def depth_record(number: int) -> packets.Depth:

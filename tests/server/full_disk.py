@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import BY_NAME, Block, row
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import Block, row
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import Runs
 from server.features.scenarios.library import _shipped, keep_scenario

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any, Self
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.contract.topics import Block, Kind
+from robot_runtime.contract.topics import Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport

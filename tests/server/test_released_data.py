@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from robot_runtime.contract.topics import read_blocks
+from robot_runtime.transport.blocks import read_blocks
 from server.cli import main
 from server.platform.settings import Settings
 from tests.server.serving import serve

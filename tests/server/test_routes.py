@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 import server.stream.bridge as bridge_module
-from robot_runtime.contract.topics import read_blocks
+from robot_runtime.transport.blocks import read_blocks
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
 from server.processes.supervisor import Command

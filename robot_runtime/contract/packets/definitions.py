@@ -9,7 +9,7 @@ the front fins, outwards and forward for the back fins) and grows as the tip goe
 from collections.abc import Callable
 from enum import IntEnum, IntFlag
 from hashlib import sha256
-from typing import Annotated, ClassVar, TypeVar, dataclass_transform
+from typing import Annotated, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
 from robot_runtime.contract.packets.chip_parameters import CHIP_PARAMETERS
 from robot_runtime.contract.packets.layout import LayoutError, Record, Text, Wire, record
@@ -23,6 +23,7 @@ NOT_READY = 0x80
 
 Micros = Annotated[int, Wire("I", unit="µs", meaning="the board's own clock, which wraps after 71 minutes")]
 Fins = tuple[float, float, float, float]
+Quaternion = tuple[float, float, float, float]
 
 
 class DebugLevel(IntEnum):
@@ -67,6 +68,13 @@ class ResetCause(IntEnum):
     WATCHDOG = 4
 
 
+class TelemetryRate(NamedTuple):
+    """Packets that the board sends by itself in ten slots of its schedule, or on a slow line in three."""
+
+    in_ten: int
+    in_three: int
+
+
 class Packet(Record):
     """Base of everything on the line: a record with a type number.
 
@@ -76,6 +84,7 @@ class Packet(Record):
     __slots__ = ()
     type: ClassVar[int]
     reliable: ClassVar[bool]
+    telemetry: ClassVar[TelemetryRate | None]
 
 
 P = TypeVar("P", bound=Packet)
@@ -83,11 +92,14 @@ PACKETS: dict[int, type[Packet]] = {}
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
-def _packet(type_: int, *, reliable: bool = False) -> Callable[[type[P]], type[P]]:
+def _packet(
+    type_: int, *, reliable: bool = False, telemetry: TelemetryRate | None = None
+) -> Callable[[type[P]], type[P]]:
     def register(cls: type[P]) -> type[P]:
         made = record()(cls)
         made.type = type_
         made.reliable = reliable
+        made.telemetry = telemetry
         PACKETS[type_] = made
         return made
 
@@ -118,13 +130,13 @@ class Navigation(Packet):
     yaw: Annotated[float, Wire("b", scale=1 / 127, meaning="to the right")]
 
 
-@_packet(0x03)
+@_packet(0x03, telemetry=TelemetryRate(10, 1))
 class Imu(Packet):
     """Board to host, 100 Hz: attitude, turn rate and specific force, body axes forward, right, down."""
 
     time: Micros
     attitude: Annotated[
-        Fins,
+        Quaternion,
         Wire("h", scale=2**-14, count=4, meaning="unit quaternion w, x, y, z that turns body into world"),
     ]
     rate: Annotated[
@@ -137,7 +149,7 @@ class Imu(Packet):
     ]
 
 
-@_packet(0x04)
+@_packet(0x04, telemetry=TelemetryRate(5, 3))
 class Depth(Packet):
     """Board to host, 50 Hz: depth below the surface, from pressure."""
 
@@ -147,7 +159,7 @@ class Depth(Packet):
     temperature: Annotated[float, Wire("h", scale=0.01, unit="°C", meaning="temperature of the water")]
 
 
-@_packet(0x05)
+@_packet(0x05, telemetry=TelemetryRate(1, 1))
 class Beacon(Packet):
     """Board to host, 10 Hz: which light-beacon detectors hear their tone."""
 
@@ -156,7 +168,7 @@ class Beacon(Packet):
     left: Annotated[int, Wire("B", meaning="1 while the left detector sees the beacon")]
 
 
-@_packet(0x06)
+@_packet(0x06, telemetry=TelemetryRate(5, 1))
 class Motor(Packet):
     """Board to host, 50 Hz: the four fins, wanted and measured, and what drives them."""
 
@@ -184,7 +196,7 @@ class Hello(Packet):
     credit: Annotated[int, Wire("H", unit="B", meaning="bytes that the sender can take in at once")]
 
 
-@_packet(0x0B)
+@_packet(0x0B, telemetry=TelemetryRate(1, 1))
 class Status(Packet):
     """Board to host, 10 Hz: its state and its health."""
 

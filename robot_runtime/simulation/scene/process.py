@@ -21,13 +21,14 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.scene_picture import Picture, Request, read_request, write_picture
-from robot_runtime.contract.topics import BY_NAME, Block, read_blocks, read_rows, row
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.simulation.scene.contents import Contents, SceneWater, Targets
 from robot_runtime.simulation.scene.view import ObserverView
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import Basin, check_beacons
+from robot_runtime.transport.blocks import Block, read_blocks, read_rows, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 if TYPE_CHECKING:

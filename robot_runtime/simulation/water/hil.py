@@ -15,12 +15,12 @@ from typing import Any
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
+from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO
 
 from sqlmodel import col, select
 
+from robot_runtime.contract.topics import LINES
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, level, stamp
@@ -23,7 +24,6 @@ from server.platform.store import Reader
 LIBRARY = "mucat"
 LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/camera"
 IMAGE = "foxglove.CompressedImage"
-LOGGED = ("debug", "event", "notice")
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
 ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
@@ -152,7 +152,7 @@ def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
         data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
-        yield (time, place, data, {**document, "topic": name} if name in LOGGED else None)
+        yield (time, place, data, {**document, "topic": name} if name in LINES else None)
 
 
 def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:

@@ -19,8 +19,8 @@ from struct import Struct
 from typing import Any
 
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import Block, read_blocks
 from robot_runtime.experiments.scenario.document import Scenario
+from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import Run, RunFailedError
 from server.features.sessions.recorder import Recorder

@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import Block
+from robot_runtime.transport.blocks import Block
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.platform.models import SessionRow
 from server.platform.notices import Notices

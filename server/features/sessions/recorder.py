@@ -22,7 +22,8 @@ from sqlalchemy import Connection, insert, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, RECORDED, Block, Topic
+from robot_runtime.contract.topics import BY_NAME, RECORDED, Topic
+from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
 from server.features.sessions.resume import Left, Missing, find_left
 from server.features.sessions.schemas import Session

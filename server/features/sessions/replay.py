@@ -14,7 +14,8 @@ from typing import Any
 
 from sqlmodel import col, select
 
-from robot_runtime.contract.topics import BY_NAME, TIME, Block, Kind, Topic
+from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, TIME, Kind, Topic
+from robot_runtime.transport.blocks import Block
 from server import VERSION
 from server.features.sessions.chunks import (
     DOCUMENTS_ENCODING,
@@ -31,14 +32,10 @@ from server.platform.models import Chunk
 
 RANGE_MAX = 120.0
 """s of one answer."""
-HISTORY_MAX = 300.0
+HISTORY_MAX = CHART_SECONDS
 """s before the start that the page's charts can show."""
 BYTES_MAX = 16_000_000
 """Of one answer; two minutes at the robot's full rate are 2 MB."""
-CHARTED = {"depth": HISTORY_MAX, "control": HISTORY_MAX, "navigation": 60.0, "detection": 10.0}
-"""Topics of which the page shows the time before, too, and how much of it at most (s)."""
-LISTED = frozenset({"debug", "event", "notice"})
-"""Topics that the page lists line by line."""
 LISTED_CHUNKS = 300
 STATE = BY_NAME["state"]
 COUNT_MAX = 65_535
@@ -88,7 +85,7 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
-    before it, of `CHARTED` at most so much time before it, of `LISTED` the last lines. Raises
+    before it, of what charts need at most so much time before it, of lines the last ones. Raises
     TooMuchDataError, StoreError.
     """
     if end - start > RANGE_MAX:
@@ -132,7 +129,7 @@ def _first_state(recording: Recording) -> list[tuple[float, Block]]:
 def _range(name: str, start: float, end: float, history: float | None) -> _Range:
     if history is None:
         return _Range(start, start, end, newest=False)
-    since = -inf if name in LISTED else start - min(history, CHARTED.get(name, 0.0))
+    since = -inf if name in LINES else start - min(history, BY_NAME[name].charted)
     return _Range(since, start, end, newest=True)
 
 

@@ -8,7 +8,8 @@ from sqlmodel import col, func, select
 
 from robot_runtime.clock import boot
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, Topic
+from robot_runtime.contract.topics import BY_NAME, Topic
+from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.replay_cache import BacklogReply
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Store

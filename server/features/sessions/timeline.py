@@ -8,7 +8,8 @@ from itertools import chain, islice, pairwise
 from pydantic import BaseModel, Field
 from sqlmodel import col, select
 
-from robot_runtime.contract.documents import Severity
+from robot_runtime.contract.documents import Event, Severity
+from robot_runtime.contract.topics import TOPICS
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.recording import Recording
 from server.features.sessions.schemas import Mark, State
@@ -76,7 +77,7 @@ def read_timeline(recording: Recording) -> Timeline:
 def read_events(recording: Recording, most: int) -> list[Moment]:
     """Events of runtime and server in the order of time, the first `most`. Raises StoreError."""
     origin = recording.row.started_steady
-    topics = [topic for topic in ("event", "notice") if topic in recording.topics]
+    topics = [one.name for one in TOPICS if one.record is Event and one.name in recording.topics]
     documents = (islice(recording.documents(topic), most) for topic in topics)
     found = [
         Moment(one["time"] - origin, one["kind"], one["severity"], one["text"])

@@ -9,7 +9,7 @@ from typing import Any
 
 from robot_runtime.contract.documents import Control
 from robot_runtime.contract.packets import Motor
-from robot_runtime.contract.topics import Block, read_rows
+from robot_runtime.transport.blocks import Block, read_rows
 
 DIGITS = 6
 """Of the seconds and values that are kept."""

@@ -12,8 +12,8 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.commands import EndExperimentCommand
 from robot_runtime.contract.documents import ExperimentPhase
-from robot_runtime.contract.topics import Block
 from robot_runtime.errors import RefusedError
+from robot_runtime.transport.blocks import Block
 from server.features.parameters.changes import Changes
 from server.features.tuning.curve import Gathering
 from server.features.tuning.figure_definitions import is_angle

@@ -7,7 +7,8 @@ import pytest
 from robot_runtime.contract.documents import DebugLine
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, Block, Kind, read_blocks, read_rows
+from robot_runtime.contract.topics import BY_NAME, Kind
+from robot_runtime.transport.blocks import Block, read_blocks, read_rows
 from robot_runtime.transport.outbox import Outbox
 
 

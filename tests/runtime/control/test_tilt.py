@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 
 from robot_runtime.contract.documents import Truth
-from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.control.attitude import euler_angles, wrap_angle
 from robot_runtime.control.controllers import Tilt
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.transport.blocks import read_blocks, read_rows
 
 SECONDS = 0.1
 TURN, END = 15.0, 40.0

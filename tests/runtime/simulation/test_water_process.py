@@ -17,10 +17,10 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents
-from robot_runtime.contract.topics import read_blocks, read_rows
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import PERIOD, WaterProcess
+from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET
 

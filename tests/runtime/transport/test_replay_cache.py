@@ -8,7 +8,8 @@ import robot_runtime.transport.replay_cache as cache_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import DebugLine
 from robot_runtime.contract.packets.layout import LayoutError
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import NUMBERS, Block
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from tests.server.blocks import debug_block, depth_block, depth_record

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import Block
+from robot_runtime.transport.blocks import Block
 from server.health.monitor import GRACE_SECONDS, Watch
 from server.platform.settings import Settings
 from server.platform.store import Store

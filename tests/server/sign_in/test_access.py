@@ -10,7 +10,7 @@ import pytest
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from robot_runtime.contract.topics import read_blocks
+from robot_runtime.transport.blocks import read_blocks
 from server.http.sign_in.devices import Devices
 from server.platform.settings import Settings
 from tests.server.serving import Served, next_text, play, serve

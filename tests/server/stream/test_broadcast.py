@@ -1,7 +1,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.contract.topics import BY_NAME, Topic, read_blocks
+from robot_runtime.contract.topics import BY_NAME, Topic
+from robot_runtime.transport.blocks import read_blocks
 from server.stream.broadcast import CHUNK_SECONDS, History, Lane
 from tests.server.blocks import debug_block, depth_block, link_block, state_block
 

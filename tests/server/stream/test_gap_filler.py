@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import BY_NAME, Block
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.stream.gap_filler import Source
 from tests.server.blocks import debug_block, depth_block

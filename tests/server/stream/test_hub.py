@@ -7,7 +7,7 @@ import pytest
 
 import server.stream.hub as hub_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import read_blocks
+from robot_runtime.transport.blocks import read_blocks
 from server.stream.hub import DOCUMENTS_MESSAGES, ROWS_MESSAGES, Client, EvictedError, Hub
 from tests.server.blocks import debug_block, depth_block, picture_block
 from tests.server.waiting import until

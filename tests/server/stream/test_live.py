@@ -11,7 +11,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 import server.stream.hub as hub_module
 from robot_runtime.contract.packets import DEFINITIONS_HASH
-from robot_runtime.contract.topics import Block, read_blocks
+from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.live.routes import NONSENSE_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
 from server.platform.settings import Settings

@@ -5,10 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.contract.topics import Kind, read_blocks, read_rows
+from robot_runtime.contract.topics import Kind
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.transport.blocks import read_blocks, read_rows
 
 ROOT = Path(__file__).resolve().parents[4]
 POOL = 'kind = "pool"\ndepth = 3.0\nlength = 10.0\nwidth = 5.0'

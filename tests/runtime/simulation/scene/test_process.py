@@ -22,7 +22,7 @@ from robot_runtime.contract.scene_picture import (
     write_picture,
     write_request,
 )
-from robot_runtime.contract.topics import BY_NAME, Block, Kind, read_blocks, row
+from robot_runtime.contract.topics import BY_NAME, Kind
 from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.simulation.scene import process as process_module
 from robot_runtime.simulation.scene.availability import missing
@@ -30,6 +30,7 @@ from robot_runtime.simulation.scene.process import SceneProcess
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
+from robot_runtime.transport.blocks import Block, read_blocks, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.node import VisionNode
 from tests.runtime.simulation.scene.harness import truth

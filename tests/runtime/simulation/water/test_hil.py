@@ -10,11 +10,12 @@ from math import sin
 import pytest
 
 from robot_runtime.contract.packets import Motor, Sense
-from robot_runtime.contract.topics import BY_NAME, Block, row
+from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.hil import GAP_MAX, HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
+from robot_runtime.transport.blocks import Block, row
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 DEADLINE = 10.0

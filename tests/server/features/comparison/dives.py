@@ -10,7 +10,8 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents, packets
 from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
 from server.platform.notices import Notices

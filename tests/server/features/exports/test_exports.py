@@ -22,7 +22,8 @@ from sqlalchemy import insert
 from robot_runtime.contract.documents import Control, Event, Truth
 from robot_runtime.contract.packets import Imu
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
 from server.features.exports.mcap_schemas import WELL_KNOWN

@@ -14,7 +14,8 @@ from sqlalchemy import Connection, text
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets import Motor
-from robot_runtime.contract.topics import BY_NAME, Block, read_rows, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, read_rows, row
 from server.features.exports.description import file_name
 from server.features.exports.schemas import Wanted
 from server.features.exports.selection import Source

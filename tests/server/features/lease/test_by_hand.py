@@ -13,7 +13,8 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from robot_runtime.contract.packets import Navigation
-from robot_runtime.contract.topics import BY_NAME, TIME, read_blocks
+from robot_runtime.contract.topics import BY_NAME, TIME
+from robot_runtime.transport.blocks import read_blocks
 from server.platform.settings import DataFolder
 from tests.proofs.watching import Fins, wait
 from tests.shell import shell_headers

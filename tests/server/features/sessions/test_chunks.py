@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.contract.topics import TOPICS, Block, Kind, read_rows, row
+from robot_runtime.contract.topics import TOPICS, Kind
+from robot_runtime.transport.blocks import Block, read_rows, row
 from server.features.sessions import chunks
 from tests.server.blocks import debug_block, depth_block
 

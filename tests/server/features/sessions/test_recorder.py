@@ -13,7 +13,8 @@ from sqlmodel import col, select
 
 import server.features.sessions.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.chunks import decode_rows
 from server.features.sessions.recorder import Recorder, RecordingRefusedError

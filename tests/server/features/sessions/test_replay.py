@@ -14,10 +14,11 @@ from sqlalchemy import Connection, insert, text
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.packets import Depth
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, read_blocks, read_rows, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents, read_blocks, read_rows, row
 from server.features.sessions.chunks import encode_rows
 from server.features.sessions.recording import Recording
-from server.features.sessions.replay import CHARTED, LISTED_CHUNKS, RANGE_MAX, TooMuchDataError, read_stretch
+from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, TooMuchDataError, read_stretch
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Hole, read_timeline
 from server.platform.models import Marker
@@ -124,7 +125,7 @@ def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> No
     assert [one["set_point"] for one in told(stretch.data, "state")] == [0.7]
     assert [one["text"] for one in told(stretch.data, "debug")] == ["line 0"]
     assert [int(record.time) for _, record in depths(stretch.data)] == list(range(650, 800))
-    assert "depth" in CHARTED
+    assert BY_NAME["depth"].charted > 0
     # Without a history, only what lies in the range.
     assert {one.topic.name for one in read_blocks(read_stretch(recording, 115.0, 116.0).data)} == {"depth"}
 

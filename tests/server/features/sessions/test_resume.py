@@ -10,14 +10,14 @@ from sqlalchemy import update
 
 import robot_runtime.transport.replay_cache as cache_module
 from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import BY_NAME, NUMBERS, Block, row
+from robot_runtime.contract.topics import BY_NAME, SENT_BY
+from robot_runtime.transport.blocks import NUMBERS, Block, row
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.resume import Missing, find_missing
 from server.platform.models import Chunk, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.stream.bridge import SENT_BY
 from tests.server.blocks import debug_block, depth_block
 from tests.server.features.sessions.test_recorder import Deck
 

@@ -14,7 +14,7 @@ import server.features.sessions.retention as tidying_module
 import server.features.sessions.storage as storage_module
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.config import SessionsConfig
-from robot_runtime.contract.topics import Block
+from robot_runtime.transport.blocks import Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.retention import BIN_SECONDS, DAY, Tidying

@@ -10,7 +10,8 @@ import httpx
 import pytest
 
 from robot_runtime.contract.documents import Control, Experiment
-from robot_runtime.contract.topics import BY_NAME, Block, pack_documents, row
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.tuning.runs import Runs
 from server.features.tuning.schemas import Force, StepStart
 from server.platform.settings import Settings
