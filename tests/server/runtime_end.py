@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from robot_runtime.clock import SteadyClock
+from robot_runtime.contract.commands import COMMANDS
 from robot_runtime.contract.topics import Kind
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
@@ -14,12 +15,6 @@ from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-
-COMMANDS = (
-    *("stop", "arm", "mode", "check_fins", "acknowledge"),
-    *("controller", "loop", "set_points", "steering", "card", "vision", "vision_settings"),
-    *("experiment", "end_experiment", "parameters"),
-)
 
 
 class RuntimeEnd:
@@ -34,7 +29,7 @@ class RuntimeEnd:
         self.epochs: list[int] = []
         self.driven: list[dict[str, Any]] = []
         self.refusal: str | None = None
-        self.gates = {name: threading.Event() for name in COMMANDS}
+        self.gates = {name: threading.Event() for name in COMMANDS if name != "lease"}
         self._messages = ZenohTransport(robot, listen=[f"unixsock-stream/{socket}"])
         for name, gate in self.gates.items():
             gate.set()
