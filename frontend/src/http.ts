@@ -60,6 +60,13 @@ export function request<T>(method: string, path: string, body?: object, timeout?
   });
 }
 
+/** Several answers as one: all values, or the first problem. */
+export async function together<T>(requests: readonly Promise<Answer<T>>[]): Promise<Answer<T[]>> {
+  const answers = await Promise.all(requests);
+  const failed = answers.find((answer) => 'problem' in answer);
+  return failed ?? { value: answers.flatMap((answer) => ('value' in answer ? [answer.value] : [])) };
+}
+
 export async function command(method: string, path: string, body?: object, timeout?: number): Promise<string | null> {
   const answer = await request<null>(method, path, body, timeout);
   return 'problem' in answer ? answer.problem : null;
