@@ -37,8 +37,6 @@ export class Frame {
     private readonly host: HTMLElement,
     options: FrameOptions,
   ) {
-    const grid = { stroke: token('line'), width: 1 };
-    const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
     this.#plot = new uPlot(
       {
         width: host.clientWidth,
@@ -50,22 +48,7 @@ export class Frame {
           x: { time: false, auto: false, range: (_plot, low, high) => [low, high] },
           y: { auto: false, dir: options.downwards ? -1 : 1, range: (_plot, low, high) => [low, high] },
         },
-        axes: [
-          {
-            ...axis,
-            size: options.foot ? FOOT : 0,
-            gap: 8,
-            splits: () => this.#splits(),
-            values: (_plot, splits) => (options.foot ? splits.map((at) => this.#label(at, options.edge)) : splits.map(() => '')),
-          },
-          {
-            ...axis,
-            size: AXIS,
-            gap: 6,
-            space: 30,
-            values: (_plot, splits) => splits.map((value) => `${Number(value.toPrecision(6))} ${options.unit}`.replace('-', '\u2212')),
-          },
-        ],
+        axes: this.#axes(options),
         series: [{}, { paths: () => null, points: { show: false } }],
       },
       [
@@ -101,6 +84,26 @@ export class Frame {
 
   destroy(): void {
     this.#plot.destroy();
+  }
+
+  #axes({ foot, edge, unit }: FrameOptions): uPlot.Axis[] {
+    const grid = { stroke: token('line'), width: 1 };
+    const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
+    const times: uPlot.Axis = {
+      ...axis,
+      size: foot ? FOOT : 0,
+      gap: 8,
+      splits: () => this.#splits(),
+      values: (_plot, splits) => splits.map((at) => (foot ? this.#label(at, edge) : '')),
+    };
+    const values: uPlot.Axis = {
+      ...axis,
+      size: AXIS,
+      gap: 6,
+      space: 30,
+      values: (_plot, splits) => splits.map((value) => `${Number(value.toPrecision(6))} ${unit}`.replace('-', '\u2212')),
+    };
+    return [times, values];
   }
 
   get #step(): number {

@@ -86,12 +86,25 @@ export function drawPicture(
     const rowAxis = { domain: [1 - rows / inside, 1], range, fixedrange: true, showgrid: false, zeroline: false, showticklabels: false };
     axes.push([`yaxis${suffix(charts.length)}`, rowAxis]);
   }
-  const font = { family: look.font, size: 12, color: look.muted };
   const layout = {
     ...(Object.fromEntries(axes) as Partial<Layout>),
+    ...frameOf(comparison, view, look, charts.length),
+    width,
+    height,
+    margin: { l: narrow ? LEFT_NARROW : LEFT, r: RIGHT, t: ABOVE, b: BELOW, pad: 0 },
+    annotations: charts.map((chart, place) => heading(chart, places[place]?.[1] ?? 1, look, narrow)),
+    shapes: [...moments(sessions, comparison, look), ...(pointed ? [pointedShape(pointed, sessions, charts, look)] : [])],
+  } as unknown as Partial<Layout>;
+  return { data, layout, height };
+}
+
+/** The axis of time, and how the picture looks and answers the pointer. */
+function frameOf(comparison: Comparison, view: View, look: Look, charts: number) {
+  const font = { family: look.font, size: 12, color: look.muted };
+  return {
     xaxis: {
       range: [view.start, view.end],
-      anchor: `y${suffix(charts.length - 1)}`,
+      anchor: `y${suffix(charts - 1)}`,
       gridcolor: look.line,
       zeroline: true,
       zerolinecolor: look.muted,
@@ -100,9 +113,6 @@ export function drawPicture(
       title: { text: axisTitle(comparison), standoff: 8, font },
       hoverformat: '.2f',
     },
-    width,
-    height,
-    margin: { l: narrow ? LEFT_NARROW : LEFT, r: RIGHT, t: ABOVE, b: BELOW, pad: 0 },
     paper_bgcolor: CLEAR,
     plot_bgcolor: CLEAR,
     font,
@@ -111,10 +121,7 @@ export function drawPicture(
     hovermode: 'x unified',
     hoversubplots: 'axis',
     hoverlabel: { bgcolor: look.panel, bordercolor: look.line, font: { ...font, color: look.text }, namelength: -1 },
-    annotations: charts.map((chart, place) => heading(chart, places[place]?.[1] ?? 1, look, narrow)),
-    shapes: [...moments(sessions, comparison, look), ...(pointed ? [pointedShape(pointed, sessions, charts, look)] : [])],
-  } as unknown as Partial<Layout>;
-  return { data, layout, height };
+  };
 }
 
 export function axisTitle({ align }: Comparison): string {

@@ -28,8 +28,6 @@ export interface CurvePlotOptions {
 /** A chart of these lines; `setLines` gives it others as long as they are as many. */
 export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], options: CurvePlotOptions): uPlot {
   const { what, loop } = options;
-  const grid = { stroke: token('line'), width: 1 };
-  const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
   const values = what === 'values';
   return new uPlot(
     {
@@ -42,25 +40,8 @@ export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], 
         x: { time: false },
         y: { dir: values && loop.downwards ? -1 : 1, range: (_plot, low, high) => (values ? padded(low, high) : [-1.08, 1.08]) },
       },
-      axes: [
-        { ...axis, size: 28, gap: 8, values: (_plot, splits) => splits.map((at) => `${Number(at.toFixed(4))} s`.replace('-', '\u2212')) },
-        {
-          ...axis,
-          size: AXIS,
-          gap: 6,
-          space: 28,
-          ...(values ? {} : { splits: () => [-1, 0, 1] }),
-          values: (_plot, splits) =>
-            splits.map((at) => (values ? `${Number(at.toFixed(4))} ${loop.unit}` : `${100 * at} %`).replace('-', '\u2212')),
-        },
-      ],
-      series: [
-        {},
-        ...lines.flatMap((line): uPlot.Series[] => [
-          ...(values ? [{ label: `${line.label}, set point`, stroke: line.colour, width: 1.25, dash: [6, 5], points: { show: false }, alpha: 0.8, paths: stepped }] : []),
-          { label: line.label, stroke: line.colour, width: 2, points: { show: false }, ...(values ? {} : { paths: stepped }) },
-        ]),
-      ],
+      axes: axesOf(options),
+      series: [{}, ...lines.flatMap((line) => seriesOf(line, values))],
       hooks: {
         drawAxes: [drawStart],
         setCursor: [(plot) => options.hover(plot.cursor.left !== undefined && plot.cursor.left >= 0 ? (plot.cursor.idx ?? null) : null)],
@@ -69,6 +50,33 @@ export function createCurvePlot(host: HTMLElement, lines: readonly CurveLine[], 
     columns(lines, what),
     host,
   );
+}
+
+function axesOf({ what, loop }: CurvePlotOptions): uPlot.Axis[] {
+  const grid = { stroke: token('line'), width: 1 };
+  const axis = { stroke: token('muted'), font: canvasFont('small'), grid, ticks: { show: false } };
+  const values = what === 'values';
+  const label = (at: number) => (values ? `${Number(at.toFixed(4))} ${loop.unit}` : `${100 * at} %`);
+  return [
+    { ...axis, size: 28, gap: 8, values: (_plot, splits) => splits.map((at) => `${Number(at.toFixed(4))} s`.replace('-', '\u2212')) },
+    {
+      ...axis,
+      size: AXIS,
+      gap: 6,
+      space: 28,
+      ...(values ? {} : { splits: () => [-1, 0, 1] }),
+      values: (_plot, splits) => splits.map((at) => label(at).replace('-', '\u2212')),
+    },
+  ];
+}
+
+function seriesOf({ label, colour }: CurveLine, values: boolean): uPlot.Series[] {
+  const points = { show: false };
+  if (!values) return [{ label, stroke: colour, width: 2, points, paths: stepped }];
+  return [
+    { label: `${label}, set point`, stroke: colour, width: 1.25, dash: [6, 5], points, alpha: 0.8, paths: stepped },
+    { label, stroke: colour, width: 2, points },
+  ];
 }
 
 /** One table of all lines, whose times need not be the same. */
