@@ -9,7 +9,6 @@ import click
 from server.platform.command_line import CommandError, with_settings
 from server.platform.folder_lock import claim
 from server.platform.settings import Settings, SetupError
-from server.processes.server_runner import ServerRunner
 
 if TYPE_CHECKING:
     from server.http.sign_in.access import Access
@@ -34,6 +33,7 @@ def _serve(settings: Settings) -> int:
     from server.platform.certificate import prepare_certificate
     from server.platform.running_server import announce
     from server.platform.schema import prepare
+    from server.processes.server_runner import ServerRunner
     from server.processes.supervisor import plan
 
     if settings.emulated_board:
