@@ -39,9 +39,32 @@ def follow(page: str, tree: Path) -> None:
 
 
 def changed_modules(page: str) -> list[str]:
-    """The files of the product that the page has somebody write or change; tests are not counted."""
+    """The modules of the product that the page has somebody write or change."""
     titles = dict.fromkeys(block.title for block in read_blocks(page) if block.title)
-    return [title for title in titles if not title.startswith("tests/")]
+    return [title for title in titles if title.startswith(("robot_runtime/", "server/", "frontend/"))]
+
+
+def test_a_packet_is_added(tree: Path) -> None:
+    follow("develop/add-a-packet.md", tree)
+    assert "struct Leak {" in (tree / "firmware/src/packets.gen.h").read_text()
+    assert "  leak: LeakRow;" in (tree / "frontend/src/generated/topics.ts").read_text()
+    assert "## Leak\n" in (tree / "docs/reference/packets.md").read_text()
+    assert len(changed_modules("develop/add-a-packet.md")) == 2
+
+
+def test_a_topic_is_added(tree: Path) -> None:
+    follow("develop/add-a-topic.md", tree)
+    assert "  say: Event;" in (tree / "frontend/src/generated/topics.ts").read_text()
+    assert "what the robot says" in (tree / "docs/reference/topics.md").read_text()
+    assert len(changed_modules("develop/add-a-topic.md")) == 1
+
+
+def test_a_command_is_added(tree: Path) -> None:
+    follow("develop/add-a-command.md", tree)
+    assert "## say\n" in (tree / "docs/reference/commands.md").read_text()
+    assert "| `POST /api/robot/commands/say` | control |" in (tree / "docs/reference/http.md").read_text()
+    assert "  say: SayCommand;" in (tree / "frontend/src/generated/commands.ts").read_text()
+    assert len(changed_modules("develop/add-a-command.md")) == 2
 
 
 def test_a_controller_is_added(tree: Path) -> None:
