@@ -46,7 +46,7 @@ def changed_modules(page: str) -> list[str]:
 
 def test_a_packet_is_added(tree: Path) -> None:
     follow("develop/add-a-packet.md", tree)
-    assert "struct Leak {" in (tree / "firmware/src/packets.gen.h").read_text()
+    assert "struct __attribute__((packed)) Leak" in (tree / "firmware/src/packets.gen.h").read_text()
     assert "  leak: LeakRow;" in (tree / "frontend/src/generated/topics.ts").read_text()
     assert "## Leak\n" in (tree / "docs/reference/packets.md").read_text()
     assert len(changed_modules("develop/add-a-packet.md")) == 2
@@ -54,7 +54,7 @@ def test_a_packet_is_added(tree: Path) -> None:
 
 def test_a_topic_is_added(tree: Path) -> None:
     follow("develop/add-a-topic.md", tree)
-    assert "  say: Event;" in (tree / "frontend/src/generated/topics.ts").read_text()
+    assert "  say: RobotEvent;" in (tree / "frontend/src/generated/topics.ts").read_text()
     assert "what the robot says" in (tree / "docs/reference/topics.md").read_text()
     assert len(changed_modules("develop/add-a-topic.md")) == 1
 
