@@ -1,0 +1,85 @@
+import asyncio
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.errors import RefusedError
+from server.features.lease.lease import NotInControlError
+from server.features.sessions.recording import RecordingError
+from server.features.sessions.session import UnknownSessionError
+from server.http.error_handlers import add_error_handlers
+from server.http.problems import answers
+from server.http.sign_in.pairing_codes import TooManyTriesError
+from server.platform.errors import ApiError
+from server.platform.store import StoreError
+from server.stream.bridge import RuntimeSilentError
+
+
+class TeapotError(ApiError):
+    """It is a teapot
+
+    What follows the first line is for whoever reads the source.
+    """
+
+    status = 418
+
+
+def ask(problem: Exception) -> httpx.Response:
+    """The answer of an application whose route raises this."""
+    app = FastAPI()
+    add_error_handlers(app)
+
+    @app.get("/")
+    async def fail() -> None:
+        raise problem
+
+    async def run() -> httpx.Response:
+        transport = httpx.ASGITransport(app, raise_app_exceptions=False)
+        async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+            return await client.get("/")
+
+    return asyncio.run(run())
+
+
+@pytest.mark.parametrize(
+    ("problem", "status", "detail"),
+    [
+        (TeapotError("Short and stout."), 418, "Short and stout."),
+        (NotInControlError("Take control first."), 423, "Take control first."),
+        (RuntimeSilentError("It is not running.", waited=False), 503, "It is not running."),
+        (RuntimeSilentError("It did not answer.", waited=True), 504, "It did not answer."),
+        (StoreError("the disk is full"), 503, "The database does not work: the disk is full."),
+        (RefusedError("Press STOP first."), 409, "Press STOP first."),
+        (ConfigError("a: too large", "b: unknown"), 422, "a: too large\nb: unknown"),
+    ],
+)
+def test_an_error_is_answered_with_its_status_and_text(problem: Exception, status: int, detail: str) -> None:
+    answer = ask(problem)
+    assert (answer.status_code, answer.json()) == (status, {"detail": detail})
+
+
+def test_a_recording_that_cannot_be_read_leaves_the_others_alone() -> None:
+    answer = ask(RecordingError("chunk 7 is damaged"))
+    assert answer.status_code == 500
+    assert "chunk 7 is damaged. Other sessions are not affected." in answer.json()["detail"]
+
+
+def test_too_many_tries_say_when_to_try_again() -> None:
+    answer = ask(TooManyTriesError(59.2))
+    assert (answer.status_code, answer.headers["retry-after"]) == (429, "60")
+
+
+def test_any_other_error_tells_nothing_of_the_inside() -> None:
+    answer = ask(ZeroDivisionError("secret"))
+    assert (answer.status_code, answer.text) == (500, "Internal Server Error")
+
+
+def test_documented_answers_come_from_the_errors() -> None:
+    found = answers(TeapotError, UnknownSessionError, _409="Refused now")
+    assert {status: answer["description"] for status, answer in found.items()} == {
+        418: "It is a teapot",
+        404: "There is no such session",
+        409: "Refused now",
+    }
