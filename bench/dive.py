@@ -20,6 +20,7 @@ from robot_runtime.contract.documents import (
     Document,
     Event,
     Gain,
+    Loop,
     Pace,
     State,
 )
@@ -290,26 +291,6 @@ def _state(start: float, since: float) -> State:
             Pace(topic=name, period=1 / RATES[name]) for name in ("imu", "depth", "beacon", "motor", "status")
         ],
         epoch=1,
-        controller="bang_bang",
-        controllers=[
-            ControllerChoice(
-                name=one.name,
-                title=one.title,
-                gains=[
-                    Gain(
-                        name=name,
-                        value=limits.default,
-                        minimum=limits.minimum,
-                        maximum=limits.maximum,
-                        unit=limits.unit,
-                        meaning=limits.meaning,
-                    )
-                    for name, limits in one.limits.items()
-                ],
-            )
-            for one in CONTROLLERS["depth"]
-        ],
-        set_point=set_point,
         set_point_default=SHALLOW,
         set_point_detected=DEEP,
         steering="none",
@@ -319,4 +300,30 @@ def _state(start: float, since: float) -> State:
         colours=["red", "yellow", "green", "blue"],
         card="yellow" if set_point == DEEP else None,
         camera="a drawn picture",
+        loops=[
+            Loop(
+                name="depth",
+                on=False,
+                set_point=set_point,
+                controller="bang_bang",
+                controllers=[
+                    ControllerChoice(
+                        name=one.name,
+                        title=one.title,
+                        gains=[
+                            Gain(
+                                name=name,
+                                value=limits.default,
+                                minimum=limits.minimum,
+                                maximum=limits.maximum,
+                                unit=limits.unit,
+                                meaning=limits.meaning,
+                            )
+                            for name, limits in one.limits.items()
+                        ],
+                    )
+                    for one in CONTROLLERS["depth"]
+                ],
+            )
+        ],
     )

@@ -222,7 +222,6 @@ class Core:
     def state(self) -> State:
         """Returns the state of the robot."""
         board = self.line.board
-        loops = [_describe(loop) for loop in self.control.loops.values()]
         return State(
             time=self.clock.now(),
             run=self._run,
@@ -237,9 +236,6 @@ class Core:
             baud=self.line.baud,
             paces=self._paces,
             epoch=board.epoch if board and self.line.connected else None,
-            controller=loops[0].controller,
-            controllers=loops[0].controllers,
-            set_point=loops[0].set_point,
             set_point_default=self.control.set_point_default,
             set_point_detected=self.control.set_point_detected,
             steering=self.control.steering,
@@ -250,7 +246,7 @@ class Core:
             card=self.vision.card,
             cards=self.vision.cards,
             camera=self.vision.text,
-            loops=loops,
+            loops=[_describe(loop) for loop in self.control.loops.values()],
             pilot_dropped=self.supervisor.pilot.dropped.total(),
         )
 

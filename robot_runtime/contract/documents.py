@@ -252,9 +252,6 @@ class State(Document):
     baud: int
     paces: list[Pace]
     epoch: int | None
-    controller: str
-    controllers: list[ControllerChoice]
-    set_point: float
     set_point_default: float
     set_point_detected: float
     steering: Steering = field(

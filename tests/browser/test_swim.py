@@ -161,12 +161,12 @@ def test_both_sizes_show_what_matters(any_page: Page) -> None:
     ],
 )
 def test_refused_controllers_are_told_in_words(stack: Stack, body: str, why: str) -> None:
-    before = stack.api.get("/robot").json()["controllers"]
+    before = stack.api.get("/robot").json()["loops"]
     json = {"Content-Type": "application/json"}
     answer = stack.api.post("/robot/commands/loop", content=body, headers=json)
     assert answer.status_code in (409, 422)
     assert why in answer.json()["detail"]
-    assert stack.api.get("/robot").json()["controllers"] == before
+    assert stack.api.get("/robot").json()["loops"] == before
 
 
 def test_a_lost_board_is_named_and_comes_back(page: Page, stack: Stack) -> None:

@@ -103,4 +103,4 @@ def test_where_there_is_no_colour_nothing_is_picked(
     now = stack.api.get("/vision").json()["settings"]
     assert now == {**settings, "markers": "4x4_50"}
     robot = stack.api.get("/robot").json()
-    assert robot["set_point"] == robot["set_point_default"]
+    assert robot["loops"][0]["set_point"] == robot["set_point_default"]

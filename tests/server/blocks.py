@@ -43,6 +43,9 @@ def link_block(first: int, bytes_received: int) -> Block:
     return Block.of(BY_NAME["link"], 1, first, row(100.0, LinkStatistics(**values).to_bytes()))
 
 
+DEPTH_LOOP = {"name": "depth", "on": False, "set_point": 0.5, "controller": "pid", "controllers": []}
+
+
 def state_block(first: int, **changes: Any) -> Block:
     document: dict[str, Any] = {
         "time": 100.0,
@@ -59,11 +62,8 @@ def state_block(first: int, **changes: Any) -> Block:
         "baud": 250_000,
         "paces": [{"topic": "depth", "period": 0.02}],
         "epoch": 1,
-        "controller": "pid",
-        "controllers": [],
         "steering": "none",
-        "loops": [],
-        "set_point": 0.5,
+        "loops": [DEPTH_LOOP],
         "set_point_default": 0.5,
         "set_point_detected": 1.0,
         "control_rate": 10.0,

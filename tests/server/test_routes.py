@@ -52,10 +52,12 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
         answer = await served.api.get("/robot")
         assert answer.status_code == 503
         assert "/api/health" in answer.json()["detail"]
-        served.runtime.publish(state_block(0, set_point=0.5), state_block(1, set_point=0.75))
-        await until(lambda: (served.container.watch.state() or {}).get("set_point") == 0.75, "the state")
+        served.runtime.publish(state_block(0, set_point_default=0.5), state_block(1, set_point_default=0.75))
+        await until(
+            lambda: (served.container.watch.state() or {}).get("set_point_default") == 0.75, "the state"
+        )
         answer = await served.api.get("/robot")
-        assert (answer.status_code, answer.json()["set_point"]) == (200, 0.75)
+        assert (answer.status_code, answer.json()["set_point_default"]) == (200, 0.75)
 
     play(settings, scenario)
 

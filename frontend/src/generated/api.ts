@@ -3888,10 +3888,6 @@ export interface components {
             connection: string;
             /** Control Rate */
             control_rate: number;
-            /** Controller */
-            controller: string;
-            /** Controllers */
-            controllers: components["schemas"]["ControllerChoice"][];
             /** Epoch */
             epoch: number | null;
             /** Loops */
@@ -3914,8 +3910,6 @@ export interface components {
             refusals: string[];
             /** Run */
             run: string;
-            /** Set Point */
-            set_point: number;
             /** Set Point Default */
             set_point_default: number;
             /** Set Point Detected */

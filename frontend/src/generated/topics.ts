@@ -543,9 +543,6 @@ export interface State {
   baud: number;
   paces: Pace[];
   epoch: number | null;
-  controller: string;
-  controllers: ControllerChoice[];
-  set_point: number;
   set_point_default: number;
   set_point_detected: number;
   steering: 'none' | 'beacons';

@@ -9,6 +9,7 @@ from sqlmodel import col, select
 from server.features.comparison.moments import Control, History, Span, Tuned
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
+from server.features.sessions.recorded_state import depth_loop
 from server.features.sessions.recording import Recording
 from server.features.sessions.timeline import Moment
 from server.platform.models import Gap, Marker
@@ -108,8 +109,9 @@ def _tuned(recording: Recording, origin: float) -> Iterator[Tuned]:
 def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[Control]:
     before: tuple[str, dict[str, float]] | None = None
     for document in changes:
-        name = str(document.get("controller", ""))
-        chosen = next((one for one in document.get("controllers", []) if one.get("name") == name), None)
+        loop = depth_loop(document)
+        name = str(loop.get("controller", ""))
+        chosen = next((one for one in loop.get("controllers", []) if one.get("name") == name), None)
         gains = {gain["name"]: float(gain["value"]) for gain in chosen["gains"]} if chosen else {}
         if (name, gains) != before:
             before = name, gains

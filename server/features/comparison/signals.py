@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from server.features.sessions.chunks import row_layout
+from server.features.sessions.recorded_state import depth_loop
 from server.features.sessions.recording import Recording
 
 
@@ -35,7 +36,7 @@ def _number(key: str) -> Callable[[Mapping[str, Any]], float]:
 
 DOCUMENT_COLUMNS: Mapping[str, Mapping[str, DocumentColumn]] = {
     "state": {
-        "set_point": DocumentColumn("m", "wanted depth", _number("set_point")),
+        "set_point": DocumentColumn("m", "wanted depth", lambda one: float(depth_loop(one)["set_point"])),
         "set_point_default": DocumentColumn("m", "wanted depth by default", _number("set_point_default")),
         "set_point_detected": DocumentColumn(
             "m", "wanted depth while the colour is seen", _number("set_point_detected")

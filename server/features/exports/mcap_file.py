@@ -18,6 +18,7 @@ from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, level, stamp
 from server.features.exports.selection import ExportRequestError, Source
 from server.features.exports.values import Rows
+from server.features.sessions.recorded_state import depth_loop
 from server.platform.models import Marker
 from server.platform.store import Reader
 
@@ -123,13 +124,13 @@ def _write_about(store: Reader, source: Source, writer: Any) -> None:
 
 def _gains(state: dict[str, Any] | None) -> dict[str, str]:
     """In force when the session began: "pid.kp" and so on, and which controller was chosen."""
-    state = state or {}
+    loop = depth_loop(state or {})
     gains = {
         f"{controller['name']}.{gain['name']}": str(gain["value"])
-        for controller in state.get("controllers", [])
+        for controller in loop.get("controllers", [])
         for gain in controller.get("gains", [])
     }
-    return {"controller": str(state.get("controller", "")), **gains}
+    return {"controller": str(loop.get("controller", "")), **gains}
 
 
 def _samples(store: Reader, source: Source) -> list[Iterator[_Sample]]:

@@ -191,9 +191,10 @@ def _at_rest(loop: LoopName) -> LoopCommand:
 
 def _commands_of(robot: Question) -> list[RobotCommand]:
     """The commands that make control and vision as this state of the robot says."""
+    depth = next(loop for loop in robot["loops"] if loop["name"] == "depth")
     return [
-        *(ControllerCommand(name=one["name"], gains=_values(one["gains"])) for one in robot["controllers"]),
-        ControllerCommand(name=robot["controller"]),
+        *(ControllerCommand(name=one["name"], gains=_values(one["gains"])) for one in depth["controllers"]),
+        ControllerCommand(name=depth["controller"]),
         SetPointsCommand(default=robot["set_point_default"], detected=robot["set_point_detected"]),
         *_loops_of(robot),
         SteeringCommand(by=robot["steering"]),

@@ -17,7 +17,7 @@ from server.features.sessions.session import new_row
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.blocks import state_block
+from tests.server.blocks import DEPTH_LOOP, state_block
 
 STARTED_STEADY = 99.5
 START = 100.0
@@ -75,8 +75,7 @@ def dive(
                 time=time,
                 armed=armed,
                 armed_since=ARMED if armed else None,
-                controller=controller,
-                controllers=[chosen],
+                loops=[DEPTH_LOOP | {"controller": controller, "controllers": [chosen]}],
             )
         )
     event = documents.Event(time=ARMED, kind="armed", severity="info", text="Armed.")

@@ -25,13 +25,17 @@ from tests.stack import ROOT
 pytestmark = pytest.mark.stack
 
 STATE = {
-    "controller": "bang_bang",
-    "controllers": [{"name": "pid", "gains": [{"name": "kp", "value": 7.0}]}],
     "set_point_default": 0.9,
     "set_point_detected": 1.1,
     "steering": "beacons",
     "loops": [
-        {"name": "depth", "on": False, "set_point": 0.9, "controller": "bang_bang", "controllers": []},
+        {
+            "name": "depth",
+            "on": False,
+            "set_point": 0.9,
+            "controller": "bang_bang",
+            "controllers": [{"name": "pid", "gains": [{"name": "kp", "value": 7.0}]}],
+        },
         {
             "name": "heading",
             "on": True,

@@ -107,7 +107,7 @@ def begin_long(stack: Stack) -> None:
 
 def settings_of(stack: Stack) -> dict[str, Any]:
     """What a scenario may change of the robot."""
-    names = ["controller", "controllers", "set_point_default", "set_point_detected", "vision_rate"]
+    names = ["loops", "set_point_default", "set_point_detected", "vision_rate"]
     found = robot(stack)
     return {name: found[name] for name in [*names, "vision_colour", "card", "armed"]}
 

@@ -99,7 +99,7 @@ def test_marks_are_set_live_and_later(settings: Settings) -> None:
 
 def test_a_session_says_what_is_in_it(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
-        served.runtime.publish(state_block(0, set_point=0.7))
+        served.runtime.publish(state_block(0, set_point_default=0.7))
         await until(lambda: served.container.watch.state() is not None, "the state")
         session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
         now, recorder = served.container.clock.now(), served.container.recorder
@@ -108,7 +108,7 @@ def test_a_session_says_what_is_in_it(settings: Settings) -> None:
         served.runtime.publish_bytes(b"".join(block.data for block in small))
         await until(lambda: recorder.session is not None and recorder.session.samples >= 14, "the samples")
         detail = (await served.api.get(f"/sessions/{session}")).json()
-        assert detail["robot_state"]["set_point"] == 0.7
+        assert detail["robot_state"]["set_point_default"] == 0.7
         assert detail["configuration"] == settings.config.read_text()
         assert len(detail["software"]) == 16
         (gap,) = detail["gaps"]

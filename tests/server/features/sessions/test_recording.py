@@ -70,11 +70,15 @@ def test_a_chunk_of_pictures_that_is_cut_off_is_damaged() -> None:
 def test_changes_are_documents_that_say_something_else(store: Store, settings: Settings) -> None:
     documents = [(100.0, 0.5), (101.0, 0.5), (102.0, 1.0), (103.0, 1.0), (104.0, 0.5)]
     batches = [
-        [state_block(place, time=time, set_point=set_point)]
+        [state_block(place, time=time, set_point_default=set_point)]
         for place, (time, set_point) in enumerate(documents)
     ]
     changes = list(read(store, record(store, settings, *batches)).changes("state"))
-    assert [(one["time"], one["set_point"]) for one in changes] == [(100.0, 0.5), (102.0, 1.0), (104.0, 0.5)]
+    assert [(one["time"], one["set_point_default"]) for one in changes] == [
+        (100.0, 0.5),
+        (102.0, 1.0),
+        (104.0, 0.5),
+    ]
 
 
 @pytest.mark.parametrize(

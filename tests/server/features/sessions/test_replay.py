@@ -80,7 +80,11 @@ def lines(first: int, count: int, period: float = 0.1) -> Block:
 def dive(store: Store, settings: Settings) -> Recording:
     """Ten seconds from 100 s on: depths 20 ms apart, lines 100 ms apart, a state each second."""
     batches = [
-        [depth_block(50 * n, 50), lines(10 * n, 10), state_block(n, time=100.0 + n, set_point=float(n))]
+        [
+            depth_block(50 * n, 50),
+            lines(10 * n, 10),
+            state_block(n, time=100.0 + n, set_point_default=float(n)),
+        ]
         for n in range(10)
     ]
     return read(store, record(store, settings, *batches))
@@ -91,7 +95,7 @@ def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
     numbers = [int(record.time) for _, record in depths(stretch.data)]
     assert numbers == list(range(125, 205))
     assert [one["text"] for one in told(stretch.data, "debug")] == [f"line {n}" for n in range(25, 41)]
-    assert [one["set_point"] for one in told(stretch.data, "state")] == [3, 4]
+    assert [one["set_point_default"] for one in told(stretch.data, "state")] == [3, 4]
     assert stretch.left_out == 0
 
 
@@ -118,11 +122,11 @@ def test_stretches_side_by_side_give_every_sample_once(dive: Recording) -> None:
 
 
 def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> None:
-    batches = [[state_block(0, time=100.0, set_point=0.7), lines(0, 1)]]
+    batches = [[state_block(0, time=100.0, set_point_default=0.7), lines(0, 1)]]
     batches += [[depth_block(50 * n, 50)] for n in range(20)]
     recording = read(store, record(store, settings, *batches))
     stretch = read_stretch(recording, 115.0, 116.0, history=2.0)
-    assert [one["set_point"] for one in told(stretch.data, "state")] == [0.7]
+    assert [one["set_point_default"] for one in told(stretch.data, "state")] == [0.7]
     assert [one["text"] for one in told(stretch.data, "debug")] == ["line 0"]
     assert [int(record.time) for _, record in depths(stretch.data)] == list(range(650, 800))
     assert BY_NAME["depth"].charted > 0
@@ -141,7 +145,7 @@ def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, set
 
 
 def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, dive: Recording) -> None:
-    (state,) = json.loads(state_block(0, time=99.0, set_point=0.3).payload)
+    (state,) = json.loads(state_block(0, time=99.0, set_point_default=0.3).payload)
 
     def tell(connection: Connection) -> None:
         connection.execute(text("UPDATE session SET robot_state = :state"), {"state": json.dumps(state)})
@@ -150,7 +154,7 @@ def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, di
     assert dive.row.id is not None
     recording = read(store, dive.row.id)
     seen = [
-        [one["set_point"] for one in told(read_stretch(recording, start, start, 0).data, "state")]
+        [one["set_point_default"] for one in told(read_stretch(recording, start, start, 0).data, "state")]
         for start in (99.9, 100.5)
     ]
     assert seen == [[0.3], [0.0]]
