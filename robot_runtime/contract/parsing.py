@@ -4,6 +4,7 @@ import math
 import types
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
+from reprlib import Repr
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from robot_runtime.contract.limits import ConfigError
@@ -74,9 +75,8 @@ def read_value(hint: Any, value: Any, where: str) -> Any:
         inner, limits = get_args(hint)
         number = read_value(inner, value, where)
         if number is not None and not limits.minimum <= number <= limits.maximum:
-            raise ConfigError(
-                f"{where} is {value}; it must lie between {limits.minimum:.10g} and {limits.maximum:.10g}"
-            )
+            span = f"between {limits.minimum:.10g} and {limits.maximum:.10g}"
+            raise ConfigError(f"{where} is {_shown(value)}; it must lie {span}")
         return number
     if is_dataclass(hint) and isinstance(hint, type):
         if not isinstance(value, dict):
@@ -85,7 +85,7 @@ def read_value(hint: Any, value: Any, where: str) -> Any:
     if get_origin(hint) is Literal:
         if value not in get_args(hint):
             raise ConfigError(
-                f"{where} is {value!r}; it must be one of {', '.join(map(repr, get_args(hint)))}"
+                f"{where} is {_shown(value)}; it must be one of {', '.join(map(repr, get_args(hint)))}"
             )
         return value
     if get_origin(hint) in (types.UnionType, Union):
@@ -104,7 +104,7 @@ def _read_union(hints: tuple[Any, ...], value: Any, where: str) -> Any:
             return read_value(kind, value, where)
         except ConfigError:
             continue
-    raise ConfigError(f"{where} is {value!r}; it must be {' or '.join(_WORDS[kind] for kind in kinds)}")
+    raise ConfigError(f"{where} is {_shown(value)}; it must be {' or '.join(_WORDS[kind] for kind in kinds)}")
 
 
 def _plain(hint: Any, value: Any, where: str) -> Any:
@@ -114,7 +114,7 @@ def _plain(hint: Any, value: Any, where: str) -> Any:
     if origin is tuple and isinstance(value, list):
         hints = (inner[0],) * len(value) if inner[-1] is Ellipsis else inner
         if len(hints) != len(value):
-            raise ConfigError(f"{where} is {value!r}; it must have {len(hints)} numbers")
+            raise ConfigError(f"{where} is {_shown(value)}; it must have {len(hints)} numbers")
         entries = enumerate(zip(hints, value, strict=True))
         return tuple(_values((hint, one, f"{where}[{index}]") for index, (hint, one) in entries))
     if origin is dict and isinstance(value, dict):
@@ -127,7 +127,7 @@ def _plain(hint: Any, value: Any, where: str) -> Any:
         return float(value)
     if isinstance(hint, type) and type(value) is hint and hint is not float:
         return value
-    raise ConfigError(f"{where} is {value!r}; it must be {_WORDS[origin or hint]}")
+    raise ConfigError(f"{where} is {_shown(value)}; it must be {_WORDS[origin or hint]}")
 
 
 def _finite(value: float) -> bool:
@@ -136,3 +136,11 @@ def _finite(value: float) -> bool:
     except OverflowError:
         # A whole number that no float can hold.
         return False
+
+
+def _shown(value: Any) -> str:
+    """The value in an error message; one from outside may have thousands of digits or letters."""
+    short = Repr()
+    short.maxdict = short.maxlist = short.maxtuple = 20
+    short.maxstring = short.maxother = 200
+    return short.repr(value)

@@ -210,7 +210,11 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
         ("waves", {"amplitude": -0.1, "period": 2, "direction": 0}, "between 0 and 10"),
         ("waves", {"amplitude": 0.1, "period": 2, "direction": float("nan")}, "direction is nan"),
         ("waves", {"amplitude": 1, "period": 2, "direction": 0}, "break in water"),
-        ("waves", {"amplitude": 10**400, "period": 2, "direction": 0}, "it must be a number"),
+        (
+            "waves",
+            {"amplitude": 10**400, "period": 2, "direction": 0},
+            r"amplitude is 10+\.\.\.0+; it must be a number",
+        ),
         (
             "current",
             {"north": 0, "east": 0, "down": 0, "turning": 2},
