@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.commands import SteeringCommand
+from server.features.parameters.changes import Send
 from server.features.parameters.profiles import ProfileError, read_file
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
@@ -106,6 +108,39 @@ def test_gains_and_vision_settings_are_in_the_history_and_undone(settings: Setti
         for one, before in zip(listed, ("red", 4.0, 3.0), strict=True):
             (await served.api.post("/parameters/undo", json={"change": one["id"]})).raise_for_status()
             assert list(served.runtime.asked[-1][1]["values"].values()) == [before]
+
+    play(settings, scenario)
+
+
+def test_a_scenario_is_in_the_history_with_what_it_left_changed(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        changes, swim = served.container.changes, SteeringCommand(by="beacons")
+
+        async def tuned(before: float, after: float, send: Send) -> None:
+            served.runtime.answer = {"changed": {"depth.pid.kp": [before, after]}}
+            await send(swim)
+
+        async def listed() -> list[tuple[str, str, float, float]]:
+            answer = (await served.api.get("/parameters/changes")).json()
+            values = [(one["who"], one["why"], one["values"][0]) for one in answer]
+            return [(who, why, value["before"], value["after"]) for who, why, value in values]
+
+        await change(served, 2.0, 3.0)
+        async with changes.together("Anna", "Scenario “Dive”") as send:
+            await tuned(3.0, 9.0, send)
+            await tuned(9.0, 3.0, send)
+        shell = "the shell of this computer"
+        assert await listed() == [(shell, "", 2.0, 3.0)]
+
+        async with changes.together("Anna", "Scenario “Dive”") as send:
+            await tuned(3.0, 9.0, send)
+            await change(served, 9.0, 5.0)
+            await tuned(5.0, 3.0, send)
+        assert (await listed())[:-1] == [
+            ("Anna", "Scenario “Dive”", 5.0, 3.0),
+            (shell, "", 9.0, 5.0),
+            ("Anna", "Scenario “Dive”", 3.0, 9.0),
+        ]
 
     play(settings, scenario)
 

@@ -150,6 +150,10 @@ def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) ->
     last = ended(stack)
     assert (last["state"], last["problem"], last["name"]) == ("complete", "", "short")
     wait(lambda: settings_of(stack) == before, "everything to be as before")
+    # Nothing stays changed, so that the change before the scenario can be undone.
+    newest = stack.api.get("/parameters/changes").json()[0]
+    assert {one["name"] for one in newest["values"]} == set(points)
+    stack.api.post("/parameters/undo", json={"change": newest["id"]}).raise_for_status()
 
     columns = "id, state, origin, scenario_name, seed, scenario, started_steady, samples"
     (session,) = query(stack, f"SELECT {columns} FROM session")
