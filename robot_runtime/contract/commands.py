@@ -409,10 +409,9 @@ class EndExperimentCommand(RobotCommand):
     """Ends the running experiment. The loop goes on as before it."""
 
 
-HTTP_COMMANDS = tuple(
-    cls for cls in COMMANDS.values() if cls.policy.need is not None and cls is not StopCommand
-)
-"""Commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
+def http_commands() -> list[type[RobotCommand]]:
+    """The commands with the common route `POST /api/robot/commands/NAME`; STOP has a faster one."""
+    return [cls for cls in COMMANDS.values() if cls.policy.need is not None and cls is not StopCommand]
 
 
 def _require_between(name: str, value: float, low: float, high: float) -> None:

@@ -6,7 +6,7 @@ import typing
 from collections.abc import Iterator
 from typing import Any
 
-from robot_runtime.contract.commands import COMMANDS, HTTP_COMMANDS, RobotCommand, StopCommand, is_required
+from robot_runtime.contract.commands import COMMANDS, RobotCommand, StopCommand, http_commands, is_required
 from robot_runtime.contract.limits import Range
 from robot_runtime.generate.markdown import page, table
 
@@ -37,7 +37,7 @@ def commands_page() -> str:
 
 def _summary(cls: type[RobotCommand]) -> tuple[str, ...]:
     policy = cls.policy
-    way = "`POST /api/robot/stop`" if cls is StopCommand else "yes" if cls in HTTP_COMMANDS else ""
+    way = "`POST /api/robot/stop`" if cls is StopCommand else "yes" if cls in http_commands() else ""
     return (
         f"[{policy.name}](#{policy.name})",
         way,

@@ -7,7 +7,7 @@ import typing
 from enum import IntEnum, IntFlag
 
 from robot_runtime.contract import documents
-from robot_runtime.contract.commands import HTTP_COMMANDS, RobotCommand, is_required
+from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
 from robot_runtime.contract.packets.layout import Record, Wire
 from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
@@ -67,9 +67,9 @@ def commands_module() -> str:
     parts = [
         "// Written by `make generate` from robot_runtime/contract/commands.py. Do not edit.\n"
         "import type { ColourRange } from './topics';\n",
-        *(_command(cls) for cls in HTTP_COMMANDS),
+        *(_command(cls) for cls in http_commands()),
         "/** The body of each command, by its name. */\nexport interface Commands {\n"
-        + "".join(f"  {cls.policy.name}: {cls.__name__};\n" for cls in HTTP_COMMANDS)
+        + "".join(f"  {cls.policy.name}: {cls.__name__};\n" for cls in http_commands())
         + "}\n",
     ]
     return "\n".join(parts)

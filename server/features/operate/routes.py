@@ -6,10 +6,10 @@ from typing import Any
 from fastapi import APIRouter
 
 from robot_runtime.contract.commands import (
-    HTTP_COMMANDS,
     AcknowledgeCommand,
     ArmCommand,
     RobotCommand,
+    http_commands,
     is_required,
     summary,
 )
@@ -95,6 +95,6 @@ def _add_route(cls: type[RobotCommand], need: Need) -> None:
     )
 
 
-for _cls in HTTP_COMMANDS:
+for _cls in http_commands():
     if _cls.policy.need is not None:
         _add_route(_cls, _cls.policy.need)
