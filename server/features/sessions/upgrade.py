@@ -67,10 +67,7 @@ def _rewrite(value: Any, wanted: Any) -> Any:
         return _rewrite_object(value, wanted)
     kind, arguments = get_origin(wanted), get_args(wanted)
     if kind in (Union, UnionType):
-        if value is None and NoneType in arguments:
-            return None
-        (only,) = (one for one in arguments if one is not NoneType)
-        return _rewrite(value, only)
+        return _rewrite_union(value, arguments)
     if kind is list and isinstance(value, list):
         return [_rewrite(one, arguments[0]) for one in value]
     if kind is tuple and isinstance(value, list):
@@ -83,9 +80,20 @@ def _rewrite(value: Any, wanted: Any) -> Any:
         return value
     if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):
         return value
-    if wanted in (int, str, bool) and type(value) is wanted:
+    if wanted in (int, str, bool, NoneType) and type(value) is wanted:
         return value
     raise NoCounterpartError(f"{value!r} is no {wanted}")
+
+
+def _rewrite_union(value: Any, members: tuple[Any, ...]) -> Any:
+    problem: NoCounterpartError | None = None
+    for one in members:
+        try:
+            return _rewrite(value, one)
+        except NoCounterpartError as found:
+            # Of `x | None` the first says what is wrong with a value.
+            problem = problem or found
+    raise problem or NoCounterpartError(f"{value!r} is of no kind")
 
 
 def _rewrite_object(value: Any, wanted: Any) -> dict[str, Any]:

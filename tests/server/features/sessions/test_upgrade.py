@@ -1,0 +1,40 @@
+from typing import Any
+
+import pytest
+
+from robot_runtime.contract.topics import BY_NAME
+from server.features.sessions.upgrade import NoCounterpartError, rewrite_document
+
+
+def told(value: Any) -> dict[str, Any]:
+    """A `parameters` document of one parameter with this value, and with a field that this version lacks."""
+    parameter = {
+        "name": "depth.pid.kp",
+        "type": "number",
+        "value": value,
+        "default": value,
+        "minimum": None,
+        "maximum": 50.0,
+        "unit": "",
+        "meaning": "",
+        "choices": [],
+        "where": "runtime",
+        "while_armed": True,
+        "pending": False,
+        "gone": 1,
+    }
+    return {"time": 1.0, "parameters": [parameter]}
+
+
+@pytest.mark.parametrize("value", [7, 7.5, "pid", True])
+def test_a_value_of_several_kinds_is_rewritten_as_what_it_is(value: object) -> None:
+    (parameter,) = rewrite_document(told(value), BY_NAME["parameters"])["parameters"]
+    assert (parameter["value"], type(parameter["value"])) == (value, type(value))
+    assert (parameter["minimum"], parameter["maximum"]) == (None, 50.0)
+    assert "gone" not in parameter
+
+
+@pytest.mark.parametrize("value", [None, [], {}])
+def test_a_value_of_no_such_kind_is_not_made_up(value: object) -> None:
+    with pytest.raises(NoCounterpartError, match="is no"):
+        rewrite_document(told(value), BY_NAME["parameters"])
