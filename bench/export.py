@@ -20,7 +20,7 @@ from bench.hour import record_hour
 from server.features.exports.files import write_part
 from server.features.exports.formats import check
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import LEVEL
 from server.features.sessions.chunks import row_layout
 from server.features.sessions.session import find_row
@@ -36,7 +36,7 @@ def measure() -> dict[str, float]:
         mcap = _cpu(lambda: _export(reader, session, "mcap", data))
         row = find_row(reader, session)
         assert row is not None
-        source = Source(reader, row, Wanted(format="csv"))
+        source = ExportSelection(reader, row, Wanted(format="csv"))
         tables = {
             name: _table(source, name) for name in source.names if source.topics[name]["kind"] != "picture"
         }
@@ -63,11 +63,11 @@ def _export(reader: Reader, session: int, kind: Any, data: Path) -> None:
     row = find_row(reader, session)
     assert row is not None
     wanted = Wanted(format=kind)
-    source = Source(reader, row, wanted)
+    source = ExportSelection(reader, row, wanted)
     write_part(data / kind, lambda output: check(wanted).write(reader, source, output))
 
 
-def _table(source: Source, name: str) -> pd.DataFrame:
+def _table(source: ExportSelection, name: str) -> pd.DataFrame:
     topic = source.topics[name]
     if topic["kind"] == "rows":
         names = [column.partition(" [")[0] for column in row_layout(topic).columns]

@@ -15,7 +15,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.backup.download import Downloads
 from server.features.comm_tests.board_reservation import Board, Handover
 from server.features.comm_tests.lab import Lab
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.comparisons import Comparisons
 from server.features.exports.imports import Imports
@@ -26,17 +26,17 @@ from server.features.lease.sync import LeaseSync
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
 from server.features.scenarios.live_run import Live
-from server.features.scenarios.runs import Runs as ScenarioRuns
+from server.features.scenarios.runs import ScenarioRunner as ScenarioRuns
 from server.features.scenarios.simulated_run import Simulated
 from server.features.sessions.auto_recording import ArmingRecording
 from server.features.sessions.bookmarks import Markers
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
-from server.features.sessions.resume import Left, find_missing
+from server.features.sessions.resume import InterruptedSession, find_missing
 from server.features.sessions.retention import Tidying
 from server.features.sessions.session import new_row
 from server.features.tuning.lab import TuningLab
-from server.features.tuning.runs import Runs as TuningRuns
+from server.features.tuning.runs import TuningRunner as TuningRuns
 from server.health.faults import FAULTS
 from server.health.monitor import Watch
 from server.health.watchdog import DOWN, Inspection
@@ -111,7 +111,9 @@ class Container:
     def _add_comm_tests(self) -> None:
         board = Board(self.settings, self.notices.tell)
         self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
-        self.lab = Lab(self.settings, Runs(self.store), self.clock, self.hub.tell, self.handover.lend)
+        self.lab = Lab(
+            self.settings, CommTestStore(self.store), self.clock, self.hub.tell, self.handover.lend
+        )
 
     def _add_scenarios(self) -> None:
         self._live = Live(
@@ -202,7 +204,7 @@ class Container:
             await self.access.close()
             await asyncio.to_thread(self.store.close)
 
-    async def _catch_up(self, left: Left | None) -> None:
+    async def _catch_up(self, left: InterruptedSession | None) -> None:
         """Take in what the parts of a killed server have sent since, before anybody is served."""
         running = set(running_parts(self.settings.data.run))
         if "runtime" in running and self.settings.in_the_loop:

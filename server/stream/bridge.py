@@ -1,7 +1,7 @@
 """The server's end of Zenoh: blocks from the runtime and the simulator come in, commands go out.
 
-What they send passes through a `Source` each, which asks again for what did not arrive. Zenoh calls back in
-its own threads. What arrives is put into a queue. An arrival wakes the event loop, which empties it at once,
+A `GapFiller` for each sender requests missing blocks. Zenoh calls back in its own threads. Received blocks go
+into a queue. An arrival wakes the event loop, which empties it at once,
 or `ROUND_SECONDS` after it was emptied last.
 """
 
@@ -25,7 +25,7 @@ from robot_runtime.transport.replay_cache import BacklogReply, write_question
 from robot_runtime.transport.zenoh_transport import NoAnswerError, Subscription, ZenohTransport
 from server.platform.errors import ApiError
 from server.platform.settings import Settings, SetupError
-from server.stream.gap_filler import Source
+from server.stream.gap_filler import GapFiller
 
 log = logging.getLogger(__name__)
 
@@ -77,7 +77,7 @@ class Bridge:
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes, str]] = deque(maxlen=QUEUE_MAX)
         self._sources = {
-            name: Source(topics, partial(self._ask_kept, name), self._pass_on)
+            name: GapFiller(topics, partial(self._ask_kept, name), self._pass_on)
             for name, topics in SENT_BY.items()
         }
         self._ready: list[Block] = []

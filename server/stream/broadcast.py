@@ -1,6 +1,6 @@
 """What all sockets share: each message once, in memory, however many listen and however slow they are.
 
-A lane is a bounded queue whose messages are numbered; every client has its own place in it. `History` keeps
+A lane is a bounded queue whose messages are numbered; every client has its own position. `TopicHistory` holds
 the last minutes of each topic for a page that connects.
 """
 
@@ -123,7 +123,7 @@ class _Past:
         self._blocks.clear()
 
 
-class History:
+class TopicHistory:
     """The last `seconds` of every topic, each within `bytes_max`; of some topics the newest block only.
 
     A block is small, and Python's own bytes around it are as many again. So those of two seconds become one,

@@ -16,7 +16,7 @@ Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]
 """Asks for the blocks from these numbers on, by the topics' names; None where nobody answers."""
 
 
-class Source:
+class GapFiller:
     """One process, through any number of its runs, and what only it sends.
 
     `deliver` is called with its blocks, in order. At first everything waits, until `go_on`.

@@ -19,35 +19,6 @@ PENDING_DOCSTRINGS: tuple[str, ...] = (
 )
 PENDING_DIALECT: tuple[str, ...] = ("server/", "migrations/", "robot_runtime/experiments/scenario/events.py")
 """Folders that are not yet rewritten."""
-PENDING_CLASSES = frozenset(
-    {
-        "Acknowledge",
-        "Alarms",
-        "Card",
-        "ColourRange",
-        "Control",
-        "Controller",
-        "Event",
-        "History",
-        "Kind",
-        "Left",
-        "Line",
-        "Mark",
-        "Range",
-        "Run",
-        "Runs",
-        "SensorFault",
-        "SetPoints",
-        "SimulatedClock",
-        "Source",
-        "Start",
-        "Stop",
-        "Topic",
-        "VisionInForce",
-        "VisionSettings",
-    }
-)
-"""Classes still named twice."""
 
 Modules = dict[str, ast.Module]
 
@@ -70,7 +41,7 @@ def _repeated_classes(modules: Modules) -> Iterator[str]:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places[node.name].append(place)
     for name, found in sorted(places.items()):
-        if len(found) > 1 and name not in PENDING_CLASSES:
+        if len(found) > 1:
             yield f"class {name} is defined {len(found)} times, in {', '.join(found)}; rename all but one"
 
 

@@ -16,7 +16,6 @@ def nothing_pending(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPa
     if "tmp_path" in request.fixturenames:
         monkeypatch.setattr("tests.checks.names.PENDING_DOCSTRINGS", ())
         monkeypatch.setattr("tests.checks.names.PENDING_DIALECT", ())
-        monkeypatch.setattr("tests.checks.names.PENDING_CLASSES", frozenset())
 
 
 def test_a_public_class_that_exists_twice_is_found(tmp_path: Path) -> None:

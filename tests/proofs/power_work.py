@@ -23,7 +23,7 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.experiments.comm_test.document import read_document
 from robot_runtime.transport.blocks import Block, row
 from server.cli import main
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import NewExport
 from server.features.scenarios.library import _shipped, keep_scenario
@@ -94,7 +94,7 @@ class Work:
         recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
         catalogue = Catalogue(store, recorder)
         sessions = [await self._record(recorder, catalogue, clock, name) for name in ("one", "two")]
-        await self._test(Runs(store))
+        await self._test(CommTestStore(store))
         await self._export(store, sessions[0])
         await asyncio.to_thread(self._look_from_a_shell)
         self._keep()
@@ -126,7 +126,7 @@ class Work:
         self.acknowledged()
         return session
 
-    async def _test(self, runs: Runs) -> None:
+    async def _test(self, runs: CommTestStore) -> None:
         (test, *_) = read_document(DOCUMENT.read_text(encoding="utf-8"))
         run = await runs.start(test, "emulated", "00c0ffee", {}, "here")
         self.acknowledged()

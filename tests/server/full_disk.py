@@ -19,7 +19,7 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block, row
 from server.features.backup.command import back_up
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.scenarios.library import _shipped, keep_scenario
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
@@ -50,7 +50,7 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
     settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
     store = Store(data.database)
     recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
-    runs = Runs(store)
+    runs = CommTestStore(store)
     run = await begin(runs)
     await runs.add(run, 0, LOST.values)
     session = await recorder.start(new_row(settings, clock, "full", "", "null"))
@@ -87,7 +87,7 @@ async def record(data: DataFolder, config: Path) -> dict[str, Any]:
     }
 
 
-def beside(data: DataFolder, runs: Runs, run: int) -> list[Callable[[], Awaitable[object]]]:
+def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[], Awaitable[object]]]:
     """What else is stored: a communication test's next cell, a scenario, a backup."""
 
     async def keep() -> None:

@@ -1826,6 +1826,27 @@ export interface components {
             mode: "automatic" | "manual";
         };
         /**
+         * Bookmark
+         * @description A moment that somebody pointed out.
+         */
+        Bookmark: {
+            /** Id */
+            id: number;
+            /**
+             * Made
+             * Format: date-time
+             * @description UTC
+             */
+            made: string;
+            /** Text */
+            text: string;
+            /**
+             * Time
+             * @description s since the session's start
+             */
+            time: number;
+        };
+        /**
          * CardCommand
          * @description Holds a card before the simulated camera, or takes it away.
          */
@@ -2028,6 +2049,92 @@ export interface components {
             ];
         };
         /**
+         * CommTestRunDetails
+         * @description A run with its configuration and its cells.
+         */
+        CommTestRunDetails: {
+            /**
+             * Cells
+             * @description as the document has them
+             */
+            cells: number;
+            /** Cells Done */
+            cells_done: number;
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "to_board" | "to_host" | "both";
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
+            /**
+             * Ended
+             * @description UTC; null while it runs
+             */
+            ended: string | null;
+            /**
+             * Firmware
+             * @description hash of the sketch, the core and the compiler's flags
+             */
+            firmware: string;
+            /** Framing */
+            framing: string;
+            /** Host */
+            host: string;
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
+            /** Problem */
+            problem: string;
+            /**
+             * Rate Mean
+             * @description null as long as there is no cell
+             */
+            rate_mean: number | null;
+            /** Rate Min */
+            rate_min: number | null;
+            /** Results */
+            results: components["schemas"]["Cell"][];
+            /** Sample */
+            sample: string;
+            /**
+             * Started
+             * Format: date-time
+             * @description UTC
+             */
+            started: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
+            /** Tools */
+            tools: {
+                [key: string]: string;
+            };
+        };
+        /**
+         * CommTestStart
+         * @description A document to run, and where.
+         */
+        CommTestStart: {
+            /**
+             * Place
+             * @enum {string}
+             */
+            place: "emulated" | "robot";
+            /** Text */
+            text: string;
+        };
+        /**
          * Compared
          * @description One session, with all that is compared.
          */
@@ -2080,7 +2187,7 @@ export interface components {
              * @description by signal; without those that it does not have
              */
             series: {
-                [key: string]: components["schemas"]["Line"];
+                [key: string]: components["schemas"]["SignalLine"];
             };
             /**
              * Set Point Steps
@@ -2114,10 +2221,10 @@ export interface components {
             signals: components["schemas"]["Signal"][];
         };
         /**
-         * Control
+         * ControlDetails
          * @description The same, and the counts of stick commands.
          */
-        Control: {
+        ControlDetails: {
             driven: components["schemas"]["Driven"];
             /**
              * Epoch
@@ -2267,7 +2374,7 @@ export interface components {
              * @description by signal; without those that it does not have
              */
             series: {
-                [key: string]: components["schemas"]["Line"];
+                [key: string]: components["schemas"]["SignalLine"];
             };
         };
         /**
@@ -2634,21 +2741,6 @@ export interface components {
             ultimate_gain: number;
         };
         /**
-         * Line
-         * @description A signal over time, thinned out to least and most of each column; null breaks the line.
-         */
-        Line: {
-            /** High */
-            high: (number | null)[];
-            /** Low */
-            low: (number | null)[];
-            /**
-             * Time
-             * @description s since the session's start
-             */
-            time: number[];
-        };
-        /**
          * Lines
          * @description The lines of a part of the time.
          */
@@ -2762,27 +2854,6 @@ export interface components {
             device: components["schemas"]["DeviceShape"];
             /** Token */
             token: string;
-        };
-        /**
-         * Mark
-         * @description A moment that somebody pointed out.
-         */
-        Mark: {
-            /** Id */
-            id: number;
-            /**
-             * Made
-             * Format: date-time
-             * @description UTC
-             */
-            made: string;
-            /** Text */
-            text: string;
-            /**
-             * Time
-             * @description s since the session's start
-             */
-            time: number;
         };
         /**
          * MarkChanges
@@ -3298,79 +3369,6 @@ export interface components {
             left_out: components["schemas"]["LeftOut"][];
         };
         /**
-         * Run
-         * @description A run with its configuration and its cells.
-         */
-        Run: {
-            /**
-             * Cells
-             * @description as the document has them
-             */
-            cells: number;
-            /** Cells Done */
-            cells_done: number;
-            /**
-             * Direction
-             * @enum {string}
-             */
-            direction: "to_board" | "to_host" | "both";
-            /** Document */
-            document: {
-                [key: string]: unknown;
-            };
-            /**
-             * Ended
-             * @description UTC; null while it runs
-             */
-            ended: string | null;
-            /**
-             * Firmware
-             * @description hash of the sketch, the core and the compiler's flags
-             */
-            firmware: string;
-            /** Framing */
-            framing: string;
-            /** Host */
-            host: string;
-            /** Id */
-            id: number;
-            /** Name */
-            name: string;
-            /**
-             * Place
-             * @enum {string}
-             */
-            place: "emulated" | "robot";
-            /** Problem */
-            problem: string;
-            /**
-             * Rate Mean
-             * @description null as long as there is no cell
-             */
-            rate_mean: number | null;
-            /** Rate Min */
-            rate_min: number | null;
-            /** Results */
-            results: components["schemas"]["Cell"][];
-            /** Sample */
-            sample: string;
-            /**
-             * Started
-             * Format: date-time
-             * @description UTC
-             */
-            started: string;
-            /**
-             * State
-             * @enum {string}
-             */
-            state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
-            /** Tools */
-            tools: {
-                [key: string]: string;
-            };
-        };
-        /**
          * RunSummary
          * @description A run; `sample` names one that came with the program, and is empty for one's own.
          */
@@ -3728,7 +3726,7 @@ export interface components {
              * Marks
              * @description in the order of their times
              */
-            marks: components["schemas"]["Mark"][];
+            marks: components["schemas"]["Bookmark"][];
             /** Name */
             name: string;
             /** Note */
@@ -3841,17 +3839,19 @@ export interface components {
             unit: string;
         };
         /**
-         * Start
-         * @description A document to run, and where.
+         * SignalLine
+         * @description A signal over time, thinned out to least and most of each column; null breaks the line.
          */
-        Start: {
+        SignalLine: {
+            /** High */
+            high: (number | null)[];
+            /** Low */
+            low: (number | null)[];
             /**
-             * Place
-             * @enum {string}
+             * Time
+             * @description s since the session's start
              */
-            place: "emulated" | "robot";
-            /** Text */
-            text: string;
+            time: number[];
         };
         /**
          * Started
@@ -4128,7 +4128,7 @@ export interface components {
              * Markers
              * @description in order of time
              */
-            markers: components["schemas"]["Mark"][];
+            markers: components["schemas"]["Bookmark"][];
             /** Name */
             name: string;
             /**
@@ -5190,7 +5190,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"];
+                "application/json": components["schemas"]["CommTestStart"];
             };
         };
         responses: {
@@ -5267,7 +5267,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Run"];
+                    "application/json": components["schemas"]["CommTestRunDetails"];
                 };
             };
             /** @description There is no such run */
@@ -5575,7 +5575,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Control"];
+                    "application/json": components["schemas"]["ControlDetails"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -8265,7 +8265,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Mark"];
+                    "application/json": components["schemas"]["Bookmark"];
                 };
             };
             /** @description There is no such session, or it has no such mark */
@@ -8385,7 +8385,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Mark"];
+                    "application/json": components["schemas"]["Bookmark"];
                 };
             };
             /** @description There is no such session, or it has no such mark */

@@ -11,7 +11,13 @@ from typing import Annotated, Any, Literal, get_type_hints
 from robot_runtime.config import ControlConfig
 from robot_runtime.contract.limits import VISION_RATE, ConfigError, Range
 from robot_runtime.contract.parsing import parse, place, read_value
-from robot_runtime.experiments.scenario.events import Colour, Event, WavesChange, check_controller, read_event
+from robot_runtime.experiments.scenario.events import (
+    Colour,
+    TimedEvent,
+    WavesChange,
+    check_controller,
+    read_event,
+)
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Vector
 from robot_runtime.simulation.water.surroundings import (
     BUOYANCY_MAX,
@@ -124,7 +130,7 @@ class Scenario:
     robot: SimulationParameters = field(default_factory=SimulationParameters)
     control: ControlConfig = field(default_factory=ControlConfig)
     vision: VisionChoice = VisionChoice()
-    events: tuple[Event, ...] = ()
+    events: tuple[TimedEvent, ...] = ()
 
     def __post_init__(self) -> None:
         problems = [*self._words(), *self._water(), *self._events()]
@@ -224,7 +230,7 @@ def _read_entries(table: dict[str, Any], problems: list[str]) -> dict[str, Any]:
     return values
 
 
-def _read_events(tables: Any, problems: list[str]) -> list[Event]:
+def _read_events(tables: Any, problems: list[str]) -> list[TimedEvent]:
     if not isinstance(tables, list):
         problems.append("events must be tables, each headed [[events]]")
         return []

@@ -37,7 +37,7 @@ _LINE_NUMBERS: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Event(ABC):
+class TimedEvent(ABC):
     """Something that happens at a time (s since the start)."""
 
     do: ClassVar[str]
@@ -58,7 +58,7 @@ class Event(ABC):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CommandEvent(Event):
+class CommandEvent(TimedEvent):
     """A command to the robot; `do` is the command's name."""
 
     to = "runtime"
@@ -77,7 +77,7 @@ class CommandEvent(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Beacons(Event):
+class Beacons(TimedEvent):
     """Light beacons at these places (m north, east, down) and nowhere else."""
 
     do = "beacons"
@@ -98,7 +98,7 @@ class Beacons(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CurrentChange(Event):
+class CurrentChange(TimedEvent):
     """Another current; m/s and rad/s."""
 
     do = "current"
@@ -120,7 +120,7 @@ class CurrentChange(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WavesChange(Event):
+class WavesChange(TimedEvent):
     """Other waves; m, s and rad."""
 
     do = "waves"
@@ -140,7 +140,7 @@ class WavesChange(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TrimChange(Event):
+class TrimChange(TimedEvent):
     """Another trim; share of the weight and m."""
 
     do = "trim"
@@ -161,7 +161,7 @@ class TrimChange(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SensorFault(Event):
+class SensorFaultChange(TimedEvent):
     """Break a sensor, or mend it."""
 
     do = "fault"
@@ -187,7 +187,7 @@ class SensorFault(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Line(Event):
+class LineFaultChange(TimedEvent):
     """Disturb the serial line in one direction, as the emulated board's `line`."""
 
     do = "line"
@@ -228,7 +228,7 @@ class Line(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mark(Event):
+class BookmarkEvent(TimedEvent):
     """Point this moment out in the session."""
 
     do = "marker"
@@ -246,16 +246,16 @@ class Mark(Event):
         return self.text
 
 
-EVENTS: dict[str, type[Event]] = {
+EVENTS: dict[str, type[TimedEvent]] = {
     event.do: event
     for event in (
         Beacons,
         CurrentChange,
         WavesChange,
         TrimChange,
-        SensorFault,
-        Line,
-        Mark,
+        SensorFaultChange,
+        LineFaultChange,
+        BookmarkEvent,
     )
 }
 """Of the water, the line and the recording; those of the robot are its commands."""
@@ -266,7 +266,7 @@ def event_names() -> list[str]:
     return [*(name for name, cls in COMMANDS.items() if cls.policy.in_scenarios), *EVENTS]
 
 
-def read_event(table: Any, where: str) -> Event:
+def read_event(table: Any, where: str) -> TimedEvent:
     """An event from its table. Raises ConfigError with all problems."""
     if not isinstance(table, Mapping):
         raise ConfigError(f"{where} must be a table")

@@ -15,7 +15,7 @@ from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.cameras import needs_camera
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import CommandEvent, Event, Line, Mark
+from robot_runtime.experiments.scenario.events import BookmarkEvent, CommandEvent, LineFaultChange, TimedEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.link.link_driver import PERIOD as GATHERING
 from robot_runtime.simulation.boards.stepped_board import PERIOD
@@ -100,7 +100,7 @@ class _RunLoop:
         self._commands = Commands(rig.robot)
         self._changes = changes(rig.simulator)
         self._remarks: list[str] = []
-        self._arming: tuple[Arming, Event] | None = None
+        self._arming: tuple[Arming, TimedEvent] | None = None
         self._ask_again = 0.0
         self._heard = b""
         self._look_at = now = rig.clock.now()
@@ -175,7 +175,7 @@ class _RunLoop:
             heard, self._heard = self._heard, b""
             self._rig.robot.link.receive(heard)
 
-    def _happen(self, event: Event) -> None:
+    def _happen(self, event: TimedEvent) -> None:
         now = self._rig.clock.now()
         try:
             self._do(event, now)
@@ -185,7 +185,7 @@ class _RunLoop:
             if not _arms(event):
                 self._mark(event.words)
 
-    def _do(self, event: Event, now: float) -> None:
+    def _do(self, event: TimedEvent, now: float) -> None:
         rig = self._rig
         if isinstance(event, CommandEvent) and isinstance(command := event.command, ArmCommand):
             arming = rig.robot.supervisor.begin_arming(command.mode, command.alone)
@@ -193,12 +193,12 @@ class _RunLoop:
             self._ask_again = now + ARM_WAIT
         elif isinstance(event, CommandEvent):
             self._commands.perform(event.command)
-        elif isinstance(event, Line):
+        elif isinstance(event, LineFaultChange):
             rig.board.line(event.command)
         elif event.to == "simulator":
             self._changes[event.do](_as_asked(event.question))
             rig.break_devices()
-        elif not isinstance(event, Mark):
+        elif not isinstance(event, BookmarkEvent):
             raise ValueError(f"{event.do} cannot be done in simulated time")
 
     def _go_on_arming(self, now: float) -> None:
@@ -215,7 +215,7 @@ class _RunLoop:
             else:
                 self._mark(event.words)
 
-    def _refuse(self, event: Event, problem: str) -> None:
+    def _refuse(self, event: TimedEvent, problem: str) -> None:
         # As with an operator, whom the robot may refuse something: the experiment goes on.
         words = f"{event.words}: refused. {problem}"
         self._remarks.append(f"At {event.at:g} s: {words}")
@@ -228,7 +228,7 @@ class _RunLoop:
         self._listener.event("progress", time=_tidy(self._rig.clock.now()))
 
 
-def _arms(event: Event) -> bool:
+def _arms(event: TimedEvent) -> bool:
     return isinstance(event, CommandEvent) and isinstance(event.command, ArmCommand)
 
 

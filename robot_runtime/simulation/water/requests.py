@@ -30,7 +30,7 @@ class BeaconPositions:
 
 
 @dataclass(frozen=True, slots=True)
-class SensorFault:
+class SensorFaultRequest:
     """A sensor and its fault, as `SimulatedFault` has it."""
 
     sensor: str
@@ -73,7 +73,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
         simulator.set_beacons(parse(BeaconPositions, question).positions)
 
     def fault(question: Question) -> None:
-        named = parse(SensorFault, question)
+        named = parse(SensorFaultRequest, question)
         fault = SimulatedFault(kind=named.kind, share=named.share, size=named.size, speed=named.speed)
         simulator.set_fault(named.sensor, fault)
 

@@ -21,7 +21,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, read_document
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
-from server.features.comm_tests.runs import End, Runs
+from server.features.comm_tests.runs import CommTestStore, End
 from server.features.comm_tests.schemas import Cell, Phase, Place
 from server.platform.settings import Settings
 from server.platform.store import StoreError
@@ -83,7 +83,7 @@ class Progress:
 class Lab:
     """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
 
-    def __init__(self, settings: Settings, runs: Runs, clock: Clock, tell: Tell, lend: Lend) -> None:
+    def __init__(self, settings: Settings, runs: CommTestStore, clock: Clock, tell: Tell, lend: Lend) -> None:
         self.runs = runs
         self._settings = settings
         self._clock = clock

@@ -10,14 +10,14 @@ from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests import tables
 from server.features.comm_tests.lab import Lab, read_limited
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import (
     Check,
     CheckedTest,
+    CommTestRunDetails,
+    CommTestStart,
     DocumentText,
-    Run,
     RunSummary,
-    Start,
     Started,
     TableCell,
     TestDocument,
@@ -77,7 +77,9 @@ def check(document: DocumentText) -> Check:
         _503="The database does not work",
     ),
 )
-async def start(request: Request, watch: Provided[Watch], lab: Provided[Lab], wanted: Start) -> Started:
+async def start(
+    request: Request, watch: Provided[Watch], lab: Provided[Lab], wanted: CommTestStart
+) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
     if wanted.place == "robot":
         require_control(request)
@@ -112,7 +114,7 @@ def get_runs(lab: Provided[Lab]) -> list[RunSummary]:
     openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def get_run(lab: Provided[Lab], run: Identifier) -> Run:
+def get_run(lab: Provided[Lab], run: Identifier) -> CommTestRunDetails:
     """With its configuration and its cells."""
     return lab.runs.whole(_find(lab.runs, run))
 
@@ -185,7 +187,7 @@ def _describe(test: CommTest) -> CheckedTest:
     )
 
 
-def _find(runs: Runs, run: int) -> CommTestRun:
+def _find(runs: CommTestStore, run: int) -> CommTestRun:
     found = runs.find(run)
     if found is None:
         raise NotFoundError(f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")

@@ -13,7 +13,7 @@ from sqlmodel import col, desc, func, select
 
 from robot_runtime.experiments.comm_test.document import CommTest
 from server import VERSION
-from server.features.comm_tests.schemas import Cell, Place, Run, RunSummary
+from server.features.comm_tests.schemas import Cell, CommTestRunDetails, Place, RunSummary
 from server.platform.models import CommTestCell, CommTestRun
 from server.platform.store import Reader, Store
 
@@ -55,12 +55,12 @@ class KeptRuns:
             runs = database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
             return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
 
-    def whole(self, run: CommTestRun) -> Run:
+    def whole(self, run: CommTestRun) -> CommTestRunDetails:
         """A run with everything that is known of it."""
         cells = [_cell(cell) for cell in self.cells(run.id or 0)]
         rates = [cell.rate for cell in cells]
         mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
-        return Run(
+        return CommTestRunDetails(
             **_summary(run, len(cells), mean, low),
             document=json.loads(run.document),
             firmware=run.firmware,
@@ -70,7 +70,7 @@ class KeptRuns:
         )
 
 
-class Runs(KeptRuns):
+class CommTestStore(KeptRuns):
     """The same, to be added to. What is awaited is on the disk when it returns."""
 
     def __init__(self, store: Store) -> None:

@@ -32,7 +32,7 @@ class DocumentText(BaseModel):
     text: Annotated[str, Field(max_length=TEXT_MAX)]
 
 
-class Start(DocumentText):
+class CommTestStart(DocumentText):
     """A document to run, and where."""
 
     place: Place
@@ -108,7 +108,7 @@ class Cell(BaseModel):
     explanation: str
 
 
-class Run(RunSummary):
+class CommTestRunDetails(RunSummary):
     """A run with its configuration and its cells."""
 
     document: dict[str, Any]

@@ -11,7 +11,7 @@ from robot_runtime.experiments.comm_test.document import CommTest
 from server.features.comm_tests import tables
 from server.features.comm_tests.board_reservation import Board
 from server.features.comm_tests.lab import Lab
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import Place
 from server.platform.models import CommTestRun
 from server.platform.settings import Settings
@@ -24,10 +24,12 @@ def run_tests(text: str, tests: list[CommTest], place: Place, settings: Settings
     Exit status: 1 where a run did not come to its end. Raises SetupError where it cannot be begun.
     """
     with open_writer(settings.data) as store:
-        return asyncio.run(_perform(text, tests, place, settings, Runs(store)))
+        return asyncio.run(_perform(text, tests, place, settings, CommTestStore(store)))
 
 
-async def _perform(text: str, tests: list[CommTest], place: Place, settings: Settings, runs: Runs) -> int:
+async def _perform(
+    text: str, tests: list[CommTest], place: Place, settings: Settings, runs: CommTestStore
+) -> int:
     await runs.mark_interrupted()
     progress = _Progress(tests)
     board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
@@ -40,7 +42,7 @@ async def _perform(text: str, tests: list[CommTest], place: Place, settings: Set
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
 
-def _conclude(done: Sequence[CommTestRun], wanted: int, runs: Runs) -> int:
+def _conclude(done: Sequence[CommTestRun], wanted: int, runs: CommTestStore) -> int:
     for run in done:
         print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
         if run.state == "cancelled":

@@ -8,7 +8,7 @@ from importlib.resources.abc import Traversable
 from typing import Any
 
 from robot_runtime.experiments.comm_test.builder import SKETCHES
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import TestDocument
 from server.platform.models import CommTestCell, CommTestRun
 
@@ -37,7 +37,7 @@ def shipped_documents() -> list[TestDocument]:
     ]
 
 
-async def import_samples(runs: Runs, folder: Traversable | None = None) -> None:
+async def import_samples(runs: CommTestStore, folder: Traversable | None = None) -> None:
     """Store the runs that are not there yet; one that cannot be read is left out. Raises StoreError.
 
     Each file is what `mucat commtest export --format json` writes; its name is the sample's.

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.features.comparison.moments import History
+from server.features.comparison.moments import ControlHistory
 from server.features.sessions.timeline import Moment
 
 
@@ -23,7 +23,7 @@ class NoMomentError(Exception):
 
 
 def find_moment(
-    align: Align, history: History, steps: list[tuple[float, float]], markers: list[Moment]
+    align: Align, history: ControlHistory, steps: list[tuple[float, float]], markers: list[Moment]
 ) -> float:
     """The moment, s since the session's start. Raises NoMomentError where the session has none."""
     if align.by == "armed":

@@ -17,7 +17,7 @@ from server.features.comparison.figures import (
     NOTHING_THERE,
     OUTPUT,
     SET_POINT,
-    Range,
+    EvaluationRange,
     complete,
     count,
     measure,
@@ -27,15 +27,15 @@ from server.features.comparison.history import (
     read_markers,
     set_point_steps,
 )
-from server.features.comparison.moments import History, Span
+from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.result_cache import Kept
 from server.features.comparison.samples import Samples
 from server.features.comparison.schemas import (
     Compared,
     Comparison,
     Drawn,
-    Line,
     Lines,
+    SignalLine,
     TimeRange,
     WantedComparison,
     WantedLines,
@@ -59,7 +59,7 @@ class _Laid:
     """A session, and where it lies on the common time axis."""
 
     recording: Recording
-    history: History
+    history: ControlHistory
     steps: list[tuple[float, float]]
     markers: list[Moment]
     offset: float | None
@@ -80,7 +80,7 @@ class Comparer:
         self._store = store
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
-        self._histories: Kept[History] = Kept()
+        self._histories: Kept[ControlHistory] = Kept()
         self._measured: Kept[dict[str, Figure]] = Kept()
         self._counted: Kept[dict[str, Figure]] = Kept()
 
@@ -158,7 +158,7 @@ class Comparer:
             figures=self._measure(one, taken, wanted),
         )
 
-    def _measure(self, one: _Laid, taken: Range, wanted: WantedComparison) -> dict[str, Figure]:
+    def _measure(self, one: _Laid, taken: EvaluationRange, wanted: WantedComparison) -> dict[str, Figure]:
         band = wanted.band
         if wanted.range is not None and one.offset is None:
             return complete({}, one.problem)
@@ -174,7 +174,7 @@ class Comparer:
             self._counted.keep(place, counted, one.row)
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
-    def _draw(self, one: _Laid, wanted: WantedLines) -> dict[str, Line]:
+    def _draw(self, one: _Laid, wanted: WantedLines) -> dict[str, SignalLine]:
         if one.offset is None:
             return {}
         view = _shift(wanted.view, one.offset) if wanted.view else Span(0.0, max(one.row.duration, 1e-3))
@@ -185,16 +185,16 @@ class Comparer:
             if name in found
         }
         return {
-            name: Line(time=_rounded(line.time, 4), low=_values(line.low), high=_values(line.high))
+            name: SignalLine(time=_rounded(line.time, 4), low=_values(line.low), high=_values(line.high))
             for name, line in drawn.items()
         }
 
 
-def _range(one: _Laid, wanted: WantedComparison) -> Range:
+def _range(one: _Laid, wanted: WantedComparison) -> EvaluationRange:
     if wanted.range is not None:
-        return Range(() if one.offset is None else (_shift(wanted.range, one.offset),))
+        return EvaluationRange(() if one.offset is None else (_shift(wanted.range, one.offset),))
     anchor = one.offset if wanted.align.by in ("armed", "set_point") else None
-    return Range(one.history.armed, anchor)
+    return EvaluationRange(one.history.armed, anchor)
 
 
 def _shift(part: TimeRange, offset: float) -> Span:

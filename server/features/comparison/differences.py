@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from server.features.comparison.moments import History, Span
+from server.features.comparison.moments import ControlHistory, Span
 from server.platform.models import SessionRow
 
 _ROW: Mapping[str, str] = {
@@ -40,7 +40,7 @@ class Difference(BaseModel):
     values: list[str] = Field(description="one for each session; empty where it has no such thing")
 
 
-def find_differences(sessions: Sequence[tuple[SessionRow, History]]) -> list[Difference]:
+def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> list[Difference]:
     """What differs; for a single session everything but its files."""
     alone = len(sessions) == 1
     groups = [
@@ -81,7 +81,7 @@ def _entries(prefix: str, value: Any) -> Iterator[tuple[str, str]]:
         yield prefix, _words(value)
 
 
-def _in_force(history: History) -> Iterator[tuple[str, str]]:
+def _in_force(history: ControlHistory) -> Iterator[tuple[str, str]]:
     for key, title in _STATE.items():
         if key in history.state:
             yield title, _words(history.state[key])
@@ -98,7 +98,7 @@ def _in_force(history: History) -> Iterator[tuple[str, str]]:
         yield name, _sequence(list(dict.fromkeys(values)))
 
 
-def _parameters(history: History) -> Iterator[tuple[str, str]]:
+def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
     """Every parameter with the values that it had while armed, in the order of time."""
     times = [one.time for one in history.parameters]
     values: dict[str, list[str]] = {}

@@ -7,7 +7,7 @@ import numpy as np
 
 from server.features.comparison.definitions import FIGURES
 from server.features.comparison.history import read_gaps, set_point_steps
-from server.features.comparison.moments import History, Span
+from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.samples import Samples, read_topic
 from server.features.metrics.figure import Figure, FigureMark
 from server.features.metrics.limit_cycle import LimitCycle, find_limit_cycle
@@ -34,7 +34,7 @@ NEVER_ARMED = "The robot was never armed in this session."
 
 
 @dataclass(frozen=True, slots=True)
-class Range:
+class EvaluationRange:
     """The time over which figures are taken.
 
     `anchor` is the moment (s) of the step that is meant; the first one in the range without.
@@ -53,7 +53,11 @@ class Range:
 
 
 def measure(
-    recording: Recording, samples: Samples, history: History, wanted: Range, band: float | None = None
+    recording: Recording,
+    samples: Samples,
+    history: ControlHistory,
+    wanted: EvaluationRange,
+    band: float | None = None,
 ) -> dict[str, Figure]:
     """Those of FIGURES that follow from depth, set point and command; `band` is that of the settling time, m.
 
@@ -87,7 +91,7 @@ def complete(found: Mapping[str, Figure], why: str) -> dict[str, Figure]:
 
 
 def _depth_figures(
-    depth: Series, set_point: Series, history: History, wanted: Range, band: float | None
+    depth: Series, set_point: Series, history: ControlHistory, wanted: EvaluationRange, band: float | None
 ) -> dict[str, Figure]:
     response = _step(depth, set_point, history, wanted, band)
     found = _step_figures(response)
@@ -115,7 +119,7 @@ def _depth_figures(
 
 
 def _step(
-    depth: Series, set_point: Series, history: History, wanted: Range, band: float | None
+    depth: Series, set_point: Series, history: ControlHistory, wanted: EvaluationRange, band: float | None
 ) -> StepResponse | None:
     """The response to the first step in the range that is high enough, or to the one that is meant."""
     changes = [time for time, _ in set_point_steps(set_point, history.armed)]
@@ -133,7 +137,7 @@ def _step(
     return None
 
 
-def _ends(history: History) -> Iterable[float]:
+def _ends(history: ControlHistory) -> Iterable[float]:
     return (span.end for span in history.armed)
 
 
@@ -191,7 +195,7 @@ def _cycle_figures(cycle: LimitCycle | None, steady: Span, part: Series) -> dict
     }
 
 
-def _effort(output: Series, wanted: Range) -> Figure:
+def _effort(output: Series, wanted: EvaluationRange) -> Figure:
     inside = wanted.mask(output.times)
     if not inside.any():
         return Figure(value=None, words="There is no command in this range.")

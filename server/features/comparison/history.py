@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from sqlmodel import col, select
 
-from server.features.comparison.moments import Control, History, Span, Tuned
+from server.features.comparison.moments import ControlHistory, ControlPeriod, Span, Tuned
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
 from server.features.sessions.recorded_state import depth_loop
@@ -21,7 +21,7 @@ STEP_LEAST = 0.001
 """m by which a set point changes; less is rounding."""
 
 
-def read_history(recording: Recording, samples: Samples) -> History:
+def read_history(recording: Recording, samples: Samples) -> ControlHistory:
     """The history, from the state documents; armed spans else from the board's flags.
 
     Raises StoreError, RecordingError.
@@ -31,10 +31,10 @@ def read_history(recording: Recording, samples: Samples) -> History:
     if not changes:
         flags = samples.read(recording, ["status.flags"]).get("status.flags")
         armed = _spans_of_flags(flags) if flags is not None else ()
-        return History(armed, bool(armed) and _began_armed(armed, flags), (), {})
+        return ControlHistory(armed, bool(armed) and _began_armed(armed, flags), (), {})
     armed = tuple(_spans_of_states(changes, origin, end))
     before = [one for one in changes if not armed or one["time"] - origin <= armed[0].start]
-    return History(
+    return ControlHistory(
         armed=armed,
         armed_at_start=bool(changes[0].get("armed")) and changes[0].get("armed_since") is None,
         controls=tuple(_controls(changes, origin)),
@@ -106,7 +106,7 @@ def _tuned(recording: Recording, origin: float) -> Iterator[Tuned]:
             yield Tuned(document["time"] - origin, values)
 
 
-def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[Control]:
+def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[ControlPeriod]:
     before: tuple[str, dict[str, float]] | None = None
     for document in changes:
         loop = depth_loop(document)
@@ -115,4 +115,4 @@ def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[Control]
         gains = {gain["name"]: float(gain["value"]) for gain in chosen["gains"]} if chosen else {}
         if (name, gains) != before:
             before = name, gains
-            yield Control(document["time"] - origin, name, gains)
+            yield ControlPeriod(document["time"] - origin, name, gains)

@@ -13,7 +13,7 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Control:
+class ControlPeriod:
     """The controller in force from `time` on, with its gains by name."""
 
     time: float
@@ -30,14 +30,14 @@ class Tuned:
 
 
 @dataclass(frozen=True, slots=True)
-class History:
+class ControlHistory:
     """When the robot was armed, and how it was controlled; times in s since the session's start."""
 
     armed: tuple[Span, ...]
     """The first may begin before the recording did, which is known where the state documents say so."""
     armed_at_start: bool
     """It was armed before the recording began, and nothing says when."""
-    controls: tuple[Control, ...]
+    controls: tuple[ControlPeriod, ...]
     state: dict[str, Any]
     """The newest state document at the first arming, or the first of all; empty where there is none."""
     parameters: tuple[Tuned, ...] = ()

@@ -13,7 +13,7 @@ import plotly.graph_objects as go
 from plotly.io import to_html
 
 from server import VERSION
-from server.features.comparison.schemas import Compared, Comparison, Line, TimeRange
+from server.features.comparison.schemas import Compared, Comparison, SignalLine, TimeRange
 from server.features.comparison.signals import Signal
 from server.features.metrics.figure import FigureMeaning
 
@@ -192,7 +192,7 @@ def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
     )
 
 
-def _points(line: Line, offset: float) -> tuple[list[float], list[float | None]]:
+def _points(line: SignalLine, offset: float) -> tuple[list[float], list[float | None]]:
     """Each column's least and most one after the other."""
     pairs = [
         (round(time - offset, 4), value)

@@ -46,7 +46,7 @@ class WantedComparison(WantedLines):
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
 
 
-class Line(BaseModel):
+class SignalLine(BaseModel):
     """A signal over time, thinned out to least and most of each column; null breaks the line."""
 
     time: list[float] = Field(description="s since the session's start")
@@ -60,7 +60,7 @@ class Drawn(BaseModel):
     id: int
     offset: float | None = Field(description="s since its start of what is 0 s; null where it lacks that")
     problem: str = Field(description="why it cannot be laid over the others; empty where it can")
-    series: dict[str, Line] = Field(description="by signal; without those that it does not have")
+    series: dict[str, SignalLine] = Field(description="by signal; without those that it does not have")
 
 
 class Compared(Drawn):

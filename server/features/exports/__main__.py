@@ -17,7 +17,7 @@ from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.files import FileWriteError, write_part
 from server.features.exports.formats import check
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.recording import RecordingError
 from server.features.sessions.session import find_row
 from server.platform.store import Reader, StoreError
@@ -63,7 +63,7 @@ def _write(database: Path, session: int, wanted: Wanted, path: Path) -> None:
     row = find_row(store, session)
     if row is None:
         raise ExportRequestError(f"There is no session {session} any more.")
-    source = Source(store, row, wanted, _Progress().tell)
+    source = ExportSelection(store, row, wanted, _Progress().tell)
     written = write_part(path, lambda output: check(wanted).write(store, source, output))
     _tell(written._asdict())
 

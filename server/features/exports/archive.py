@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 
 from sqlmodel import SQLModel, col, select
 
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.zip_stream import Packing
 from server.platform.models import Gap, Marker, SessionTag
 from server.platform.store import Reader
@@ -26,7 +26,7 @@ HEAD = Struct("<IddqII16s")
 SESSION, CHECKSUMS, CHUNKS = "session.json", "checksums.json", "chunks/"
 
 
-def write_archive(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """The archive of a whole session. Raises ExportRequestError while it is being recorded, StoreError."""
     if source.row.state == "recording":
         raise ExportRequestError(
@@ -78,7 +78,7 @@ class _Members:
         self._packing.close()
 
 
-def _describe(store: Reader, source: Source) -> dict[str, Any]:
+def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:
     row = source.row
     session = row.model_dump(exclude={"id", "deleted", "kept"})
     session |= {"robot_state": json.loads(row.robot_state), "topics": json.loads(row.topics)}

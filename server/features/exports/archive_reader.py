@@ -65,7 +65,7 @@ class TopicField(_Strict):
     meaning: Words = ""
 
 
-class Topic(_Strict):
+class ArchivedTopic(_Strict):
     """A topic, as `chunks.describe_topics` has it."""
 
     meaning: Words
@@ -74,7 +74,7 @@ class Topic(_Strict):
     fields: Annotated[list[TopicField], Field(max_length=1000)]
 
     @model_validator(mode="after")
-    def _agrees(self) -> "Topic":
+    def _agrees(self) -> "ArchivedTopic":
         if self.kind == "rows":
             if any(field.code is None or field.code not in CODES for field in self.fields):
                 raise ValueError("its fields have no types that are known")
@@ -100,7 +100,7 @@ class ArchivedSession(_Strict):
     duration: Annotated[float, Field(ge=0, le=1e12)]
     configuration: Text
     robot_state: dict[str, Any] | None
-    topics: dict[Name, Topic]
+    topics: dict[Name, ArchivedTopic]
     boot: Words = ""
     scenario: Text = ""
     scenario_name: Words = ""

@@ -35,7 +35,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
     from server.features.exports.files import put_in_place, write_part
     from server.features.exports.formats import check
     from server.features.exports.schemas import Wanted
-    from server.features.exports.selection import Source
+    from server.features.exports.selection import ExportSelection
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_reader
 
@@ -48,7 +48,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
             row = find_row(store, session)
             if row is None:
                 raise SetupError(f"There is no session {session} in {settings.data.path}.")
-            source = Source(store, row, wanted, _Progress().tell)
+            source = ExportSelection(store, row, wanted, _Progress().tell)
             path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
             written = write_part(part, lambda file: kind.write(store, source, file))

@@ -10,14 +10,14 @@ from server.features.exports.mcap_file import check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.report import write_session_report
 from server.features.exports.schemas import Format, Wanted
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
 from server.platform.store import Reader
 
-Write = Callable[[Reader, Source, BinaryIO], None]
+Write = Callable[[Reader, ExportSelection, BinaryIO], None]
 
 
-class Kind(NamedTuple):
+class ExportFormat(NamedTuple):
     """A format: how it is written, the ending of its files' names, and their media type."""
 
     write: Write
@@ -28,20 +28,20 @@ class Kind(NamedTuple):
 
 
 ZIP = "application/zip"
-KINDS: dict[Format, Kind] = {
-    "csv": Kind(write_tables, ".csv.zip", ZIP),
-    "csv-grid": Kind(write_grid, ".grid.zip", ZIP),
-    "jsonl": Kind(write_lines, ".jsonl", "application/jsonl"),
-    "parquet": Kind(write_parquet, ".parquet.zip", ZIP, check_parquet),
-    "mcap": Kind(write_mcap, ".mcap", "application/octet-stream", check_mcap),
-    "archive": Kind(write_archive, ".mucat.zip", ZIP),
-    "report": Kind(write_session_report, ".html", "text/html"),
+KINDS: dict[Format, ExportFormat] = {
+    "csv": ExportFormat(write_tables, ".csv.zip", ZIP),
+    "csv-grid": ExportFormat(write_grid, ".grid.zip", ZIP),
+    "jsonl": ExportFormat(write_lines, ".jsonl", "application/jsonl"),
+    "parquet": ExportFormat(write_parquet, ".parquet.zip", ZIP, check_parquet),
+    "mcap": ExportFormat(write_mcap, ".mcap", "application/octet-stream", check_mcap),
+    "archive": ExportFormat(write_archive, ".mucat.zip", ZIP),
+    "report": ExportFormat(write_session_report, ".html", "text/html"),
 }
 
 WHOLE_ONLY = ("archive", "report")
 
 
-def check(wanted: Wanted) -> Kind:
+def check(wanted: Wanted) -> ExportFormat:
     """The format of what is wanted. Raises ExportRequestError where choices do not go together."""
     if wanted.columns is not None and wanted.format != "csv-grid":
         raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")

@@ -6,7 +6,7 @@ from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import csv_text
 from server.features.exports.zip_stream import Packing
 from server.features.sessions.chunks import row_layout
@@ -34,7 +34,7 @@ session.json holds everything else about the session.
 """
 
 
-def write_grid(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """A zip file of `grid.csv`, `README.txt` and `session.json`.
 
     Raises ExportRequestError on columns that are not there or too many lines, StoreError, RecordingError.
@@ -64,7 +64,7 @@ def write_grid(store: Reader, source: Source, output: BinaryIO) -> None:
     packing.close()
 
 
-def _choose(source: Source) -> dict[str, dict[str, str]]:
+def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
     """By topic, in the order wanted: the column's name and its title, such as "depth.depth [m]"."""
     there = {
         name: {column.partition(" [")[0]: f"{name}.{column}" for column in row_layout(topic).columns}
@@ -87,7 +87,7 @@ def _choose(source: Source) -> dict[str, dict[str, str]]:
     return chosen
 
 
-def _range(source: Source) -> tuple[float, float]:
+def _range(source: ExportSelection) -> tuple[float, float]:
     """The first and the last moment, in s since the start."""
     wanted = source.wanted
     first = 0.0 if wanted.start is None else wanted.start
@@ -97,7 +97,7 @@ def _range(source: Source) -> tuple[float, float]:
     return first, last
 
 
-def _usual_gap(source: Source, topic: str) -> float:
+def _usual_gap(source: ExportSelection, topic: str) -> float:
     """s between two samples: the median over the chunks."""
     spans = source.spans(topic)
     within = [(last - first) / (count - 1) for first, last, count in spans if count > 1]
@@ -107,7 +107,7 @@ def _usual_gap(source: Source, topic: str) -> float:
 
 
 def _window(
-    source: Source, chosen: dict[str, dict[str, str]], limits: dict[str, float], times: list[float]
+    source: ExportSelection, chosen: dict[str, dict[str, str]], limits: dict[str, float], times: list[float]
 ) -> str:
     import numpy as np  # only where somebody exports: it costs a small computer memory
 

@@ -20,7 +20,7 @@ from server.features.exports.export_process import Child, ExportProcessError
 from server.features.exports.files import FileWriteError, explain, put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import Job, NewExport, Wanted
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
@@ -79,7 +79,7 @@ class Jobs:
             raise RefusedError(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
         plain = Wanted.model_validate(wanted.model_dump(exclude={"session"}))
         kind = check(plain)
-        source = Source(self._store, row, plain)
+        source = ExportSelection(self._store, row, plain)
         job = Job(
             id=token_hex(8),
             session=wanted.session,

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from itertools import repeat
 from typing import Any, BinaryIO
 
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.features.exports.values import Rows
 from server.platform.store import Reader
 
 
-def write_lines(_store: Reader, source: Source, output: BinaryIO) -> None:
+def write_lines(_store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Each object has `topic`, `time` (s since the session's start), `utc` and the sample's fields.
 
     Of a picture that is `jpeg`, in Base64.
@@ -24,7 +24,7 @@ def write_lines(_store: Reader, source: Source, output: BinaryIO) -> None:
         output.write(line + b"\n")
 
 
-def _lines(source: Source, name: str, place: int) -> Iterator[tuple[float, int, bytes]]:
+def _lines(source: ExportSelection, name: str, place: int) -> Iterator[tuple[float, int, bytes]]:
     kind = source.topics[name]["kind"]
     if kind == "rows":
         rows = Rows(source, name)

@@ -16,7 +16,7 @@ from robot_runtime.contract.topics import LINES
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, level, stamp
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.sessions.recorded_state import depth_loop
 from server.platform.models import Marker
@@ -48,7 +48,7 @@ def check_mcap() -> None:
         ) from problem
 
 
-def write_mcap(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """A channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
 
     Raises ExportRequestError, StoreError, RecordingError.
@@ -101,7 +101,7 @@ class _Channels:
         self._writer.add_message(self._numbers[topic], time, data, time)
 
 
-def _write_about(store: Reader, source: Source, writer: Any) -> None:
+def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
     row = source.row
     described = describe_session(store, source)
     about = (
@@ -133,7 +133,7 @@ def _gains(state: dict[str, Any] | None) -> dict[str, str]:
     return {"controller": str(loop.get("controller", "")), **gains}
 
 
-def _samples(store: Reader, source: Source) -> list[Iterator[_Sample]]:
+def _samples(store: Reader, source: ExportSelection) -> list[Iterator[_Sample]]:
     readers = {"rows": _rows, "documents": _documents, "picture": _pictures}
     found = [
         readers[source.topics[name]["kind"]](source, name, place) for place, name in enumerate(source.names)
@@ -141,7 +141,7 @@ def _samples(store: Reader, source: Source) -> list[Iterator[_Sample]]:
     return [*found, _markers(store, source)]
 
 
-def _rows(source: Source, name: str, place: int) -> Iterator[_Sample]:
+def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     rows = Rows(source, name)
     for times, columns in rows.batches():
         since = [source.since_start(time) for time in times]
@@ -149,14 +149,14 @@ def _rows(source: Source, name: str, place: int) -> Iterator[_Sample]:
         yield from zip(map(source.utc_ns, times), repeat(place), lines, repeat(None))
 
 
-def _documents(source: Source, name: str, place: int) -> Iterator[_Sample]:
+def _documents(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
         data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
         yield (time, place, data, {**document, "topic": name} if name in LINES else None)
 
 
-def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
+def _pictures(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     for moment, jpeg in source.pictures(name, source.start, source.end):
         time = source.utc_ns(moment)
         image = {
@@ -168,7 +168,7 @@ def _pictures(source: Source, name: str, place: int) -> Iterator[_Sample]:
         yield (time, place, _dump(image), None)
 
 
-def _markers(store: Reader, source: Source) -> Iterator[_Sample]:
+def _markers(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
     query = select(Marker).where(Marker.session_id == source.row.id).order_by(col(Marker.time))
     with store.read() as database:
         markers = database.exec(query).all()

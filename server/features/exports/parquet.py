@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.exports.zip_stream import Packing
 from server.platform.store import Reader
@@ -26,7 +26,7 @@ def check_parquet() -> None:
         ) from problem
 
 
-def write_parquet(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """A zip file of `session.json` and a Parquet file for each topic.
 
     Columns are `time` (s since the session's start), `utc` and the fields in SI units; what is no number in
@@ -41,7 +41,7 @@ def write_parquet(store: Reader, source: Source, output: BinaryIO) -> None:
     packing.close()
 
 
-def _write_topic(source: Source, name: str, file: Any) -> None:
+def _write_topic(source: ExportSelection, name: str, file: Any) -> None:
     import pyarrow as pa
     from pyarrow.parquet import ParquetWriter
 
@@ -64,7 +64,7 @@ def _write_topic(source: Source, name: str, file: Any) -> None:
             writer.write_table(pa.Table.from_batches(waiting))
 
 
-def _rows(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+def _rows(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
     import pyarrow as pa
 
     rows = Rows(source, name)
@@ -78,7 +78,7 @@ def _rows(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
     return pa.schema(_head() + fields), rows.batches()
 
 
-def _documents(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+def _documents(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
     import pyarrow as pa
 
     names = [field["name"] for field in source.topics[name]["fields"] if field["name"] != "time"]
@@ -90,7 +90,7 @@ def _documents(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]
     return pa.schema(_head() + [pa.field(one, pa.string()) for one in names]), batches()
 
 
-def _pictures(source: Source, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
+def _pictures(source: ExportSelection, name: str) -> tuple[Any, Iterator[tuple[Any, Any]]]:
     import pyarrow as pa
 
     pictures = source.pictures(name, source.start, source.end)

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 
 PERIOD_NS = 100_000_000
 """Between two poses: 3-D panels interpolate, and more would only cost time and room."""
@@ -20,7 +20,7 @@ class Pose:
     down).
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: ExportSelection) -> None:
         self._attitude_topic = "imu" if "imu" in source.names else "truth"
         self._position_topic = "truth" if "truth" in source.names else "depth"
         self._has_position = self._position_topic in source.names

@@ -3,14 +3,14 @@
 from typing import BinaryIO
 
 from server.features.comparison.schemas import DEFAULT_SIGNALS, WantedComparison
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.platform.store import Reader
 
 POINTS = 2000
 """Columns of a chart; each has its least and its most value."""
 
 
-def write_session_report(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_session_report(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """The report of a whole session. Raises StoreError, RecordingError."""
     from server.features.comparison.comparer import Comparer  # NumPy and Plotly, only for this format
     from server.features.comparison.report import write_report

@@ -22,7 +22,7 @@ class ExportRequestError(InvalidError):
     """It cannot be made"""
 
 
-class Source(Recording):
+class ExportSelection(Recording):
     """The chosen part of a session. `start` and `end` are on the session's steady clock (s).
 
     Raises ExportRequestError on a topic that the session does not have, or a range that is none.

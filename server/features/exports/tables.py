@@ -8,13 +8,13 @@ from itertools import chain
 from typing import Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import Packing
 from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
 
-def write_tables(store: Reader, source: Source, output: BinaryIO) -> None:
+def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a zip file of `session.json`, a CSV file for each topic and JPEG files.
 
     Raises StoreError, RecordingError.
@@ -40,7 +40,7 @@ def csv_text(lines: Iterable[Iterable[str]]) -> str:
     return text.getvalue()
 
 
-def _lines(source: Source, name: str) -> Iterator[str]:
+def _lines(source: ExportSelection, name: str) -> Iterator[str]:
     topic = source.topics[name]
     if topic["kind"] == "rows":
         columns, write = _row_writer(source, topic)
@@ -56,7 +56,9 @@ def _lines(source: Source, name: str) -> Iterator[str]:
             yield csv_text([[f"{source.since_start(time):.6f}", source.utc(time), *cells]])
 
 
-def _row_writer(source: Source, topic: dict[str, Any]) -> tuple[tuple[str, ...], Callable[[bytes], str]]:
+def _row_writer(
+    source: ExportSelection, topic: dict[str, Any]
+) -> tuple[tuple[str, ...], Callable[[bytes], str]]:
     layout = row_layout(topic)
     line = f"%.6f,%s,{layout.line}\n"
 

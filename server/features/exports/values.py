@@ -10,7 +10,7 @@ from itertools import chain
 from math import isfinite
 from typing import Any
 
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.features.sessions.chunks import DIGITS, SCALED_DIGITS, row_layout
 
 MICRO = 1e-6
@@ -61,7 +61,7 @@ Columns = list[Sequence[Any]]
 class Rows:
     """Reads a topic of rows: batches of their times (s, steady clock) and of their values by column."""
 
-    def __init__(self, source: Source, name: str) -> None:
+    def __init__(self, source: ExportSelection, name: str) -> None:
         topic = source.topics[name]
         self.fields = fields_of(topic)
         self._source = source

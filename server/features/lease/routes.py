@@ -13,9 +13,9 @@ router = APIRouter(prefix="/api/control", tags=["control"])
 
 
 @router.get("", summary="Who has control", operation_id="getControl", openapi_extra=needs(Need.VIEWER))
-async def get_control(arbiter: Provided[ControlArbiter]) -> schemas.Control:
+async def get_control(arbiter: Provided[ControlArbiter]) -> schemas.ControlDetails:
     """The client in control, and the counts of stick commands."""
-    return schemas.Control(**arbiter.state().model_dump(), driven=arbiter.driving.counts)
+    return schemas.ControlDetails(**arbiter.state().model_dump(), driven=arbiter.driving.counts)
 
 
 @router.post(

@@ -28,7 +28,7 @@ class ControlState(BaseModel):
     holder: Holder | None
 
 
-class Control(ControlState):
+class ControlDetails(ControlState):
     """The same, and the counts of stick commands."""
 
     driven: Driven

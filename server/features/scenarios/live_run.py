@@ -8,13 +8,13 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import Event, Line
+from robot_runtime.experiments.scenario.events import LineFaultChange, TimedEvent
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.parameters.changes import Changes, Send
 from server.features.scenarios.live_setup import Before, Surroundings
 from server.features.scenarios.recording import begin, describe_session, mark
-from server.features.scenarios.run import Run, RunCancelledError, RunFailedError
-from server.features.scenarios.snapshot import Left
+from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
+from server.features.scenarios.snapshot import ScenarioSnapshot
 from server.features.sessions.recorder import Recorder
 from server.health.monitor import Watch
 from server.platform.settings import Settings
@@ -52,7 +52,7 @@ class Live:
         self._parts = parts
         self._clock = clock
         self._tell = tell
-        self._left = Left(settings.data.scenario_before)
+        self._left = ScenarioSnapshot(settings.data.scenario_before)
         self._recovering = False
         self._surroundings = Surroundings(
             bridge, settings.data.board_socket if settings.emulated_board else None
@@ -63,7 +63,7 @@ class Live:
         if reasons := [*self._occupied(), *self._unlike(scenario)]:
             raise RefusedError(" ".join(reasons))
 
-    async def perform(self, run: Run) -> None:
+    async def perform(self, run: RunRecord) -> None:
         """From its beginning to its end. Raises what may go wrong on its way."""
         self.check(run.scenario)
         run.phase = "preparing"
@@ -104,7 +104,7 @@ class Live:
         )
         self._tell("scenario", "caution", words)
 
-    async def _record(self, run: Run, send: Send) -> None:
+    async def _record(self, run: RunRecord, send: Send) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
         session = await begin(self._recorder, self._store, run, row)
         try:
@@ -116,7 +116,7 @@ class Live:
             run.phase = "ending"
             await _whole(self._finish(session))
 
-    async def _play(self, run: Run, began: float, send: Send) -> None:
+    async def _play(self, run: RunRecord, began: float, send: Send) -> None:
         processes = self._processes()
         coming = list(run.scenario.events)
         while True:
@@ -130,7 +130,7 @@ class Live:
             until = min([run.scenario.duration, *(event.at for event in coming[:1])])
             await run.sleep(min(until - run.elapsed, LOOK_SECONDS))
 
-    async def _happen(self, run: Run, event: Event, began: float, send: Send) -> None:
+    async def _happen(self, run: RunRecord, event: TimedEvent, began: float, send: Send) -> None:
         assert run.session is not None
         words = event.words
         if event.to != "session":
@@ -142,7 +142,7 @@ class Live:
                 run.remarks.append(f"At {event.at:g} s: {words}")
         await mark(self._store, run.session, max(self._clock.now(), began), words)
 
-    def _look(self, run: Run, processes: Mapping[str, int | None]) -> None:
+    def _look(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:
         """Raises RunFailedError where what the run needs is no longer there."""
         recording = self._recorder.session
         if recording is None or recording.id != run.session:
@@ -197,7 +197,9 @@ class Live:
     def _unlike(self, scenario: Scenario) -> list[str]:
         """Why the running robot is not the scenario's."""
         reasons = []
-        if not self._settings.emulated_board and any(isinstance(one, Line) for one in scenario.events):
+        if not self._settings.emulated_board and any(
+            isinstance(one, LineFaultChange) for one in scenario.events
+        ):
             reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
         if scenario.robot != SimulationParameters():
             reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")

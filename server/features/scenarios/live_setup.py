@@ -20,7 +20,7 @@ from robot_runtime.contract.limits import SET_POINTS, LoopName
 from robot_runtime.control.controllers import CONTROLLERS, Controller
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import CommandEvent, Event, Line
+from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
 from server.features.parameters.changes import Send
@@ -83,9 +83,9 @@ class Surroundings:
         if vision.camera == "card":
             await send(CardCommand())
 
-    async def apply(self, event: Event, send: Send) -> None:
+    async def apply(self, event: TimedEvent, send: Send) -> None:
         """Do what an event says to runtime, simulator or board."""
-        if isinstance(event, Line):
+        if isinstance(event, LineFaultChange):
             await self._order(event.command)
         elif not isinstance(event, CommandEvent):
             await self._bridge.ask_simulator(event.do, event.question)

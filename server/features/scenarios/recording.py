@@ -8,7 +8,7 @@ from sqlmodel import col, desc, select
 
 from robot_runtime.clock import Clock
 from robot_runtime.errors import RefusedError
-from server.features.scenarios.run import Run
+from server.features.scenarios.run import RunRecord
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
 from server.platform.models import Marker, SessionRow
@@ -16,7 +16,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 
 
-def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: str) -> SessionRow:
+def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_state: str) -> SessionRow:
     """The session of a run that begins now. Raises RefusedError where the configuration cannot be read."""
     scenario = run.scenario
     try:
@@ -30,7 +30,7 @@ def describe_session(settings: Settings, clock: Clock, run: Run, robot_state: st
     return row
 
 
-async def begin(recorder: Recorder, store: Store, run: Run, row: SessionRow) -> int:
+async def begin(recorder: Recorder, store: Store, run: RunRecord, row: SessionRow) -> int:
     """Record the run from now on; the session's number. Raises RecordingRefusedError, StoreError."""
     session = await recorder.start(row)
     run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)

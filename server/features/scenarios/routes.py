@@ -6,7 +6,7 @@ from fastapi.concurrency import run_in_threadpool
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
 from server.features.lease.admission import require_control
 from server.features.scenarios.library import keep_scenario, list_scenarios
-from server.features.scenarios.runs import Runs as ScenarioRuns
+from server.features.scenarios.runs import ScenarioRunner as ScenarioRuns
 from server.features.scenarios.schemas import (
     ScenarioCheck,
     ScenarioDocument,

@@ -25,7 +25,7 @@ class RunFailedError(Exception):
 
 
 @dataclass(slots=True)
-class Run:
+class RunRecord:
     """Everything about one run; `elapsed` in s of the scenario."""
 
     number: int

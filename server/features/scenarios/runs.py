@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
-from server.features.scenarios.run import Run, RunCancelledError, RunFailedError
+from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
 from server.features.scenarios.schemas import BoardKind, End, EndedRun, Place, QueuedRun, ScenarioState
 from server.features.sessions.recorder import RecordingRefusedError
 from server.platform.store import StoreError
@@ -27,27 +27,27 @@ class Stage(Protocol):
     def check(self, scenario: Scenario) -> None:
         """Raises RefusedError with all reasons why it cannot be performed here now."""
 
-    async def perform(self, run: Run) -> None:
+    async def perform(self, run: RunRecord) -> None:
         """From its beginning to its end.
 
         Raises RunCancelledError, RunFailedError, and what it meets on its way.
         """
 
 
-class Runs:
+class ScenarioRunner:
     """At most one scenario runs at a time; `tell` hears of all progress."""
 
     def __init__(self, live: Stage, simulated: Stage, tell: Callable[[dict[str, Any]], None]) -> None:
         self._stages: dict[Place, Stage] = {"live": live, "simulated": simulated}
         self._tell = tell
         self._number = 0
-        self._active: Run | None = None
-        self._queue: deque[Run] = deque()
+        self._active: RunRecord | None = None
+        self._queue: deque[RunRecord] = deque()
         self._last: EndedRun | None = None
         self._task: asyncio.Task[None] | None = None
 
     @property
-    def active(self) -> Run | None:
+    def active(self) -> RunRecord | None:
         """The run that is on."""
         return self._active
 
@@ -73,7 +73,7 @@ class Runs:
             raise RefusedError(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
         self._stages[place].check(scenario)
         self._number += 1
-        run = Run(self._number, scenario, text, place, board, who)
+        run = RunRecord(self._number, scenario, text, place, board, who)
         self._queue.append(run)
         if self._task is None or self._task.done():
             # Now, and not when the task begins: whoever asks next must find it occupied.
@@ -120,7 +120,7 @@ class Runs:
                 self._active = self._queue.popleft() if self._queue else None
                 self.announce()
 
-    async def _perform(self, run: Run) -> EndedRun:
+    async def _perform(self, run: RunRecord) -> EndedRun:
         state: End = "complete"
         problem = ""
         try:

@@ -11,7 +11,7 @@ import click
 
 from robot_runtime.clock import SteadyClock
 from server.features.lease.command import in_control, renew_control
-from server.features.scenarios.runs import Runs
+from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
 from server.features.scenarios.simulated_run import Simulated
 from server.platform.folder_lock import claim
@@ -52,7 +52,9 @@ def _run_here(wanted: ScenarioStart, settings: Settings) -> EndedRun:
 async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
     told = _Progress()
     simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
-    runs = Runs(simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message)))
+    runs = ScenarioRunner(
+        simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message))
+    )
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
     runs.start(wanted.text, wanted.place, wanted.board)

@@ -22,7 +22,7 @@ from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.transport.blocks import Block, read_blocks
 from server.features.scenarios.recording import begin, describe_session, mark
-from server.features.scenarios.run import Run, RunFailedError
+from server.features.scenarios.run import RunFailedError, RunRecord
 from server.features.sessions.recorder import Recorder
 from server.platform.notices import Notices
 from server.platform.settings import Settings
@@ -39,7 +39,7 @@ END_SECONDS = 10.0
 """After which a process that was asked to end is killed."""
 
 
-class SimulatedClock:
+class ScenarioClock:
     """The scenario's own time, s since its beginning."""
 
     def __init__(self) -> None:
@@ -61,9 +61,9 @@ class Simulated:
     def check(self, scenario: Scenario) -> None:
         """There is always room for one more in the queue."""
 
-    async def perform(self, run: Run) -> None:
+    async def perform(self, run: RunRecord) -> None:
         """From its beginning to its end. Raises RunCancelledError, RunFailedError, StoreError, OSError."""
-        clock = SimulatedClock()
+        clock = ScenarioClock()
         recorder = Recorder(self._store, clock, self._notices, lambda: None)
         run.phase = "preparing"
         try:
@@ -84,7 +84,7 @@ class _Playback:
     """Takes in what the process tells."""
 
     def __init__(
-        self, run: Run, settings: Settings, store: Store, recorder: Recorder, clock: SimulatedClock
+        self, run: RunRecord, settings: Settings, store: Store, recorder: Recorder, clock: ScenarioClock
     ) -> None:
         self._run = run
         self._settings = settings
@@ -139,7 +139,7 @@ class _Playback:
 
 
 @asynccontextmanager
-async def _process(run: Run, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
+async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
     """The process, which has the scenario's text; `words` are the last lines of its complaints."""
     command = [
         "nice",
@@ -191,7 +191,7 @@ async def _listen(process: Process, words: deque[str]) -> None:
         words.append(line.decode(errors="replace").strip())
 
 
-async def _end_when_cancelled(process: Process, run: Run) -> None:
+async def _end_when_cancelled(process: Process, run: RunRecord) -> None:
     await run.cancelled()
     _signal(process, signal.SIGTERM)
     await asyncio.sleep(END_SECONDS)

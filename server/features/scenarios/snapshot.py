@@ -8,7 +8,7 @@ from robot_runtime.durable_files import write_whole
 from server.features.scenarios.live_setup import Before
 
 
-class Left:
+class ScenarioSnapshot:
     """A file that is there while a scenario has the robot and its water in its hands."""
 
     def __init__(self, path: Path) -> None:

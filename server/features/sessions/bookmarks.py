@@ -9,7 +9,7 @@ from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.schemas import Mark
+from server.features.sessions.schemas import Bookmark
 from server.features.sessions.session import SessionStateError, require
 from server.platform.errors import NotFoundError
 from server.platform.models import Marker, SessionRow
@@ -32,11 +32,11 @@ class Markers:
         self._clock = clock
         self._recorder = recorder
 
-    async def add(self, session: int, moment: float | None, text: str) -> Mark:
+    async def add(self, session: int, moment: float | None, text: str) -> Bookmark:
         """Mark a moment; None is now, in a session that records."""
         now = self._now(session)
 
-        def write(connection: Connection) -> Mark:
+        def write(connection: Connection) -> Bookmark:
             require(connection, session)
             start, duration = _span(connection, session)
             steady = _place(moment, start, duration, now)
@@ -50,11 +50,11 @@ class Markers:
 
         return await self._store.write(write)
 
-    async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Mark:
+    async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Bookmark:
         """Move a mark, or say something else of it; None leaves it as it is."""
         now = self._now(session)
 
-        def write(connection: Connection) -> Mark:
+        def write(connection: Connection) -> Bookmark:
             row = _require_mark(connection, session, mark)
             start, duration = _span(connection, session)
             if moment is not None:
@@ -83,10 +83,10 @@ class Markers:
         return self._clock.now() if active is not None and active.id == session else None
 
 
-def show_marks(markers: Iterable[Marker], start: float) -> list[Mark]:
+def show_marks(markers: Iterable[Marker], start: float) -> list[Bookmark]:
     """Marks in the order of their times, of a session that began at `start` (s, steady clock)."""
     return [
-        Mark(
+        Bookmark(
             id=one.id or 0,
             time=one.time - start,
             text=one.text,

@@ -25,7 +25,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME, RECORDED, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
-from server.features.sessions.resume import Left, Missing, find_left
+from server.features.sessions.resume import InterruptedSession, Missing, find_left
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import from_row
 from server.platform.errors import ConflictError
@@ -104,7 +104,7 @@ class Recorder:
         self._standing: Block | None = None
         self._reset()
 
-    async def recover(self) -> Left | None:
+    async def recover(self) -> InterruptedSession | None:
         """Mark what a crash has left recording as interrupted, but for a session that may perhaps go on.
 
         Raises StoreError.
@@ -120,7 +120,7 @@ class Recorder:
             )
         return left
 
-    async def resume(self, left: Left, missing: Mapping[str, Missing]) -> None:
+    async def resume(self, left: InterruptedSession, missing: Mapping[str, Missing]) -> None:
         """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
 
         `missing` is what each sender has that is not stored, by its name. To be called before any of that is

@@ -32,7 +32,7 @@ class Last:
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class InterruptedSession:
     """A session that was left recording, and where its topics (by name) end."""
 
     row: SessionRow
@@ -54,7 +54,7 @@ class Missing:
     sent: Mapping[str, int]
 
 
-def find_left(store: Store) -> Left | None:
+def find_left(store: Store) -> InterruptedSession | None:
     """The newest session that was left recording since this computer was started. Raises StoreError."""
     with store.read() as database:
         row = database.exec(
@@ -76,10 +76,10 @@ def find_left(store: Store) -> Left | None:
             for end in ends
         }
         database.expunge(row)
-    return Left(row, last)
+    return InterruptedSession(row, last)
 
 
-def find_missing(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> Missing:
+def find_missing(left: InterruptedSession, topics: Sequence[Topic], kept: BacklogReply) -> Missing:
     """Compare what is stored with what the sender of these topics has kept."""
     blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
     for block in kept.blocks:
@@ -104,7 +104,7 @@ def find_missing(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> Mis
     return Missing(first, same_run, whole, sent if same_run else {})
 
 
-def _new(left: Left, topics: Sequence[Topic], kept: BacklogReply) -> bool:
+def _new(left: InterruptedSession, topics: Sequence[Topic], kept: BacklogReply) -> bool:
     """True if nothing of this sender is stored yet, and it is the one with which the session began.
 
     That is known of the runtime, whose `state` is stored at the start. A session takes any simulator.

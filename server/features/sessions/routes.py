@@ -15,7 +15,7 @@ from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.replay import HISTORY_MAX, read_stretch
 from server.features.sessions.retention import Tidying
 from server.features.sessions.schemas import (
-    Mark,
+    Bookmark,
     MarkChanges,
     NewMark,
     NewSession,
@@ -205,7 +205,7 @@ def get_thumbnail(
 )
 async def add_mark(
     markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, wanted: NewMark
-) -> Mark:
+) -> Bookmark:
     """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
     mark = await markers.add(session, wanted.time, wanted.text)
     catalogue.tell(session)
@@ -221,7 +221,7 @@ async def add_mark(
 )
 async def change_mark(
     markers: Provided[Markers], session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
-) -> Mark:
+) -> Bookmark:
     """Move it, or say something else of it."""
     return await markers.change(session, mark, wanted.time, wanted.text)
 

@@ -45,7 +45,7 @@ class Session(BaseModel):
     deleted: datetime | None = Field(description="UTC; since when it has been in the bin")
 
 
-class Mark(BaseModel):
+class Bookmark(BaseModel):
     """A moment that somebody pointed out."""
 
     id: int
@@ -90,7 +90,7 @@ class SessionDetail(Session):
     scenario: str = Field(description="TOML; empty without one")
     configuration: str = Field(description="robot.toml as it was at the start")
     robot_state: dict[str, Any] | None = Field(description="the `state` document at the start")
-    marks: list[Mark] = Field(description="in the order of their times")
+    marks: list[Bookmark] = Field(description="in the order of their times")
     gaps: list[SessionGap]
     topics: list[RecordedTopic]
 

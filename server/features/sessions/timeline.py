@@ -12,7 +12,7 @@ from robot_runtime.contract.documents import Event, Severity
 from robot_runtime.contract.topics import TOPICS
 from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.recording import Recording
-from server.features.sessions.schemas import Mark, State
+from server.features.sessions.schemas import Bookmark, State
 from server.features.sessions.session import from_row
 from server.platform.models import Chunk, Marker
 
@@ -47,7 +47,7 @@ class Timeline(BaseModel):
     started_steady: float = Field(description="the same moment on the steady clock of its samples, s")
     duration: float = Field(description="s, up to the last samples that are stored")
     events: list[Moment] = Field(description=f"in order of time, the first {EVENTS_MAX}")
-    markers: list[Mark] = Field(description="in order of time")
+    markers: list[Bookmark] = Field(description="in order of time")
     holes: list[Hole]
 
 

@@ -17,7 +17,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.parameters.changes import Changes
 from server.features.tuning.curve import Gathering
 from server.features.tuning.figure_definitions import is_angle
-from server.features.tuning.runs import Runs
+from server.features.tuning.runs import TuningRunner
 from server.features.tuning.schemas import (
     ActiveTuning,
     Force,
@@ -80,7 +80,7 @@ class TuningLab:
 
     def __init__(
         self,
-        runs: Runs,
+        runs: TuningRunner,
         bridge: Bridge,
         changes: Changes,
         clock: Clock,

@@ -34,7 +34,7 @@ class UnknownTuningRunError(NotFoundError):
     """There is no such run"""
 
 
-class Runs:
+class TuningRunner:
     """All runs, kept until somebody deletes them. Methods raise StoreError, and UnknownRun."""
 
     def __init__(self, store: Store) -> None:

@@ -10,7 +10,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
-from server.stream.gap_filler import Source
+from server.stream.gap_filler import GapFiller
 from tests.server.blocks import debug_block, depth_block
 from tests.server.waiting import until
 
@@ -41,7 +41,7 @@ class Receiver:
         self.gate.set()
         self.asked: list[Mapping[str, int]] = []
         self.delivered: list[Block] = []
-        self.source = Source(TOPICS, self._ask, self.delivered.extend)
+        self.source = GapFiller(TOPICS, self._ask, self.delivered.extend)
 
     @property
     def numbers(self) -> list[int]:

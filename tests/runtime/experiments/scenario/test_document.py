@@ -6,7 +6,13 @@ import pytest
 
 from robot_runtime.contract.vision_settings import COLOURS
 from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
-from robot_runtime.experiments.scenario.events import Colour, CommandEvent, Line, WavesChange, event_names
+from robot_runtime.experiments.scenario.events import (
+    Colour,
+    CommandEvent,
+    LineFaultChange,
+    WavesChange,
+    event_names,
+)
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import StartPose, Trim
 
@@ -160,7 +166,7 @@ def test_events_come_in_order_of_time_and_those_of_one_moment_as_written() -> No
 )
 def test_a_line_event_is_the_emulated_boards_command(rest: str, command: str) -> None:
     (line,) = read_scenario(BARE + event("line", f"direction = 'from_board'\n{rest}")).events
-    assert isinstance(line, Line)
+    assert isinstance(line, LineFaultChange)
     assert line.command == command
 
 

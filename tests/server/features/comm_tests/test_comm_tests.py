@@ -22,7 +22,7 @@ from robot_runtime.experiments.comm_test.results import CellResult, Counts, Grid
 from server.cli import main
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import read_table
-from server.features.comm_tests.runs import Runs
+from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import THESIS, import_samples, shipped_documents
 from server.platform.schema import prepare
 from server.platform.settings import Settings
@@ -160,8 +160,8 @@ def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[st
         _, errors = process.communicate(timeout=30)
     assert (process.returncode, "was cancelled" in errors, "Traceback" in errors) == (1, True, False)
     with closing(Store(settings.data.database)) as store:
-        (run,) = Runs(store).list()
-        cells = Runs(store).cells(1)
+        (run,) = CommTestStore(store).list()
+        cells = CommTestStore(store).cells(1)
     assert run.state == "cancelled"
     assert run.ended is not None
     assert 2 <= len(cells) < 100
@@ -169,7 +169,7 @@ def test_an_interrupted_run_keeps_its_cells(settings: Settings, options: list[st
 
 
 def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
-    runs = Runs(store)
+    runs = CommTestStore(store)
 
     async def scenario() -> tuple[int, int]:
         killed = await begin(runs)
@@ -186,7 +186,7 @@ def test_a_run_that_was_killed_is_not_running(store: Store) -> None:
 
 
 def test_a_lost_result_is_kept_as_such(store: Store) -> None:
-    runs = Runs(store)
+    runs = CommTestStore(store)
 
     async def scenario() -> int:
         number = await begin(runs)
@@ -205,12 +205,12 @@ def test_a_lost_result_is_kept_as_such(store: Store) -> None:
     assert whole.results[0].causes == ["lost result", "line"]
 
 
-async def begin(runs: Runs) -> int:
+async def begin(runs: CommTestStore) -> int:
     return await runs.start(make_test(), "emulated", "firmware", {}, "host")
 
 
 def test_what_is_no_cell_is_not_stored(store: Store) -> None:
-    runs = Runs(store)
+    runs = CommTestStore(store)
 
     async def scenario() -> None:
         number = await begin(runs)
@@ -230,14 +230,14 @@ def test_runs_of_the_version_before_are_kept(settings: Settings) -> None:
         database.commit()
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
-        (run,) = Runs(store).summaries()
+        (run,) = CommTestStore(store).summaries()
     assert (run.name, run.place, run.sample) == ("old", "emulated", "")
 
 
 def test_samples_come_once_and_a_broken_one_costs_only_itself(
     store: Store, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    runs = Runs(store)
+    runs = CommTestStore(store)
     good = {
         "id": 7,
         "name": "kept",
@@ -271,7 +271,7 @@ def test_what_ships_can_be_read_and_run(store: Store) -> None:
     assert {document.name for document in others} >= {"plain", "robot", "both-ways", "noisy-line", "quick"}
     for document in (first, *others):
         assert read_document(document.text)
-    runs = Runs(store)
+    runs = CommTestStore(store)
     asyncio.run(import_samples(runs))
     shipped = (file.name for file in (files("server.features.comm_tests") / "samples").iterdir())
     names = {name.removesuffix(".json") for name in shipped if name.endswith(".json")}

@@ -1,19 +1,19 @@
 """What was different about sessions: the parameters that were in force while armed."""
 
 from server.features.comparison.differences import CHANGED, find_differences
-from server.features.comparison.moments import History, Span, Tuned
+from server.features.comparison.moments import ControlHistory, Span, Tuned
 from server.platform.models import SessionRow
 
 
-def history(*tuned: tuple[float, float], armed: tuple[Span, ...] = (Span(10, 20),)) -> History:
+def history(*tuned: tuple[float, float], armed: tuple[Span, ...] = (Span(10, 20),)) -> ControlHistory:
     """With these values of one parameter from these times on."""
     parameters = tuple(
         Tuned(time, {"depth.pid.kp": kp, "vision.colour": "red", "loud": True}) for time, kp in tuned
     )
-    return History(armed, armed_at_start=False, controls=(), state={}, parameters=parameters)
+    return ControlHistory(armed, armed_at_start=False, controls=(), state={}, parameters=parameters)
 
 
-def differing(*histories: History) -> dict[str, list[str]]:
+def differing(*histories: ControlHistory) -> dict[str, list[str]]:
     row = SessionRow(configuration="", scenario="")  # type: ignore[call-arg]
     found = find_differences([(row, one) for one in histories])
     return {one.name: one.values for one in found if one.group == "Parameters"}

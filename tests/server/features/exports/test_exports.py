@@ -28,7 +28,7 @@ from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
 from server.features.exports.mcap_schemas import WELL_KNOWN
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.session import find_row
 from server.platform.models import Marker
 from server.platform.settings import Settings
@@ -91,7 +91,7 @@ def write(store: Store, session: int, **wanted: Any) -> io.BytesIO:
     row = find_row(store, session)
     assert row is not None
     chosen, output = Wanted(**wanted), io.BytesIO()
-    check(chosen).write(store, Source(store, row, chosen), output)
+    check(chosen).write(store, ExportSelection(store, row, chosen), output)
     output.seek(0)
     return output
 
@@ -101,7 +101,9 @@ def test_json_lines_are_in_order_and_in_si_units(store: Store, session: int) -> 
     samples = [json.loads(line) for line in lines]
     row = find_row(store, session)
     assert row is not None
-    assert Counter(one["topic"] for one in samples) == Source(store, row, Wanted(format="csv")).counts()
+    assert (
+        Counter(one["topic"] for one in samples) == ExportSelection(store, row, Wanted(format="csv")).counts()
+    )
     assert [one["time"] for one in samples] == sorted(one["time"] for one in samples)
     depth = [one for one in samples if one["topic"] == "depth"]
     assert [one["depth"] for one in depth] == pytest.approx([n / 1000 for n in range(100)], abs=1e-12)
@@ -162,7 +164,7 @@ def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session:
     }
     row = find_row(store, session)
     assert row is not None
-    stored = Source(store, row, Wanted(format="csv")).counts()
+    stored = ExportSelection(store, row, Wanted(format="csv")).counts()
     assert {topic: counts[f"/{topic}"] for topic in stored} == stored
     schemas = {topic: summary.schemas[channel.schema_id] for topic, channel in channels.items()}
     assert {topic: schema.name for topic, schema in schemas.items()} == {

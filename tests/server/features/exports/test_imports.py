@@ -21,7 +21,7 @@ from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_arch
 from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import ExportRequestError, Source
+from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.session import IMPORTING, REMOVING, find_row
 from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
 from server.platform.schema import prepare
@@ -55,7 +55,7 @@ def archive(store: Store, session: int, tmp_path: Path) -> Path:
     assert row is not None
     path = tmp_path / "dive.mucat.zip"
     with path.open("wb") as file:
-        write_archive(store, Source(store, row, Wanted(format="archive")), file)
+        write_archive(store, ExportSelection(store, row, Wanted(format="archive")), file)
     return path
 
 
@@ -222,7 +222,7 @@ def test_a_session_that_records_is_not_archived(store: Store, session: int) -> N
     assert row is not None
     row.state = "recording"
     with pytest.raises(ExportRequestError, match="Stop the recording"):
-        write_archive(store, Source(store, row, Wanted(format="archive")), io.BytesIO())
+        write_archive(store, ExportSelection(store, row, Wanted(format="archive")), io.BytesIO())
 
 
 def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(

@@ -18,7 +18,7 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, read_rows, row
 from server.features.exports.description import file_name
 from server.features.exports.schemas import Wanted
-from server.features.exports.selection import Source
+from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.recording import CHUNKS_AT_ONCE, RecordingError
@@ -50,13 +50,13 @@ def record(
     return asyncio.run(scenario())
 
 
-def make(store: Store, session: int, **wanted: Any) -> Source:
+def make(store: Store, session: int, **wanted: Any) -> ExportSelection:
     row = find_row(store, session)
     assert row is not None
-    return Source(store, row, Wanted(**{"format": "csv", **wanted}))
+    return ExportSelection(store, row, Wanted(**{"format": "csv", **wanted}))
 
 
-def unpack(store: Store, source: Source) -> zipfile.ZipFile:
+def unpack(store: Store, source: ExportSelection) -> zipfile.ZipFile:
     output = io.BytesIO()
     write_tables(store, source, output)
     archive = zipfile.ZipFile(output)

@@ -10,7 +10,7 @@ import pytest
 
 from robot_runtime.clock import SteadyClock
 from server.cli import main
-from server.features.scenarios.runs import Runs
+from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import ScenarioState
 from server.features.scenarios.simulated_run import Simulated
 from server.features.sessions.recording import Recording
@@ -38,7 +38,7 @@ do = "card"
 colour = "yellow"
 """
 LONG = SHORT.replace("duration = 4", "duration = 3600")
-Work = Callable[[Runs], Awaitable[None]]
+Work = Callable[[ScenarioRunner], Awaitable[None]]
 
 
 def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]:
@@ -47,7 +47,9 @@ def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]
 
     async def whole() -> None:
         simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
-        runs = Runs(simulated, simulated, lambda message: told.append(ScenarioState.model_validate(message)))
+        runs = ScenarioRunner(
+            simulated, simulated, lambda message: told.append(ScenarioState.model_validate(message))
+        )
         try:
             await work(runs)
         finally:
@@ -65,7 +67,7 @@ def samples(store: Store, session: int) -> list[Any]:
 
 
 def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Settings, store: Store) -> None:
-    async def work(runs: Runs) -> None:
+    async def work(runs: ScenarioRunner) -> None:
         assert [runs.start(SHORT, "simulated", "host") for _ in range(2)] == [1, 2]
         assert [one.run for one in runs.state().queued] == [2]
         await runs.wait()
@@ -95,7 +97,7 @@ def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Setting
 def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
     settings: Settings, store: Store
 ) -> None:
-    async def work(runs: Runs) -> None:
+    async def work(runs: ScenarioRunner) -> None:
         runs.start(LONG, "simulated", "host")
         runs.start(LONG, "simulated", "host")
         while runs.active is None or runs.active.elapsed < 1:
@@ -116,7 +118,7 @@ def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
 def test_what_the_robot_refuses_is_marked_and_told(settings: Settings, store: Store) -> None:
     broken = SHORT + "[[events]]\nat = 0.1\ndo = 'fault'\nsensor = 'pressure'\nkind = 'bus'\n"
 
-    async def work(runs: Runs) -> None:
+    async def work(runs: ScenarioRunner) -> None:
         runs.start(broken.replace("at = 0.5", "at = 2.5"), "simulated", "host")
         await runs.wait()
 
@@ -129,7 +131,7 @@ def test_what_the_robot_refuses_is_marked_and_told(settings: Settings, store: St
 def test_a_process_that_fails_is_told_with_its_words(
     settings: Settings, store: Store, tmp_path: Path
 ) -> None:
-    async def work(runs: Runs) -> None:
+    async def work(runs: ScenarioRunner) -> None:
         runs.start(SHORT, "simulated", "emulated")
         await runs.wait()
 
