@@ -54,7 +54,7 @@ class TimedEvent(ABC):
     @property
     @abstractmethod
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ class CommandEvent(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         return self.command.words
 
 
@@ -90,7 +90,7 @@ class Beacons(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         count = len(self.positions)
         return (
             "No light beacon" if not count else "A light beacon" if count == 1 else f"{count} light beacons"
@@ -114,7 +114,7 @@ class CurrentChange(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         speed = hypot(self.north, self.east, self.down)
         return f"Current of {speed:.2g} m/s" if speed else "No current"
 
@@ -135,7 +135,7 @@ class WavesChange(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         return f"Waves of ±{100 * self.amplitude:g} cm" if self.amplitude else "No waves"
 
 
@@ -156,7 +156,7 @@ class TrimChange(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         return f"Trim: buoyancy {self.buoyancy:g}"
 
 
@@ -180,7 +180,7 @@ class SensorFaultChange(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         return (
             f"{self.sensor.replace('_', ' ').capitalize()}: {'mended' if self.kind == 'none' else self.kind}"
         )
@@ -212,7 +212,7 @@ class LineFaultChange(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         way = "Line to the board" if self.direction == "to_board" else "Line from the board"
         if self.kind == "cut":
             return f"{way} {'cut' if self.on else 'whole again'}"
@@ -242,7 +242,7 @@ class BookmarkEvent(TimedEvent):
 
     @property
     def words(self) -> str:
-        """What happens, in a few words."""
+        """A short description of the event."""
         return self.text
 
 
