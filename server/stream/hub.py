@@ -15,7 +15,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import Kind
 from robot_runtime.transport.blocks import Block
-from server.stream.broadcast import History, Lane, Totals
+from server.stream.broadcast import Lane, TopicHistory, Totals
 
 HISTORY_SECONDS = 600.0
 HISTORY_TOPIC_BYTES = 4_000_000
@@ -166,7 +166,7 @@ class Hub:
     def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
         self.rows = Lane(ROWS_MESSAGES, ROWS_BYTES)
         self.documents = Lane(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
-        self.history = History(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
+        self.history = TopicHistory(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
         self.tick = 0
         self.pictures: dict[str, tuple[int, bytes]] = {}
         """The newest of each topic that somebody wants, and its number."""

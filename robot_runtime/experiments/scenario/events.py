@@ -196,19 +196,19 @@ class LineFaultChange(TimedEvent):
     direction: Literal["to_board", "from_board"]
     kind: LineKind
     rate: Annotated[float | None, Range(0, 1)] = None
-    """Of bits (bit_errors, burst) or characters (drop, double, insert) that this befalls."""
+    """Probability for each bit (bit_errors, burst) or character (drop, double, insert)."""
     length: Annotated[int | None, Range(1, 10_000)] = None
-    """Bit times that a burst lasts."""
+    """Length of a burst in bit times."""
     seconds: Annotated[float | None, Range(0, 3600)] = None
-    """That a stall lasts; 0 ends it."""
+    """Duration of a stall; 0 ends it."""
     on: bool | None = None
-    """Whether the wire is cut."""
+    """True to cut the wire."""
 
     def __post_init__(self) -> None:
-        wanted = _LINE_NUMBERS.get(self.kind, ("rate",))
+        allowed = _LINE_NUMBERS.get(self.kind, ("rate",))
         for name in ("rate", "length", "seconds", "on"):
-            if (getattr(self, name) is not None) != (name in wanted):
-                raise ValueError(f"a line's {self.kind} takes {' and '.join(wanted) or 'nothing more'}")
+            if (getattr(self, name) is not None) != (name in allowed):
+                raise ValueError(f"a line's {self.kind} takes {' and '.join(allowed) or 'nothing more'}")
 
     @property
     def words(self) -> str:
@@ -310,8 +310,8 @@ def _check_command(command: RobotCommand, where: str) -> None:
 def check_controller(loop: str, name: str, gains: Mapping[str, Mapping[str, float]]) -> None:
     """Raises ValueError where the loop has no such controller, or gains are unknown or out of range."""
     controllers = {one.name: one for one in CONTROLLERS[loop]}
-    for wanted in (name, *gains):
-        if wanted not in controllers:
-            raise ValueError(f"there is no controller {wanted!r}; there are {', '.join(controllers)}")
+    for required in (name, *gains):
+        if required not in controllers:
+            raise ValueError(f"there is no controller {required!r}; there are {', '.join(controllers)}")
     for tuned, numbers in gains.items():
         controllers[tuned].check(numbers)

@@ -3,7 +3,7 @@ from hypothesis import strategies as st
 
 from robot_runtime.contract.topics import BY_NAME, Topic
 from robot_runtime.transport.blocks import read_blocks
-from server.stream.broadcast import CHUNK_SECONDS, History, Lane
+from server.stream.broadcast import CHUNK_SECONDS, Lane, TopicHistory
 from tests.server.blocks import debug_block, depth_block, link_block, state_block
 
 DEPTH, DEBUG = BY_NAME["depth"], BY_NAME["debug"]
@@ -61,13 +61,13 @@ def numbers(data: bytes, topic: Topic = DEPTH) -> list[int]:
     ]
 
 
-def everything(history: History) -> bytes:
+def everything(history: TopicHistory) -> bytes:
     return b"".join(b"".join(group) for group in history.since(-1, 10**6))
 
 
-def filled(seconds: float, bytes_max: int = 10**7) -> History:
+def filled(seconds: float, bytes_max: int = 10**7) -> TopicHistory:
     """A history of 50 depths a second, sent in blocks of two, from 100 s on."""
-    history = History(seconds=600, bytes_max=bytes_max)
+    history = TopicHistory(seconds=600, bytes_max=bytes_max)
     for tick in range(int(seconds * 25)):
         history.add(depth_block(2 * tick, 2), tick, 100.0 + tick / 25)
     return history
@@ -95,7 +95,7 @@ def test_history_is_bounded_for_each_topic_alone() -> None:
 
 @given(st.lists(st.integers(0, 200), max_size=5))
 def test_what_was_given_and_what_comes_after_it_are_everything_once(asked: list[int]) -> None:
-    history = History(seconds=600, bytes_max=10**6)
+    history = TopicHistory(seconds=600, bytes_max=10**6)
     given: list[int] = []
     tick = -1
     for number in range(200):
@@ -123,14 +123,14 @@ def test_of_rows_the_past_can_begin_later_of_lines_never() -> None:
 
 
 def test_of_a_state_only_the_newest_is_kept() -> None:
-    history = History(seconds=600, bytes_max=10**6)
+    history = TopicHistory(seconds=600, bytes_max=10**6)
     for number in range(5):
         history.add(state_block(number), tick=number, now=100.0 + number)
     assert everything(history) == state_block(4).data
 
 
 def test_a_gap_in_the_numbers_stays_one() -> None:
-    history = History(seconds=600, bytes_max=10**6)
+    history = TopicHistory(seconds=600, bytes_max=10**6)
     for first in (0, 2, 7, 8):
         history.add(depth_block(first, 1), tick=first, now=100.0)
     blocks = read_blocks(everything(history))
