@@ -402,7 +402,10 @@ def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
     play(settings, scenario)
 
 
-def test_the_interface_is_described_in_the_same_words_every_time(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_interface_is_described_in_the_same_words_every_time(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", ["server.openapi"])
     print_openapi()
     first = capsys.readouterr().out
     print_openapi()

@@ -98,7 +98,8 @@ async def begin(served: Served, wanted: dict[str, Any]) -> int:
     answer = await served.api.post("/tuning/runs", json=wanted)
     assert answer.status_code == 201, answer.text
     run = answer.json()["run"]
-    assert served.runtime.asked[-1] == ("experiment", {"number": run, **wanted})
+    fields = {name: value for name, value in wanted.items() if name != "kind"}
+    assert served.runtime.asked[-1] == (f"{wanted['kind']}_experiment", {"number": run, **fields})
     return int(run)
 
 
