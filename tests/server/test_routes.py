@@ -17,7 +17,7 @@ from server.platform.settings import Settings
 from server.processes.supervisor import Command
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
-from tests.server.waiting import until
+from tests.server.waiting import SECONDS, until
 
 
 async def exported(served: Served, session: int) -> httpx.Response:
@@ -201,6 +201,16 @@ def test_what_changes_who_steers_goes_to_the_runtime(
     play(settings, scenario)
 
 
+def test_nobody_but_a_scenario_lets_the_robot_go_on_without_the_server(settings: Settings) -> None:
+    async def scenario(served: Served) -> None:
+        answer = await served.api.post("/robot/commands/arm", json={"alone": 60})
+        assert answer.status_code == 409
+        assert "Only a scenario" in answer.json()["detail"]
+        assert served.runtime.asked == []
+
+    play(settings, scenario)
+
+
 def test_with_a_full_disk_nothing_is_armed(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
     async def scenario(served: Served) -> None:
         usage = shutil.disk_usage(settings.data.path)
@@ -378,10 +388,12 @@ def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) ->
     broken = Command("board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')"))
 
     async def scenario(served: Served) -> None:
-        await until(lambda: served.container.watch.health().status == "failed", "the failure")
-        parts = {part["name"]: part for part in (await served.api.get("/health")).json()["parts"]}
-        assert parts["board"]["state"] == "failed"
-        assert parts["board"]["text"] == "It has ended with exit status 1. Its last words: no firmware."
+        board = {"state": "starting", "text": ""}
+        async with asyncio.timeout(SECONDS):
+            while board["state"] != "failed":  # between two starts of it
+                answer = await served.api.get("/health")
+                (board,) = (part for part in answer.json()["parts"] if part["name"] == "board")
+        assert board["text"] == "It has ended with exit status 1. Its last words: no firmware."
         history = b"".join(b"".join(group) for group in served.container.hub.history.since(-1, 10**6))
         assert "The emulated board has ended with exit status 1" in history.decode(errors="replace")
 

@@ -15,6 +15,7 @@ from robot_runtime.contract.commands import (
 )
 from robot_runtime.contract.documents import State
 from robot_runtime.control.alarms import Alarms
+from robot_runtime.errors import RefusedError
 from server.features.parameters.changes import Changes
 from server.features.parameters.schemas import Restored
 from server.health.monitor import Watch
@@ -71,6 +72,8 @@ def _add_route(cls: type[RobotCommand], need: Need) -> None:
     ) -> Restored | None:
         wanted: RobotCommand = cls() if command is None else command
         if isinstance(wanted, ArmCommand):
+            if wanted.alone:
+                raise RefusedError("Only a scenario may let the robot go on without the server.")
             check_room(settings.data)
         elif isinstance(wanted, AcknowledgeCommand):
             alarms.acknowledge()
