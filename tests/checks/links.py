@@ -1,4 +1,4 @@
-"""Dead links in README, CONTRIBUTING, CHANGELOG and docs/: targets and anchors that do not exist."""
+"""Dead links of README, CONTRIBUTING, CHANGELOG and docs/, and names of source files that do not exist."""
 
 import re
 from collections.abc import Iterator
@@ -10,6 +10,7 @@ _FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
 _CODE = re.compile(r"`[^`\n]*`")
 _LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 _HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+_SOURCE = re.compile(r"`((?:robot_runtime|server|frontend|firmware|tests|bench|migrations)/[a-z][\w./-]*)")
 _ELSEWHERE = re.compile(r"[a-z]+:")
 
 
@@ -20,7 +21,11 @@ def find_dead_links(root: Path) -> list[str]:
 
 
 def _problems(root: Path, page: Path) -> Iterator[str]:
-    text = _CODE.sub("", _FENCE.sub("", page.read_text(encoding="utf-8")))
+    without_blocks = _FENCE.sub("", page.read_text(encoding="utf-8"))
+    for source in _SOURCE.findall(without_blocks):
+        if not (root / source).exists() and page.name != "CHANGELOG.md":
+            yield f"{page.relative_to(root)}: there is no {source}"
+    text = _CODE.sub("", without_blocks)
     for target in _LINK.findall(text):
         if _ELSEWHERE.match(target):
             continue

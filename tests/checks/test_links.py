@@ -19,6 +19,7 @@ def test_every_link_of_the_documents_leads_somewhere() -> None:
         ("[a](other.md#gone)", "docs/page.md: other.md#gone names no heading of that page"),
         ("[a](#gone)", "docs/page.md: #gone names no heading of that page"),
         ("[a](../code.py)", "docs/page.md: ../code.py leads out of docs/, which the help pages do not have"),
+        ("`server/gone.py`", "docs/page.md: there is no server/gone.py"),
         ("[a](../../etc)", "docs/page.md: ../../etc leads to no file"),
     ],
 )
