@@ -1,0 +1,31 @@
+"""What a figure or a field means is said to fingers and keys too, not to a resting mouse alone."""
+
+from playwright.sync_api import Browser, Page, StorageState, expect
+
+from tests.browser.conftest import PHONE
+from tests.stack import Stack
+
+
+def test_a_finger_asks_what_a_gain_means(browser: Browser, stack: Stack, cookies: StorageState) -> None:
+    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(stack.url)
+    page.get_by_role("tab", name="Control").tap()
+    meaning = page.get_by_text("Wanted depth", exact=True)
+    expect(meaning).to_be_hidden()
+    page.locator("summary", has_text="default").tap()
+    expect(meaning).to_be_visible()
+    page.locator("summary", has_text="default").tap()
+    expect(meaning).to_be_hidden()
+    context.close()
+
+
+def test_a_key_asks_what_a_figure_of_the_link_means(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/system")
+    link = page.get_by_role("region", name="Serial link")
+    meaning = link.get_by_text("From a reliable frame to its acknowledgement")
+    expect(meaning).to_be_hidden()
+    term = link.locator("summary", has_text="Round trip")
+    term.focus()
+    term.press("Enter")
+    expect(meaning).to_be_visible()
