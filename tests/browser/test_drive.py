@@ -10,7 +10,8 @@ from contextlib import contextmanager
 from datetime import datetime
 from typing import Any
 
-from playwright.sync_api import Browser, Page, StorageState, expect
+import pytest
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
 from server.platform.settings import DataFolder
 from tests.browser.conftest import PHONE
@@ -19,6 +20,8 @@ from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
 
+SMALL_PHONE: ViewportSize = {"width": 360, "height": 640}
+LYING_PHONE: ViewportSize = {"width": 844, "height": 390}
 NEUTRAL_SECONDS = 0.5
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # What a browser tells of a gamepad; nobody can plug one in here.
@@ -188,6 +191,26 @@ def test_depth_and_heading_are_held_while_driving(page: Page) -> None:
     expect(page.get_by_role("button", name="Heading hold")).to_have_accessible_name(re.compile(r"\d{3}°"))
     depth.click()
     expect(depth).to_have_attribute("aria-pressed", "false")
+
+
+@pytest.mark.parametrize("size", [PHONE, SMALL_PHONE, LYING_PHONE], ids=["phone", "small", "lying"])
+def test_a_phone_shows_the_picture_with_the_sticks(
+    browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize
+) -> None:
+    context = browser.new_context(viewport=size, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(stack.url)
+    arm_by_hand(page)
+    seen = [
+        page.get_by_role("img", name=re.compile("^Camera")).first,
+        page.get_by_role("img", name="left stick"),
+        page.get_by_role("img", name="right stick"),
+        page.get_by_role("button", name="STOP"),
+    ]
+    for one in seen:
+        expect(one).to_be_in_viewport(ratio=1)
+    context.close()
+    stack.api.post("/robot/stop").raise_for_status()
 
 
 def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
