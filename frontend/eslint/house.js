@@ -23,7 +23,7 @@ const LAYERS = [
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'resource', 'router', 'screen', 'theme'];
+const FLOOR = ['api', 'attitude', 'files', 'format', 'http', 'resource', 'router', 'screen', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'Root', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts) alone. */
 const DOORS = { 'panels/*': ['panels'] };

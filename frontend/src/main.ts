@@ -1,6 +1,7 @@
 // Styles first: what a component says of itself goes before what holds for all.
 import './styles/tokens.css';
 import './styles/base.css';
+import './styles/forced.css';
 import './styles/listing.css';
 import './styles/tiles.css';
 import { mount } from 'svelte';

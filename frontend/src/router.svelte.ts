@@ -10,9 +10,13 @@ export const PAGES = [
 ] as const;
 
 /** Pages that are reached from others. */
-const INNER = ['replay', 'people'] as const;
+const INNER = [
+  { name: 'replay', title: 'Replay' },
+  { name: 'people', title: 'People' },
+] as const;
+const ALL = [...PAGES, ...INNER];
 
-export type PageName = (typeof PAGES)[number]['name'] | (typeof INNER)[number] | 'unknown';
+export type PageName = (typeof ALL)[number]['name'] | 'unknown';
 
 /** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
 export class Router {
@@ -23,11 +27,15 @@ export class Router {
   constructor() {
     const read = () => {
       const [name = '', ...within] = location.hash.replace(/^#\/?/, '').split('/');
-      this.current = name === '' ? 'operate' : ([...PAGES.map((page) => page.name), ...INNER].find((one) => one === name) ?? 'unknown');
+      this.current = name === '' ? 'operate' : (ALL.find((page) => page.name === name)?.name ?? 'unknown');
       this.within = within;
     };
     window.addEventListener('hashchange', read);
     read();
+  }
+
+  get title(): string {
+    return ALL.find((page) => page.name === this.current)?.title ?? 'Not found';
   }
 }
 

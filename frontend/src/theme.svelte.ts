@@ -1,34 +1,39 @@
 import { createContext } from 'svelte';
+import { readStored, writeStored } from './storage';
 
 const KEY = 'mucat-theme';
 
-/** The page's colours: dark, or light enough for sunlight; remembered on this device. */
+export const THEME_CHOICES = ['device', 'dark', 'sunlight'] as const;
+export type ThemeChoice = (typeof THEME_CHOICES)[number];
+
+/** The page's colours: dark, or light enough for sunlight. The device's until one is chosen; remembered on it. */
 export class Theme {
+  choice = $state<ThemeChoice>('device');
   current = $state<'dark' | 'sunlight'>('dark');
+  readonly #light = matchMedia('(prefers-color-scheme: light)');
+  readonly #forced = matchMedia('(forced-colors: active)');
 
   constructor() {
-    try {
-      if (localStorage.getItem(KEY) === 'sunlight') this.current = 'sunlight';
-    } catch {
-      // Storage may be forbidden; then the choice lasts as long as the page.
-    }
+    const stored = readStored(KEY);
+    this.choice = THEME_CHOICES.find((one) => one === stored) ?? 'device';
+    this.#light.addEventListener('change', this.#show);
+    this.#forced.addEventListener('change', this.#show);
     this.#show();
   }
 
-  readonly toggle = (): void => {
-    this.current = this.current === 'dark' ? 'sunlight' : 'dark';
+  choose(choice: ThemeChoice): void {
+    this.choice = choice;
     this.#show();
-    try {
-      localStorage.setItem(KEY, this.current);
-    } catch {
-      // As above.
-    }
-  };
+    writeStored(KEY, choice);
+  }
 
-  #show(): void {
+  // Forced colours have a ground of their own, which the device calls light or dark.
+  readonly #show = (): void => {
+    const ofDevice = this.#light.matches ? 'sunlight' : 'dark';
+    this.current = this.choice === 'device' || this.#forced.matches ? ofDevice : this.choice;
     document.documentElement.dataset.theme = this.current;
     document.querySelector('meta[name=theme-color]')?.setAttribute('content', token('ground'));
-  }
+  };
 }
 
 export const [useTheme, provideTheme] = createContext<Theme>();

@@ -67,7 +67,9 @@ def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page
 
 def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
     # Charts then move once a second, which leaves the computer to what is tested.
-    context = browser.new_context(viewport=size, storage_state=cookies, reduced_motion="reduce")
+    context = browser.new_context(
+        viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"
+    )
     page = context.new_page()
     complaints: list[str] = []
     # Every test finds the robot at the surface, wherever the one before has left it.
@@ -78,7 +80,12 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportS
     page.goto(stack.url)
     yield page
     context.close()
-    # The next test finds the robot as this one did.
+    put_to_rest(stack)
+    assert complaints == []
+
+
+def put_to_rest(stack: Stack) -> None:
+    """Let the next test find the robot as this one did."""
     stack.api.post("/comm-tests/cancel").raise_for_status()
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post("/robot/commands/acknowledge").raise_for_status()
@@ -86,4 +93,3 @@ def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportS
         if session["state"] == "recording":
             stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
     stack.api.post("/robot/commands/card", json={"colour": None}).raise_for_status()
-    assert complaints == []

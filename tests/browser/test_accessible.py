@@ -22,7 +22,7 @@ Colours are all that differs in that theme.
 """
 WIDTHS = (390, 768, 1024, 1280, 1440, 1920)
 CROWDED = """() => {
-    const said = '[aria-label=Pages] a, .top .name, .top .states > *, .top .row > *, .stop';
+    const said = '[aria-label=Pages] a, .foot .opener, .top .name, .top .states > *, .top .row > *, .stop';
     const all = document.querySelectorAll(said);
     const seen = [...all].filter((one) => one.checkVisibility() && !one.matches('.visually-hidden'));
     const boxes = seen.map((one) => [one.textContent.trim(), one.getBoundingClientRect()]);
@@ -39,7 +39,7 @@ CROWDED = """() => {
 }"""
 """What of the bar's words and buttons lies outside the window or on another one."""
 GRAVE = {"serious", "critical"}
-OPENED = ("Control:", "Record", "Alarms")
+OPENED = ("Control:", "Record", "Alarms", "Page settings")
 """Beginnings of the names of what opens from the bar."""
 
 
@@ -54,6 +54,7 @@ def seen(
         storage_state=cookies,
         has_touch=request.param == PHONE,
         reduced_motion="reduce",
+        color_scheme="dark",
     )
     page = context.new_page()
     context.add_init_script(path=AXE)
@@ -86,7 +87,7 @@ def test_no_page_has_a_grave_fault(seen: Page, stack: Stack, view: View) -> None
 def test_what_opens_from_the_bar_has_none(seen: Page, stack: Stack) -> None:
     show(seen, stack, PAGES[0])
     for name in OPENED:
-        opener = seen.get_by_role("banner").get_by_role("button", name=name).first
+        opener = seen.get_by_role("button", name=name).first
         if opener.count() == 0:
             continue
         opener.click()
@@ -113,7 +114,7 @@ def test_the_bar_has_room_for_all_that_it_says_and_for_stop_at_every_width(seen:
 
 
 def test_signing_in_has_none(browser: Browser, stack: Stack) -> None:
-    context = browser.new_context(viewport=PHONE)
+    context = browser.new_context(viewport=PHONE, color_scheme="dark")
     page = context.new_page()
     context.add_init_script(path=AXE)
     page.goto(stack.url)
@@ -124,14 +125,14 @@ def test_signing_in_has_none(browser: Browser, stack: Stack) -> None:
 
 
 def test_a_viewer_is_told_before_he_tries(browser: Browser, stack: Stack) -> None:
-    context = browser.new_context(viewport=DESKTOP)
+    context = browser.new_context(viewport=DESKTOP, color_scheme="dark")
     page = context.new_page()
     context.add_init_script(path=AXE)
     page.goto(make_link(stack, "viewer"))
     expect(page.get_by_text("You are looking on.")).to_be_visible()
     refused = {
         "sessions": ["Delete", "Start recording", "Import…"],
-        "scenarios": ["Run it"],
+        "scenarios": ["Run in simulation"],
         "comm-tests": ["Start the test"],
         "system": ["Download a backup", "Hold to check the fins"],
         "operate": ["Hold to arm"],

@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
 from server.platform.settings import DataFolder
-from tests.browser.conftest import PHONE
+from tests.browser.conftest import PHONE, put_to_rest
 from tests.browser.test_swim import hold_to_arm
 from tests.exports import export_session
 from tests.proofs.watching import Fins
@@ -210,7 +210,7 @@ def test_a_phone_shows_the_picture_with_the_sticks(
     for one in seen:
         expect(one).to_be_in_viewport(ratio=1)
     context.close()
-    stack.api.post("/robot/stop").raise_for_status()
+    put_to_rest(stack)
 
 
 def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
@@ -252,4 +252,4 @@ def test_two_thumbs_drive_on_a_phone_and_nothing_scrolls(
     touch("touchEnd")
     expect(words.nth(2)).to_have_text("")
     context.close()
-    stack.api.post("/robot/stop").raise_for_status()
+    put_to_rest(stack)

@@ -1,0 +1,16 @@
+import { createContext } from 'svelte';
+import { readStored, writeStored } from './storage';
+
+const KEY = 'mucat-shortcuts';
+
+/** Whether single keys mark and drive (WCAG 2.1.4); remembered on this device. Esc is STOP in any case. */
+export class Shortcuts {
+  on = $state(readStored(KEY) !== 'off');
+
+  readonly set = (on: boolean): void => {
+    this.on = on;
+    writeStored(KEY, on ? 'on' : 'off');
+  };
+}
+
+export const [useShortcuts, provideShortcuts] = createContext<Shortcuts>();

@@ -1,0 +1,76 @@
+"""From page to page: each has its title, its heading gets the focus, and the current tab is in view."""
+
+import pytest
+from playwright.sync_api import Browser, Page, StorageState, expect
+
+from tests.browser.conftest import PHONE
+from tests.browser.pages import PAGES, fill, show
+from tests.stack import Stack
+
+TABS = {
+    "response": "Step response",
+    "relay": "Automatic tuning",
+    "parameters": "Parameters",
+    "vision": "Vision",
+}
+
+
+def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, stack: Stack) -> None:
+    fill(stack)
+    titles = {}
+    for view in PAGES:
+        show(page, stack, view)
+        heading = page.get_by_role("heading", level=1)
+        expect(heading).to_have_count(1)
+        expect(page).to_have_title(f"{' '.join((heading.text_content() or '').split())} · µ-CAT")
+        titles[view.name] = page.title()
+    assert titles["operate"] == "Operate · µ-CAT"
+    assert titles["sessions"] == "Sessions · µ-CAT"
+    assert len(set(titles.values())) >= len(PAGES) - 3, titles  # Tune's four views are one page
+
+
+def test_signing_in_has_a_title(browser: Browser, stack: Stack) -> None:
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(stack.url)
+    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
+    expect(page).to_have_title("Sign in to turtle · µ-CAT")
+    context.close()
+
+
+@pytest.mark.parametrize("name", ["Sessions", "System", "Tune", "Scenarios", "Comm tests", "Operate"])
+def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> None:
+    pages = page.get_by_role("navigation", name="Pages")
+    pages.get_by_role("link", name="Sessions" if name == "System" else "System", exact=True).click()
+    link = pages.get_by_role("link", name=name, exact=True)
+    link.focus()
+    link.press("Enter")
+    expect(page.get_by_role("heading", level=1, name=name)).to_be_focused()
+
+
+def test_views_of_one_page_leave_the_focus_on_their_tab(page: Page, stack: Stack) -> None:
+    page.goto(f"{stack.url}/#/tune/response")
+    tab = page.get_by_role("link", name="Parameters")
+    tab.focus()
+    tab.press("Enter")
+    expect(page.get_by_role("link", name="Parameters")).to_have_attribute("aria-current", "page")
+    expect(tab).to_be_focused()
+
+
+def test_the_tab_of_tune_that_one_is_on_is_in_view_on_a_phone(
+    browser: Browser, stack: Stack, cookies: StorageState
+) -> None:
+    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True)
+    page = context.new_page()
+    for address, name in TABS.items():
+        page.goto(f"{stack.url}/#/tune/{address}")
+        tabs = page.get_by_role("navigation", name="What to tune")
+        tab = tabs.get_by_role("link", name=name)
+        expect(tab).to_have_attribute("aria-current", "page")
+        expect(tab).to_be_in_viewport(ratio=1)
+    # The last one: there is more before it, and that shows.
+    assert "gradient" in str(tabs.evaluate("(one) => getComputedStyle(one).maskImage"))
+    page.set_viewport_size({"width": 1440, "height": 900})
+    expect(tabs.get_by_role("link", name="Step response")).to_be_in_viewport(ratio=1)
+    page.wait_for_function("(one) => getComputedStyle(one).maskImage === 'none'", arg=tabs.element_handle())
+    context.close()
