@@ -7,6 +7,7 @@ robot's sticks are neutral (`robot_runtime.control.pilot`). Viewers never have c
 import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -23,6 +24,18 @@ TEXTS: dict[Change, str] = {
     "released": "{holder} released control. Nobody has it now.",
     "left": "{holder} left, and nobody has control now.",
 }
+
+RELOAD_SECONDS = 5.0
+"""A browser whose page had control may take it again within this, and neither change is in the record."""
+
+
+@dataclass(frozen=True, slots=True)
+class Departure:
+    """A page of `device` that closed while it had control; `text` enters the record at `due` (s)."""
+
+    device: int
+    text: str
+    due: float
 
 
 class ControlArbiter:
@@ -45,6 +58,7 @@ class ControlArbiter:
         self._clock = clock
         self._tell = tell
         self._write = note
+        self._departure: Departure | None = None
         self._wake = asyncio.Event()
 
     @contextmanager
@@ -101,6 +115,7 @@ class ControlArbiter:
         """Close the clients of a device that is signed out or has another role. It may open others."""
         for client in self.clients.of(device):
             self._close(client)
+        self._note_departure()
         self.announce()
 
     def state(self) -> ControlState:
@@ -114,9 +129,11 @@ class ControlArbiter:
         )
 
     def expire(self) -> None:
-        """Close the clients of programs that have been silent for too long."""
+        """Close the clients of programs that have been silent for too long; note a page that stayed away."""
         for client in self.clients.expired():
             self._close(client)
+        if self._departure is not None and self._departure.due <= self._clock.now():
+            self._note_departure()
 
     def announce(self) -> None:
         """Tell all pages who has control."""
@@ -128,7 +145,7 @@ class ControlArbiter:
         while True:
             self.announce()
             self._wake.clear()
-            due = self.clients.next_expiry()
+            due = self._next_expiry()
             with suppress(TimeoutError):
                 async with asyncio.timeout(None if due is None else max(0.0, due - self._clock.now())):
                     await self._wake.wait()
@@ -137,9 +154,31 @@ class ControlArbiter:
         self.lease.forget(client.number)
         self.clients.close(client.number)
 
+    def _next_expiry(self) -> float | None:
+        dues = [self.clients.next_expiry(), None if self._departure is None else self._departure.due]
+        return min((due for due in dues if due is not None), default=None)
+
     def _note(self, change: Change, client: int | None, holder: int | None) -> None:
         names = {"client": f"“{self._name(client)}”", "holder": f"“{self._name(holder)}”"}
-        self._write(TEXTS[change].format(**names))
+        text = TEXTS[change].format(**names)
+        departed, self._departure = self._departure, None
+        page = self._page(client if holder is None else holder)
+        if change == "left" and page is not None:
+            self._departure = Departure(page.identity.device, text, self._clock.now() + RELOAD_SECONDS)
+        elif departed is None:
+            self._write(text)
+        elif page is None or page.identity.device != departed.device:
+            self._write(departed.text)
+            self._write(text)
+
+    def _note_departure(self) -> None:
+        if self._departure is not None:
+            self._write(self._departure.text)
+            self._departure = None
+
+    def _page(self, number: int | None) -> ControlClient | None:
+        client = None if number is None else self.clients.get(number)
+        return client if client is not None and client.until is None else None
 
     def _name(self, number: int | None) -> str | None:
         client = None if number is None else self.clients.get(number)

@@ -1,11 +1,12 @@
 import asyncio
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.errors import RefusedError
-from server.features.lease.arbiter import ControlArbiter
+from server.features.lease.arbiter import RELOAD_SECONDS, ControlArbiter
 from server.features.lease.clients import PROGRAM_SECONDS
 from server.features.lease.lease import NotInControlError
 from server.http.sign_in.identity import Identity
@@ -28,6 +29,8 @@ def test_everybody_is_told_of_every_change() -> None:
         assert seen.told[-1] == first | {"epoch": 1_000_003, "holder": None}
         arbiter.take(anna)
     assert seen.told[-1] == first | {"epoch": 1_000_005, "holder": None}
+    seen.clock.forward(RELOAD_SECONDS)
+    arbiter.expire()
     assert seen.noted == [
         "“Anna” took control.",
         "“Ben” took over control from “Anna”.",
@@ -35,6 +38,55 @@ def test_everybody_is_told_of_every_change() -> None:
         "“Anna” took control.",
         "“Anna” left, and nobody has control now.",
     ]
+
+
+def test_a_page_that_is_loaded_anew_has_control_again_with_nothing_in_the_record() -> None:
+    seen = Seen()
+    arbiter = seen.arbiter
+    with arbiter.page(ANNA) as anna:
+        arbiter.take(anna)
+        held = arbiter.lease.epoch
+    # Its sticks count no longer from the moment when it closes.
+    assert (seen.told[-1]["holder"], arbiter.lease.epoch) == (None, held + 1)
+    seen.clock.forward(RELOAD_SECONDS - 0.1)
+    with arbiter.page(ANNA) as anna:
+        arbiter.take(anna)
+        assert seen.told[-1]["holder"] == {"client": anna.number, "name": "Anna"}
+        seen.clock.forward(RELOAD_SECONDS)
+        arbiter.expire()
+        assert seen.noted == ["“Anna” took control."]
+
+
+@pytest.mark.parametrize("other", [BEN, SCRIPT, Identity(ANNA.device, "Anna", "operator", "program")])
+def test_a_page_that_left_is_in_the_record_before_another_client_takes_control(other: Identity) -> None:
+    seen = Seen()
+    arbiter = seen.arbiter
+    with arbiter.page(ANNA) as anna:
+        arbiter.take(anna)
+    if other is BEN:
+        with arbiter.page(BEN) as ben:
+            arbiter.take(ben)
+    else:
+        arbiter.take(arbiter.open_program(other))
+    assert seen.noted[1:3] == [
+        "“Anna” left, and nobody has control now.",
+        f"“{other.name}” took control.",
+    ]
+
+
+@pytest.mark.parametrize("signed_out", [False, True])
+def test_a_page_that_comes_back_too_late_or_was_signed_out_has_left(signed_out: bool) -> None:
+    seen = Seen()
+    with seen.arbiter.page(ANNA) as anna:
+        seen.arbiter.take(anna)
+    if signed_out:
+        seen.arbiter.dismiss(ANNA.device)
+    else:
+        seen.clock.forward(RELOAD_SECONDS)
+    with seen.arbiter.page(ANNA) as anna:
+        seen.arbiter.take(anna)
+        left, taken = "“Anna” left, and nobody has control now.", "“Anna” took control."
+        assert seen.noted == [taken, left, taken]
 
 
 def test_held_control_is_not_taken_by_accident() -> None:
@@ -144,6 +196,27 @@ def test_who_is_signed_out_or_made_a_viewer_has_no_client_and_no_control_any_mor
         assert (arbiter.lease.holder, seen.driven) == (None, [])
         arbiter.take(ben)
     assert arbiter.lease.holder is None
+
+
+def test_a_page_that_stays_away_is_in_the_record_on_time() -> None:
+    noted: list[str] = []
+
+    async def run() -> None:
+        arbiter = ControlArbiter(SteadyClock(), print, print, noted.append)
+        with arbiter.page(ANNA) as anna:
+            arbiter.take(anna)
+        assert arbiter._departure is not None
+        # As if nearly all of its time had passed.
+        arbiter._departure = replace(arbiter._departure, due=SteadyClock().now() + 0.05)
+        task = asyncio.create_task(arbiter.run())
+        async with asyncio.timeout(5):
+            while len(noted) < 2:
+                await asyncio.sleep(0)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+    asyncio.run(run())
+    assert noted[-1] == "“Anna” left, and nobody has control now."
 
 
 def test_a_program_that_falls_silent_is_told_of_on_time() -> None:

@@ -71,14 +71,16 @@ def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> No
         session = (await served.api.post("/sessions", json={"name": "x", "note": ""})).json()["id"]
         async with open_page(served) as anna:
             (await anna.ask("/control/take?over=true")).raise_for_status()
+        (await served.api.post("/control/take")).raise_for_status()
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
         container = served.container
         recording = Recording(container.store, container.catalogue.row(session))
         texts = [one["text"] for one in recording.documents("notice")]
         shell = "“the shell of this computer”"
-        assert texts[-2:] == [
+        assert texts[-3:] == [
             f"{shell} took over control from {shell}.",
             f"{shell} left, and nobody has control now.",
+            f"{shell} took control.",
         ]
 
     play(settings, scenario)
