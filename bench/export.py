@@ -19,7 +19,7 @@ from mcap.writer import CompressionType, Writer
 from bench.hour import record_hour
 from server.features.exports.files import write_part
 from server.features.exports.formats import check
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.zip_stream import LEVEL
 from server.features.sessions.chunks import row_layout
@@ -36,7 +36,7 @@ def measure() -> dict[str, float]:
         mcap = _cpu(lambda: _export(reader, session, "mcap", data))
         row = find_row(reader, session)
         assert row is not None
-        source = ExportSelection(reader, row, Wanted(format="csv"))
+        source = ExportSelection(reader, row, ExportOptions(format="csv"))
         tables = {
             name: _table(source, name) for name in source.names if source.topics[name]["kind"] != "picture"
         }
@@ -62,9 +62,9 @@ def _cpu(work: Callable[[], object]) -> float:
 def _export(reader: Reader, session: int, kind: Any, data: Path) -> None:
     row = find_row(reader, session)
     assert row is not None
-    wanted = Wanted(format=kind)
-    source = ExportSelection(reader, row, wanted)
-    write_part(data / kind, lambda output: check(wanted).write(reader, source, output))
+    options = ExportOptions(format=kind)
+    source = ExportSelection(reader, row, options)
+    write_part(data / kind, lambda output: check(options).write(reader, source, output))
 
 
 def _table(source: ExportSelection, name: str) -> pd.DataFrame:

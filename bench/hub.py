@@ -14,7 +14,7 @@ from time import monotonic, sleep
 import psutil
 
 from bench.hub_ends import TOPICS
-from bench.hub_viewers import OURS, THEIRS, Drain, Viewer, Watch
+from bench.hub_viewers import OURS, THEIRS, Drain, HealthMonitor, Viewer
 from bench.stack import cpu_seconds
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
@@ -82,7 +82,7 @@ def _summary(found: dict[tuple[str, int], _Figures]) -> dict[str, float]:
 
 def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) -> None:
     """Measure for a while with so many viewers: the first is timed, the bytes of the others are counted."""
-    with Watch(open_one()) as watch, Drain(open_one, many - 1) as drain:
+    with HealthMonitor(open_one()) as watch, Drain(open_one, many - 1) as drain:
         sleep(_SETTLE)
         watch.begin()
         drain.check()
@@ -99,7 +99,7 @@ def _look(found: _Figures, server: psutil.Process, open_one: Open, many: int) ->
 def _stall(data: Path, port: int, server: psutil.Process) -> dict[str, float]:
     """Ten viewers, then one more that never reads: what that changes for the ten, and in memory."""
     figures = {}
-    with Watch(open_viewer(data, port)) as watch, Drain(lambda: open_viewer(data, port), 9):
+    with HealthMonitor(open_viewer(data, port)) as watch, Drain(lambda: open_viewer(data, port), 9):
         sleep(_SETTLE)
         stalled: list[Viewer] = []
         for name in ("before", "stalled"):

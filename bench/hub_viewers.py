@@ -110,7 +110,7 @@ class Viewer:
             self.socket.sendall(data)
 
 
-class Watch:
+class HealthMonitor:
     """A viewer that is timed."""
 
     def __init__(self, viewer: Viewer) -> None:

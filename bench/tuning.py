@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from robot_runtime.control.controllers import CONTROLLERS
 from server.features.tuning.proposals import propose
-from server.features.tuning.schemas import LimitCycleFound
+from server.features.tuning.schemas import MeasuredLimitCycle
 from tests.runtime.control.flight import Flight
 from tests.server.features.tuning.rig import Rig
 
@@ -48,7 +48,7 @@ def main() -> None:
         _print_row(f"PID by {proposal.title}", "pid", proposal.gains)
 
 
-def _relay(amplitude: float) -> LimitCycleFound:
+def _relay(amplitude: float) -> MeasuredLimitCycle:
     with Flight(BOARD) as flight:
         return Rig(flight).relay(amplitude)
 

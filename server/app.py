@@ -35,7 +35,7 @@ from server.http.sign_in.access import Access
 from server.http.sign_in.gate import Gate
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
-from server.processes.supervisor import Command
+from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
     *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, panels),
@@ -44,7 +44,9 @@ ROUTES = (
 
 
 def create_app(
-    settings: Settings, commands: Sequence[Command] = (), started: Callable[[Access], None] | None = None
+    settings: Settings,
+    commands: Sequence[ProcessCommand] = (),
+    started: Callable[[Access], None] | None = None,
 ) -> FastAPI:
     """The server for one robot; `commands` are the processes that it keeps running (`supervisor.plan`).
 

@@ -13,8 +13,8 @@ from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
 from server.features.backup.download import Downloads
-from server.features.comm_tests.board_reservation import Board, Handover
-from server.features.comm_tests.lab import Lab
+from server.features.comm_tests.board_reservation import BoardReservation, RobotBoard
+from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import import_samples
 from server.features.comparison.comparisons import Comparisons
@@ -25,21 +25,21 @@ from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.sync import LeaseSync
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
-from server.features.scenarios.live_run import Live
+from server.features.scenarios.live_run import LiveExecutor
 from server.features.scenarios.runs import ScenarioRunner as ScenarioRuns
-from server.features.scenarios.simulated_run import Simulated
-from server.features.sessions.auto_recording import ArmingRecording
-from server.features.sessions.bookmarks import Markers
+from server.features.scenarios.simulated_run import SimulatedExecutor
+from server.features.sessions.auto_recording import AutoRecorder
+from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.resume import InterruptedSession, find_missing
-from server.features.sessions.retention import Tidying
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import new_row
-from server.features.tuning.lab import TuningLab
-from server.features.tuning.runs import TuningRunner as TuningRuns
+from server.features.tuning.runner import TuningRunner
+from server.features.tuning.runs import TuningStore
 from server.health.faults import FAULTS
-from server.health.monitor import Watch
-from server.health.watchdog import DOWN, Inspection
+from server.health.monitor import HealthMonitor
+from server.health.watchdog import DOWN, Watchdog
 from server.http.page import Page
 from server.http.sign_in.access import Access
 from server.platform.models import SessionRow
@@ -47,7 +47,7 @@ from server.platform.notices import Notices
 from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
-from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Command, Parts
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessCommand, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Hub
 
@@ -58,7 +58,9 @@ BEAT_SECONDS = 1.0
 class Container:
     """Everything that lives as long as the server does."""
 
-    def __init__(self, settings: Settings, commands: Sequence[Command], token: str, ended: str = "") -> None:
+    def __init__(
+        self, settings: Settings, commands: Sequence[ProcessCommand], token: str, ended: str = ""
+    ) -> None:
         self.settings = settings
         self._stopping: asyncio.Task[None] | None = None
         self._ended = ended
@@ -82,7 +84,7 @@ class Container:
         self.layouts = Layouts(self.store)
 
     def _add_lease(self) -> None:
-        self.lease_sync = LeaseSync(self.bridge.tell_lease)
+        self.lease_sync = LeaseSync(self.bridge.send_lease)
         self.arbiter = ControlArbiter(
             self.clock,
             self._tell_control,
@@ -90,50 +92,56 @@ class Container:
             lambda text: self.notices.tell("control", "info", text),
         )
 
-    def _add_health(self, commands: Sequence[Command]) -> None:
+    def _add_health(self, commands: Sequence[ProcessCommand]) -> None:
         self.alarms = Alarms(self.clock, FAULTS, self.notices.tell_event, changed=self._tell_alarms)
-        self.parts = Parts(commands, self.settings.data, self.clock, self._see_down)
-        self.watch = Watch(self.settings, self.clock, self.store, self.parts)
-        self.inspection = Inspection(
-            self.settings, self.clock, self.watch, self.parts, self.store, self.alarms
+        self.processes = ProcessSupervisor(commands, self.settings.data, self.clock, self._see_down)
+        self.monitor = HealthMonitor(self.settings, self.clock, self.store, self.processes)
+        self.watchdog = Watchdog(
+            self.settings, self.clock, self.monitor, self.processes, self.store, self.alarms
         )
 
     def _add_sessions(self) -> None:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
         self.catalogue = Catalogue(self.store, self.recorder)
-        self.markers = Markers(self.store, self.clock, self.recorder)
-        self.tidying = Tidying(self.store, self.settings, self.notices, self.clock)
-        self.arming = ArmingRecording(self.recorder, self.clock, self.notices, self._armed_row)
+        self.markers = Bookmarks(self.store, self.clock, self.recorder)
+        self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
+        self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store)
         self.imports = Imports(self.settings.data, self.store)
         self.comparisons = Comparisons(self.store)
 
     def _add_comm_tests(self) -> None:
-        board = Board(self.settings, self.notices.tell)
-        self.handover = Handover(board, self.bridge, self.watch, self.parts, self.clock, self._board_occupied)
-        self.lab = Lab(
-            self.settings, CommTestStore(self.store), self.clock, self.hub.tell, self.handover.lend
+        board = RobotBoard(self.settings, self.notices.tell)
+        self.board_reservation = BoardReservation(
+            board, self.bridge, self.monitor, self.processes, self.clock, self._board_occupied
+        )
+        self.comm_tests = CommTestRunner(
+            self.settings,
+            CommTestStore(self.store),
+            self.clock,
+            self.hub.tell,
+            self.board_reservation.reserve,
         )
 
     def _add_scenarios(self) -> None:
-        self._live = Live(
+        self._live = LiveExecutor(
             self.settings,
             self.store,
             self.recorder,
             self.bridge,
             self.changes,
-            self.watch,
-            self.parts,
+            self.monitor,
+            self.processes,
             self.clock,
             self.notices.tell,
         )
-        simulated = Simulated(self.settings, self.store, self.notices)
+        simulated = SimulatedExecutor(self.settings, self.store, self.notices)
         self.scenarios = ScenarioRuns(self._live, simulated, self.hub.tell)
         self.bridge.on_stop = self.scenarios.see_stop
 
     def _add_tuning(self) -> None:
-        self.tuning = TuningLab(
-            TuningRuns(self.store),
+        self.tuning = TuningRunner(
+            TuningStore(self.store),
             self.bridge,
             self.changes,
             self.clock,
@@ -152,39 +160,39 @@ class Container:
         """Start everything; end everything. Raises SetupError, StoreError."""
         tasks: list[asyncio.Task[None]] = []
         try:
-            left = await self.recorder.recover()
+            interrupted = await self.recorder.recover()
             await self.imports.recover()
             self.downloads.recover()
             self.jobs.open()
-            await self.lab.runs.mark_interrupted()
+            await self.comm_tests.runs.mark_interrupted()
             await self.tuning.runs.mark_interrupted()
-            await import_samples(self.lab.runs)
+            await import_samples(self.comm_tests.runs)
             self.access.open()
             await self.bridge.open()
             tasks.append(asyncio.create_task(self._beat()))
-            await self.parts.end_others()
-            await self._catch_up(left)
+            await self.processes.end_others()
+            await self._catch_up(interrupted)
             self._tell_session()
             self._tell_alarms()
             if self._ended:
                 self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
             if self.settings.hil.simulator == "elsewhere":
                 for name in SIMULATION:
-                    await self.parts.pause(name, SIMULATION_ELSEWHERE)
+                    await self.processes.pause(name, SIMULATION_ELSEWHERE)
             self.scenarios.announce()
             self.tuning.announce()
             tasks += [
                 asyncio.create_task(work)
                 for work in (
-                    self.handover.start_parts(),
+                    self.board_reservation.start_processes(),
                     self.recorder.run(),
                     self._live.recover(),
                     self.jobs.run(),
                     self.hub.watch(),
-                    self.tidying.run(),
+                    self.retention.run(),
                     self.arbiter.run(),
                     self.lease_sync.run(),
-                    self.inspection.run(),
+                    self.watchdog.run(),
                     self.tuning.run(),
                     self._tell_health(),
                 )
@@ -196,31 +204,31 @@ class Container:
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.tuning.close()
             await self.scenarios.close()
-            await self.lab.close()
-            await self.parts.stop()
+            await self.comm_tests.close()
+            await self.processes.stop()
             await self.arming.close()
             await self._end_session()
             await self.bridge.close()
             await self.access.close()
             await asyncio.to_thread(self.store.close)
 
-    async def _catch_up(self, left: InterruptedSession | None) -> None:
+    async def _catch_up(self, interrupted: InterruptedSession | None) -> None:
         """Take in what the parts of a killed server have sent since, before anybody is served."""
         running = set(running_parts(self.settings.data.run))
         if "runtime" in running and self.settings.in_the_loop:
             running.add("simulator")  # perhaps on another computer
-        kept = await self.bridge.catch_up(running)
-        if left is not None:
-            found = {name: find_missing(left, SENT_BY[name], one) for name, one in kept.items()}
-            await self.recorder.resume(left, found)
-        self.bridge.go_on(kept)
+        backlogs = await self.bridge.catch_up(running)
+        if interrupted is not None:
+            found = {name: find_missing(interrupted, SENT_BY[name], one) for name, one in backlogs.items()}
+            await self.recorder.resume(interrupted, found)
+        self.bridge.begin_delivery(backlogs)
         self.recorder.caught_up()
 
     def _deliver(self, blocks: list[Block]) -> None:
         self.hub.add(blocks)
         for block in blocks:
             self.recorder.add(block)
-            self.watch.see(block)
+            self.monitor.see(block)
             self.tuning.see(block)
             if block.topic.name == "state":
                 self.lease_sync.see_run(self.bridge.run)
@@ -273,7 +281,7 @@ class Container:
     async def _tell_health(self) -> None:
         while True:
             self.arming.tick()
-            health = self.watch.health()
+            health = self.monitor.health()
             self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
             await asyncio.sleep(HEALTH_SECONDS)
 

@@ -14,7 +14,7 @@ from robot_runtime.transport.blocks import Block
 from server import VERSION
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import Part, Parts
+from server.processes.supervisor import ManagedProcess, ProcessSupervisor
 
 STATE_SECONDS = 2.5
 """The runtime sends its state every second."""
@@ -46,20 +46,20 @@ class Health(BaseModel):
     parts: list[PartHealth] = Field(description="server, database, runtime, link, board, simulator, scene")
 
 
-class Watch:
+class HealthMonitor:
     """Remembers the newest of what arrives, and judges by it."""
 
-    def __init__(self, settings: Settings, clock: Clock, store: Store, parts: Parts) -> None:
+    def __init__(self, settings: Settings, clock: Clock, store: Store, parts: ProcessSupervisor) -> None:
         self._settings = settings
         self._clock = clock
         self._store = store
-        self._parts = parts
+        self._processes = parts
         self._began = clock.now()
         self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
         self._bytes_grew: float | None = None
         self._unrenderable = missing()
-        self.heard = {"runtime": float("-inf"), "simulator": float("-inf")}
+        self.last_heard = {"runtime": float("-inf"), "simulator": float("-inf")}
         """s; when anything came from these processes last."""
         self.firmware_away: str | None = None
         """Why the board does not run the robot's firmware, and what to do; None where it does."""
@@ -68,8 +68,8 @@ class Watch:
         """Take note of a block."""
         now = self._clock.now()
         self._newest[block.topic.name] = (now, block)
-        if block.topic.sender in self.heard:
-            self.heard[block.topic.sender] = now
+        if block.topic.sender in self.last_heard:
+            self.last_heard[block.topic.sender] = now
         if block.topic.name == "link":
             self._see_link(block, now)
 
@@ -124,7 +124,7 @@ class Watch:
         return PartHealth(name="database", state="ok", text="It stores.")
 
     def _runtime(self) -> PartHealth:
-        part = self._parts.get("runtime")
+        part = self._processes.get("runtime")
         if part is not None and part.state == "failed":
             return PartHealth(name="runtime", state="failed", text=_say_failed(part))
         if part is not None and part.state == "paused":
@@ -134,7 +134,7 @@ class Watch:
         return self._silent("runtime", part, "It runs, but says nothing.")
 
     def _link(self) -> PartHealth:
-        runtime = self._parts.get("runtime")
+        runtime = self._processes.get("runtime")
         if runtime is not None and runtime.state == "paused":
             return PartHealth(name="link", state="absent", text=runtime.problem)
         if not self._fresh("state", STATE_SECONDS):
@@ -148,10 +148,10 @@ class Watch:
         return self._silent("link", runtime, text)
 
     def _board(self) -> PartHealth:
-        part = self._parts.get("board")
+        part = self._processes.get("board")
         if part is not None and part.state == "failed":
             return PartHealth(name="board", state="failed", text=_say_failed(part))
-        runtime = self._parts.get("runtime")
+        runtime = self._processes.get("runtime")
         if runtime is not None and runtime.state == "paused":
             return PartHealth(name="board", state="absent", text=runtime.problem)
         now = self._clock.now()
@@ -161,7 +161,7 @@ class Watch:
 
     def _simulator(self) -> PartHealth:
         health = self._water()
-        part = self._parts.get("simulator")
+        part = self._processes.get("simulator")
         if self._settings.in_the_loop and part is not None:
             health.here = part.state != "paused"
         return health
@@ -169,7 +169,7 @@ class Watch:
     def _water(self) -> PartHealth:
         if self._settings.mode == "robot":
             return PartHealth(name="simulator", state="absent", text="A real robot swims in real water.")
-        part = self._parts.get("simulator")
+        part = self._processes.get("simulator")
         if part is not None and part.state == "failed":
             return PartHealth(name="simulator", state="failed", text=_say_failed(part))
         if part is not None and part.state == "paused" and not self._fresh("truth", TRUTH_SECONDS):
@@ -183,7 +183,7 @@ class Watch:
             return PartHealth(name="scene", state="absent", text="A real robot sees for itself.")
         if self._unrenderable is not None:
             return PartHealth(name="scene", state="absent", text=f"Not rendered: {self._unrenderable}.")
-        part = self._parts.get("scene")
+        part = self._processes.get("scene")
         if part is None or part.state == "paused":
             return PartHealth(name="scene", state="absent", text="It does not run on this computer.")
         if part.state == "failed":
@@ -195,7 +195,7 @@ class Watch:
     def _fresh(self, topic: str, seconds: float) -> bool:
         return topic in self._newest and self._clock.now() - self._newest[topic][0] < seconds
 
-    def _silent(self, name: Any, part: Part | None, text: str) -> PartHealth:
+    def _silent(self, name: Any, part: ManagedProcess | None, text: str) -> PartHealth:
         if part is not None and part.state == "waiting":
             missing = ", ".join(path.name for path in part.command.needs if not path.exists())
             return PartHealth(name=name, state="starting", text=f"Waits for {missing or 'its turn'}.")
@@ -205,5 +205,5 @@ class Watch:
         return PartHealth(name=name, state="failed", text=text or "It says nothing.")
 
 
-def _say_failed(part: Part) -> str:
+def _say_failed(part: ManagedProcess) -> str:
     return f"It {part.problem}."

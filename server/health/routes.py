@@ -2,7 +2,7 @@
 
 from fastapi import APIRouter
 
-from server.health.monitor import Health, Watch
+from server.health.monitor import Health, HealthMonitor
 from server.http.dependencies import Provided
 from server.http.sign_in.policy import Need, needs
 
@@ -15,6 +15,6 @@ router = APIRouter(prefix="/api", tags=["health"])
     operation_id="getHealth",
     openapi_extra=needs(Need.VIEWER),
 )
-async def get_health(watch: Provided[Watch]) -> Health:
+async def get_health(watch: Provided[HealthMonitor]) -> Health:
     """Always answered with 200 while the server runs; `status` says how things are."""
     return watch.health()

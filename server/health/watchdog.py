@@ -5,10 +5,10 @@ import shutil
 
 from robot_runtime.clock import Clock
 from robot_runtime.control.alarms import Alarms
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import Parts
+from server.processes.supervisor import ProcessSupervisor
 
 PERIOD = 0.25
 SILENT_SECONDS = 1.5
@@ -24,41 +24,47 @@ DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scen
 """The alarms of parts that have ended."""
 
 
-class Inspection:
+class Watchdog:
     """Looks by `look`, and for ever by `run`."""
 
     def __init__(
-        self, settings: Settings, clock: Clock, watch: Watch, parts: Parts, store: Store, alarms: Alarms
+        self,
+        settings: Settings,
+        clock: Clock,
+        monitor: HealthMonitor,
+        processes: ProcessSupervisor,
+        store: Store,
+        alarms: Alarms,
     ) -> None:
         self._settings = settings
         self._clock = clock
-        self._watch = watch
-        self._parts = parts
+        self._monitor = monitor
+        self._processes = processes
         self._store = store
         self._alarms = alarms
-        self._looked = clock.now()
+        self._checked = clock.now()
         self._silent = 0.0
         """s; for which this server, itself awake, has heard nothing of the runtime, beyond what is normal."""
 
     async def run(self) -> None:
         """Look for ever."""
         while True:
-            self.look()
+            self.check_once()
             await asyncio.sleep(PERIOD)
 
-    def look(self) -> None:
+    def check_once(self) -> None:
         """Once, now."""
-        before, self._looked = self._looked, self._clock.now()
-        if self._looked - before > SILENT_SECONDS / 2:
+        previous, self._checked = self._checked, self._clock.now()
+        if self._checked - previous > SILENT_SECONDS / 2:
             # Whoever was held up has not listened either.
             return
         see = self._alarms.see
         for name, fault in DOWN.items():
-            part = self._parts.get(name)
-            see(fault, part is not None and part.state == "failed")
+            process = self._processes.get(name)
+            see(fault, process is not None and process.state == "failed")
         see("runtime_silent", silent := self._is_silent("runtime"))
-        self._silent = self._silent + self._looked - before if silent else 0.0
-        runtime = self._parts.get("runtime")
+        self._silent = self._silent + self._checked - previous if silent else 0.0
+        runtime = self._processes.get("runtime")
         if runtime is not None and self._silent > HUNG_SECONDS - SILENT_SECONDS:
             self._silent = 0.0
             runtime.end_hung(f"said nothing for {HUNG_SECONDS:g} s, and was ended")
@@ -69,9 +75,9 @@ class Inspection:
         see("server_restarted", False)
 
     def _is_silent(self, name: str) -> bool:
-        part, heard = self._parts.get(name), self._watch.heard[name]
-        if part is None or part.state != "running":
+        process, last_heard = self._processes.get(name), self._monitor.last_heard[name]
+        if process is None or process.state != "running":
             return False
-        if heard <= part.since:
-            return self._looked - part.since > STARTING_SECONDS
-        return self._looked - heard > SILENT_SECONDS
+        if last_heard <= process.since:
+            return self._checked - process.since > STARTING_SECONDS
+        return self._checked - last_heard > SILENT_SECONDS

@@ -46,13 +46,13 @@ class HelpPages:
     def _find(self, path: str) -> Path | None:
         """The file that `path` names, or a folder whose slash is missing; None where there is neither."""
         try:
-            wanted = (self._folder / path).resolve()
-            if not wanted.is_relative_to(self._folder):
+            file = (self._folder / path).resolve()
+            if not file.is_relative_to(self._folder):
                 return None
-            index = wanted / "index.html"
+            index = file / "index.html"
             if index.is_file():
-                return index if path.endswith("/") or not path else wanted
-            return wanted if wanted.is_file() else None
+                return index if path.endswith("/") or not path else file
+            return file if file.is_file() else None
         except (OSError, ValueError):
             # No file can have such a name.
             return None

@@ -33,9 +33,9 @@ class Page:
         """The file that `path` names, the index for paths of the page's own; None where there is none."""
         index = self._folder / "index.html"
         try:
-            wanted = (self._folder / path).resolve()
-            if wanted.is_relative_to(self._folder) and wanted.is_file():
-                return wanted
+            file = (self._folder / path).resolve()
+            if file.is_relative_to(self._folder) and file.is_file():
+                return file
             # A page of an older build must not take the index for its script.
             return index if index.is_file() and not path.startswith(HASHED_FOLDER + "/") else None
         except (OSError, ValueError):

@@ -51,8 +51,8 @@ class Guard:
         reason = self._refusal(scope)
         streamed = scope["path"] in STREAMED
         if reason is None and scope["type"] == "http" and not streamed and _has_large_body(scope):
-            told = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
-            await refuse(scope, receive, _with_headers(send, scope), 413, told)
+            text = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
+            await refuse(scope, receive, _with_headers(send, scope), 413, text)
         elif reason is None:
             # What passes an open socket has no headers, and is too much for a detour.
             opened = scope["type"] == "websocket"

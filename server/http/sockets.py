@@ -24,8 +24,8 @@ class Sockets(WebSocketsSansIOProtocol):
 
     async def send(self, message: "ASGISendEvent") -> None:
         """Send what the application has to say."""
-        said: Any = message
-        data = said.get("bytes")
+        event: Any = message
+        data = event.get("bytes")
         if data is None:
             await super().send(message)
             return

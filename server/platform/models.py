@@ -60,8 +60,10 @@ class SessionTag(SQLModel, table=True):
     tag: str
 
 
-class Marker(SQLModel, table=True):
+class BookmarkRow(SQLModel, table=True):
     """A moment (s, steady clock) that somebody pointed out, and when it was made (UTC, s since 1970)."""
+
+    __tablename__ = "marker"
 
     id: int | None = Field(default=None, primary_key=True)
     session_id: int = Field(foreign_key="session.id", index=True)

@@ -14,11 +14,11 @@ class Notices:
     def __init__(self, clock: Clock, deliver: Callable[[Block], None]) -> None:
         self._clock = clock
         self._deliver = deliver
-        self._told = 0
+        self._sent = 0
 
     def go_on(self, number: int) -> None:
         """Number on from here, where an earlier server's notices end."""
-        self._told = number
+        self._sent = number
 
     def tell(self, kind: str, severity: documents.Severity, text: str) -> None:
         """Say something in words for a person; `kind` is one word for programs."""
@@ -26,6 +26,6 @@ class Notices:
 
     def tell_event(self, event: documents.Event) -> None:
         """Say what an event says."""
-        block = Block.of(BY_NAME["notice"], 1, self._told, pack_documents([event]))
-        self._told += 1
+        block = Block.of(BY_NAME["notice"], 1, self._sent, pack_documents([event]))
+        self._sent += 1
         self._deliver(block)

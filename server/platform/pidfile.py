@@ -78,15 +78,15 @@ def running_parts(run: Path) -> dict[str, Running]:
 
 def end_parts(run: Path, but: Collection[str] = ()) -> None:
     """End what a killed server has left running, and wait for it; parts of the names in `but` stay."""
-    left = {name: running for name, running in running_parts(run).items() if name not in but}
-    for running in left.values():
+    remaining = {name: running for name, running in running_parts(run).items() if name not in but}
+    for running in remaining.values():
         _signal(running.pid, signal.SIGTERM)
     end = time.monotonic() + TERM_SECONDS
-    while left.keys() & running_parts(run).keys() and time.monotonic() < end:
+    while remaining.keys() & running_parts(run).keys() and time.monotonic() < end:
         time.sleep(LOOK_SECONDS)
-    for running in left.values():
+    for running in remaining.values():
         _signal(running.pid, signal.SIGKILL)
-    for name in left:
+    for name in remaining:
         pid_file(run, name).remove()
 
 

@@ -229,8 +229,8 @@ def make_folders(folder: DataFolder) -> None:
         folder.run.chmod(0o700)
         # What lives there belongs to parts of a killed server, as long as one of them runs.
         if not running_parts(folder.run):
-            for left in folder.run.iterdir():
-                left.unlink()
+            for file in folder.run.iterdir():
+                file.unlink()
     except OSError as problem:
         raise SetupError(
             f"The data folder {folder.path} cannot be used: {problem.strerror}. Choose another with --data."

@@ -9,7 +9,7 @@ LAST_BYTES = 8_000
 LINE_BYTES_MAX = 2_000
 
 
-class PartLog:
+class ProcessLog:
     """The file `path`, and the one before it as `path`.1; together at most twice `FILE_BYTES_MAX` is kept."""
 
     def __init__(self, path: Path) -> None:
@@ -50,5 +50,5 @@ class PartLog:
                 lines = [line.strip() for line in file.read().splitlines()]
         except OSError:
             return ""
-        kept = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
-        return " / ".join(line.decode(errors="replace") for line in kept)
+        chosen = [line[-LINE_BYTES_MAX:] for line in lines if line][-count:]
+        return " / ".join(line.decode(errors="replace") for line in chosen)

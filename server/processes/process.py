@@ -38,7 +38,7 @@ class Process:
             start_new_session=True,
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )
-        self._watched = Watched(self._popen.pid, self._reap)
+        self._watched = _ProcessGroup(self._popen.pid, self._reap)
 
     @property
     def pid(self) -> int:
@@ -110,7 +110,7 @@ class AdoptedProcess:
         if started_at(pid) != started:
             os.close(self._handle)
             raise ProcessLookupError(f"process {pid} is another one by now")
-        self._watched = Watched(pid, self._wait_killed)
+        self._watched = _ProcessGroup(pid, self._wait_killed)
 
     async def wait(self) -> None:
         """Wait for its end. How it ended is known to nobody here."""
@@ -129,7 +129,7 @@ class AdoptedProcess:
         os.close(self._handle)
 
 
-class Watched:
+class _ProcessGroup:
     """A running process that leads a group; `reap` is called, once, when it has ended."""
 
     def __init__(self, pid: int, reap: Callable[[], None]) -> None:

@@ -25,14 +25,14 @@ from server import VERSION
 from server.platform.pidfile import end_parts, pid_file
 from server.platform.settings import DataFolder, Settings
 from server.processes.backoff import Backoff, describe_pause
-from server.processes.logs import PartLog
+from server.processes.logs import ProcessLog
 from server.processes.process import AdoptedProcess, Process, describe_status
 
 log = logging.getLogger(__name__)
 
 TERM_SECONDS = 3.0
 NEED_POLL_SECONDS = 0.05
-LINES_TOLD = 3
+LINES_SHOWN = 3
 TRIM_SECONDS = 1.0
 HEARTBEAT_SECONDS = 4.0
 """After which, and half a second, the runtime stops a robot whose server is silent: 5 s are allowed."""
@@ -48,7 +48,7 @@ SeeDown = Callable[[str, str], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class ProcessCommand:
     """How a part is started; `needs` are files that must be there first, `made_of` those that it reads.
 
     A part that runs is taken over by the next server where these hold the same as when it was started.
@@ -69,10 +69,12 @@ class Command:
         return digest.hexdigest()
 
 
-class Part:
+class ManagedProcess:
     """One supervised process; `run` is the folder that tells the next server of it."""
 
-    def __init__(self, command: Command, log: PartLog, run: Path, clock: Clock, see_down: SeeDown) -> None:
+    def __init__(
+        self, command: ProcessCommand, log: ProcessLog, run: Path, clock: Clock, see_down: SeeDown
+    ) -> None:
         self.command = command
         self.state: State = "waiting"
         self.since = clock.now()
@@ -111,12 +113,12 @@ class Part:
 
     async def _adopt(self) -> None:
         """Take over the process that a killed server has left, or end it where it is not the same."""
-        left = self._pid_file.read()
-        if left is None:
+        found = self._pid_file.read()
+        if found is None:
             return
         with suppress(OSError):
-            self._process = AdoptedProcess(left.pid, left.started)
-        if left.made != self.command.fingerprint():
+            self._process = AdoptedProcess(found.pid, found.started)
+        if found.made != self.command.fingerprint():
             await self.end()
 
     async def _wait_for_needs(self) -> None:
@@ -138,11 +140,11 @@ class Part:
             status = await process.wait()
         finally:
             trimming.cancel()
-        self._let_go()
+        self._release()
         if self._hung:
             words, self._hung = self._hung, ""
             return words, True
-        last = self._log.last(LINES_TOLD, self._logged_before)
+        last = self._log.last(LINES_SHOWN, self._logged_before)
         words = describe_status(status) + (f". Its last words: {last}" if last else "")
         return words, status is None or status < 0
 
@@ -161,7 +163,7 @@ class Part:
             self._log.trim()
             await asyncio.sleep(TRIM_SECONDS)
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         assert self._process is not None
         self._process.close()
         self._process = None
@@ -175,16 +177,16 @@ class Part:
 
     async def end(self) -> None:
         """End the process, also one that a killed server has left and that was not taken over yet."""
-        if self._process is None and (left := self._pid_file.read()) is not None:
+        if self._process is None and (found := self._pid_file.read()) is not None:
             with suppress(OSError):
-                self._process = AdoptedProcess(left.pid, left.started)
+                self._process = AdoptedProcess(found.pid, found.started)
         if self._process is None:
             return
         self._process.signal(signal.SIGTERM)
         with suppress(TimeoutError):
             async with asyncio.timeout(TERM_SECONDS):
                 await self._process.wait()
-        self._let_go()
+        self._release()
 
     def end_hung(self, problem: str) -> None:
         """End a process that no longer listens; `problem` goes on after its name. It is started again."""
@@ -203,16 +205,16 @@ class Part:
         self.since = self._clock.now()
 
 
-class Parts:
+class ProcessSupervisor:
     """All parts of this robot, by name."""
 
     def __init__(
-        self, commands: Sequence[Command], folder: DataFolder, clock: Clock, see_down: SeeDown
+        self, commands: Sequence[ProcessCommand], folder: DataFolder, clock: Clock, see_down: SeeDown
     ) -> None:
         self._run = folder.run
-        self._parts = {
-            command.name: Part(
-                command, PartLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
+        self._processes = {
+            command.name: ManagedProcess(
+                command, ProcessLog(folder.logs / f"{command.name}.log"), folder.run, clock, see_down
             )
             for command in commands
         }
@@ -220,11 +222,11 @@ class Parts:
 
     async def end_others(self) -> None:
         """End what a killed server has left and this one does not have, such as another mode's board."""
-        await asyncio.to_thread(end_parts, self._run, self._parts)
+        await asyncio.to_thread(end_parts, self._run, self._processes)
 
     def start(self) -> None:
         """Start everything, each as soon as what it needs is there; what is paused is not started."""
-        for name, part in self._parts.items():
+        for name, part in self._processes.items():
             if part.state != "paused":
                 self._tasks[name] = asyncio.create_task(part.run())
 
@@ -234,7 +236,7 @@ class Parts:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        await asyncio.gather(*(part.end() for part in self._parts.values()))
+        await asyncio.gather(*(part.end() for part in self._processes.values()))
 
     async def pause(self, name: str, why: str) -> None:
         """End a part, and leave it so until it is resumed; `why` is a sentence for a person."""
@@ -242,21 +244,21 @@ class Parts:
         if task is not None:
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
-        if name in self._parts:
-            await self._parts[name].pause(why)
+        if name in self._processes:
+            await self._processes[name].pause(why)
 
     def resume(self, name: str) -> None:
         """Start a part that was paused."""
-        part = self._parts.get(name)
+        part = self._processes.get(name)
         if part is not None and part.state == "paused":
             self._tasks[name] = asyncio.create_task(part.run())
 
-    def get(self, name: str) -> Part | None:
+    def get(self, name: str) -> ManagedProcess | None:
         """The part of this name; None where this robot has none."""
-        return self._parts.get(name)
+        return self._processes.get(name)
 
 
-def plan(settings: Settings) -> list[Command]:
+def plan(settings: Settings) -> list[ProcessCommand]:
     """What must run for this robot, in the order in which one needs the other."""
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
@@ -264,7 +266,7 @@ def plan(settings: Settings) -> list[Command]:
     runtime_files = (settings.config,)
     if settings.mode == "robot":
         # Nothing ends it but a server: it is what keeps a robot under water in hand.
-        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
+        return [ProcessCommand("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files)]
     lock = ("--server-lock", str(folder.lock))
     simulator = [sys.executable, "-m", "robot_runtime.simulation"]
     if settings.in_the_loop:
@@ -275,15 +277,19 @@ def plan(settings: Settings) -> list[Command]:
             simulator += ["--connect", f"unixsock-stream/{socket}"]
     simulator += ["--robot", settings.robot, *lock]
     needs = (folder.runtime_socket,) if settings.in_the_loop else (folder.board_socket, folder.runtime_socket)
-    water = Command("simulator", "simulator", tuple(simulator), needs)
+    water = ProcessCommand("simulator", "simulator", tuple(simulator), needs)
     scene = [sys.executable, "-m", "robot_runtime.simulation.scene"]
     scene += ["--listen", f"unixsock-stream/{folder.scene_socket}"]
     for socket in (folder.runtime_socket, folder.server_socket):
         scene += ["--connect", f"unixsock-stream/{socket}"]
     scene += ["--robot", settings.robot, *lock]
-    sight = Command("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
+    sight = ProcessCommand("scene", "simulated scene", tuple(scene), (folder.runtime_socket,))
     if not settings.emulated_board:
-        return [Command("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files), water, sight]
+        return [
+            ProcessCommand("runtime", "robot's runtime", tuple(runtime), made_of=runtime_files),
+            water,
+            sight,
+        ]
     runtime += ["--port", str(folder.board_tty), *lock]
     program = build / "board"
     elf = firmware_path(build, settings.link.baud, ".elf", hil=settings.in_the_loop)
@@ -293,8 +299,8 @@ def plan(settings: Settings) -> list[Command]:
     board += ["--tty", str(folder.board_tty), "--socket", str(folder.board_socket)]
     board += ["--eeprom", str(folder.board_eeprom), *lock]
     return [
-        Command("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
-        Command("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
+        ProcessCommand("board", "emulated board", tuple(board), made_of=(program, elf, bootloader)),
+        ProcessCommand("runtime", "robot's runtime", tuple(runtime), (folder.board_tty,), runtime_files),
         water,
         sight,
     ]

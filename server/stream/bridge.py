@@ -36,8 +36,8 @@ QUEUE_MAX = 20_000
 ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
-KEPT_SECONDS = 3.0
-KEPT_PAUSE = 0.1
+BACKLOG_SECONDS = 3.0
+BACKLOG_PAUSE = 0.1
 """s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
 CONTACT_SECONDS = 10.0
 """For which a server that starts waits for processes that a killed one has left."""
@@ -62,22 +62,22 @@ class RuntimeSilentError(ApiError):
 class Bridge:
     """One Zenoh session. `deliver` is called in the event loop with what has arrived, in order.
 
-    Nothing is delivered before `go_on`.
+    Nothing is delivered before `begin_delivery`.
     """
 
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
         self.on_stop: Callable[[], None] | None = None
         """Called when somebody says STOP."""
-        self.lent: str | None = None
+        self.reserved_reason: str | None = None
         """Why nobody commands the robot now, on purpose; None where it is as always."""
         self.stopped = False
         """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
         self._settings = settings
         self._deliver = deliver
         self._queue: deque[tuple[str, bytes, str]] = deque(maxlen=QUEUE_MAX)
-        self._sources = {
-            name: GapFiller(topics, partial(self._ask_kept, name), self._pass_on)
+        self._fillers = {
+            name: GapFiller(topics, partial(self._fetch_backlog, name), self._pass_on)
             for name, topics in SENT_BY.items()
         }
         self._ready: list[Block] = []
@@ -108,14 +108,14 @@ class Bridge:
 
     async def catch_up(self, names: Iterable[str]) -> dict[str, BacklogReply]:
         """What the running processes of these names have kept; those that do not answer are left out."""
-        asked = [name for name in names if name in self._sources]
-        answers = await asyncio.gather(*map(self._contact, asked))
-        return {name: kept for name, kept in zip(asked, answers, strict=True) if kept is not None}
+        named = [name for name in names if name in self._fillers]
+        answers = await asyncio.gather(*map(self._contact, named))
+        return {name: backlog for name, backlog in zip(named, answers, strict=True) if backlog is not None}
 
-    def go_on(self, kept: Mapping[str, BacklogReply]) -> None:
+    def begin_delivery(self, backlog: Mapping[str, BacklogReply]) -> None:
         """Deliver what was kept, by the processes' names, and from now on what arrives."""
-        for name, source in self._sources.items():
-            source.go_on(kept.get(name))
+        for name, filler in self._fillers.items():
+            filler.begin_delivery(backlog.get(name))
 
     def beat(self) -> None:
         """Let the runtime know that the server lives."""
@@ -124,13 +124,13 @@ class Bridge:
     @property
     def run(self) -> str:
         """Of the runtime's process, as it was last heard; empty before."""
-        return self._sources["runtime"].run
+        return self._fillers["runtime"].run
 
     def drive(self, command: bytes) -> None:
         """Send the runtime what the driver does; where nobody listens it is lost."""
         self._messages.publish(PILOT, command)
 
-    async def tell_lease(self, epoch: int) -> None:
+    async def send_lease(self, epoch: int) -> None:
         """Have the runtime drop driving commands of earlier epochs.
 
         Raises RefusedError, or RuntimeSilentError.
@@ -142,11 +142,11 @@ class Bridge:
         except NoAnswerError as problem:
             raise RuntimeSilentError(str(problem), waited=False) from problem
 
-    def watch_pictures(self, wanted: frozenset[str]) -> None:
+    def watch_pictures(self, first_numbers: frozenset[str]) -> None:
         """Subscribe to these topics of pictures and no other; they are made only while somebody does."""
-        for name in self._pictures.keys() - wanted:
+        for name in self._pictures.keys() - first_numbers:
             self._pictures.pop(name).close()
-        for name in wanted - self._pictures.keys():
+        for name in first_numbers - self._pictures.keys():
             self._pictures[name] = self._messages.subscribe_runs(name, self._receive)
 
     async def command(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -181,16 +181,16 @@ class Bridge:
 
     async def close(self) -> None:
         """Leave the conversation."""
-        for source in self._sources.values():
-            await source.close()
+        for filler in self._fillers.values():
+            await filler.close()
         self._stops.shutdown(wait=False, cancel_futures=True)
         self._commands.shutdown(wait=False, cancel_futures=True)
         self._leases.shutdown(wait=False, cancel_futures=True)
         await asyncio.to_thread(self._messages.close)
 
     async def _ask(self, name: str, payload: Mapping[str, Any], stop: bool) -> Mapping[str, Any]:
-        if self.lent is not None and not stop:
-            raise RefusedError(self.lent)
+        if self.reserved_reason is not None and not stop:
+            raise RefusedError(self.reserved_reason)
         if not stop and self._asking >= COMMANDS_AT_ONCE:
             raise RuntimeSilentError(
                 "The robot's runtime is still busy with earlier commands. Try again.", waited=False
@@ -211,29 +211,31 @@ class Bridge:
             self._asking -= not stop
 
     async def _contact(self, name: str) -> BacklogReply | None:
-        wanted, kept = self._sources[name].everything(), None
+        first_numbers, backlog = self._fillers[name].everything(), None
         with suppress(TimeoutError):
             async with asyncio.timeout(CONTACT_SECONDS):
-                while kept is None:
-                    kept = await self._ask_kept(name, wanted, CONTACT_SECONDS)
-        return kept
+                while backlog is None:
+                    backlog = await self._fetch_backlog(name, first_numbers, CONTACT_SECONDS)
+        return backlog
 
-    async def _ask_kept(
-        self, name: str, wanted: Mapping[str, int], seconds: float = KEPT_SECONDS
+    async def _fetch_backlog(
+        self, name: str, first_numbers: Mapping[str, int], seconds: float = BACKLOG_SECONDS
     ) -> BacklogReply | None:
         end = self._loop.time() + seconds
         while self._loop.time() < end:
             try:
-                return await asyncio.to_thread(self._fetch, QUESTIONS[name], wanted, seconds)
+                return await asyncio.to_thread(self._fetch, QUESTIONS[name], first_numbers, seconds)
             except NoAnswerError:
-                await asyncio.sleep(KEPT_PAUSE)
+                await asyncio.sleep(BACKLOG_PAUSE)
             except (RefusedError, LayoutError) as problem:
                 log.warning("what the %s has kept cannot be had: %s", name, problem)
                 break
         return None
 
-    def _fetch(self, question: str, wanted: Mapping[str, int], seconds: float) -> BacklogReply:
-        return BacklogReply.from_bytes(self._messages.query_bytes(question, write_question(wanted), seconds))
+    def _fetch(self, question: str, first_numbers: Mapping[str, int], seconds: float) -> BacklogReply:
+        return BacklogReply.from_bytes(
+            self._messages.query_bytes(question, write_question(first_numbers), seconds)
+        )
 
     def _receive(self, name: str, data: bytes, run: str) -> None:
         """Called in Zenoh's thread."""
@@ -270,8 +272,8 @@ class Bridge:
             if name != STREAM:
                 self._pass_on(blocks)
             elif blocks:
-                source = self._sources.get(blocks[0].topic.sender, self._sources["runtime"])
-                source.take(run, blocks)
+                filler = self._fillers.get(blocks[0].topic.sender, self._fillers["runtime"])
+                filler.take(run, blocks)
         self._emptying = False
         self._hand_over()
 

@@ -30,7 +30,7 @@ class Message:
     after: Totals
 
 
-class Lane:
+class BroadcastBuffer:
     """The newest messages; the oldest leave when they are too many or together too large."""
 
     def __init__(self, messages_max: int, bytes_max: int) -> None:
@@ -72,7 +72,7 @@ class Lane:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept:
+class _Chunk:
     """Blocks one after the other that went out up to `tick`; rows begin at the time `since`."""
 
     tick: int
@@ -80,13 +80,13 @@ class _Kept:
     data: bytes
 
 
-class _Past:
+class _TopicBacklog:
     """What is kept of one topic: the last blocks as they came, those before them gathered in chunks."""
 
     def __init__(self, topic: Topic) -> None:
         self.topic = topic
         self.bytes = 0
-        self._chunks: deque[_Kept] = deque()
+        self._chunks: deque[_Chunk] = deque()
         self._blocks: list[Block] = []
         self._since = 0.0
         self._tick = 0
@@ -109,7 +109,7 @@ class _Past:
         self._chunks.clear()
         self.bytes = 0
 
-    def chunks(self) -> Iterable[_Kept]:
+    def chunks(self) -> Iterable[_Chunk]:
         # What is given now must not be part of a chunk with what comes later.
         self._gather()
         return self._chunks
@@ -119,7 +119,7 @@ class _Past:
             return
         data = _join(self._blocks)
         self.bytes += len(data) - sum(len(block.data) for block in self._blocks)
-        self._chunks.append(_Kept(self._tick, self._since, data))
+        self._chunks.append(_Chunk(self._tick, self._since, data))
         self._blocks.clear()
 
 
@@ -133,16 +133,16 @@ class TopicHistory:
     def __init__(self, seconds: float, bytes_max: int) -> None:
         self._seconds = seconds
         self._bytes_max = bytes_max
-        self._topics: dict[int, _Past] = {}
+        self._topics: dict[int, _TopicBacklog] = {}
 
     def add(self, block: Block, tick: int, now: float) -> None:
         """Keep a block that goes out at `tick`, at `now` (s, steady clock)."""
-        past = self._topics.setdefault(block.topic.id, _Past(block.topic))
+        backlog = self._topics.setdefault(block.topic.id, _TopicBacklog(block.topic))
         if block.topic.newest_only:
-            past.forget_all()
+            backlog.forget_all()
         # What a server takes over from an earlier one is older than now.
-        past.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)
-        past.forget(now - self._seconds, self._bytes_max)
+        backlog.add(block, tick, block.time_of(block.first) if block.topic.kind is Kind.ROWS else now)
+        backlog.forget(now - self._seconds, self._bytes_max)
 
     def since(self, tick: int, message_bytes: int, rows_from: float = -inf) -> list[list[bytes]]:
         """Every block that went out after `tick`, topic by topic, in groups of about `message_bytes`.
@@ -151,9 +151,9 @@ class TopicHistory:
         """
         groups: list[list[bytes]] = []
         room = 0
-        for past in self._topics.values():
-            first = rows_from - CHUNK_SECONDS if past.topic.kind is Kind.ROWS else -inf
-            for one in past.chunks():
+        for backlog in self._topics.values():
+            first = rows_from - CHUNK_SECONDS if backlog.topic.kind is Kind.ROWS else -inf
+            for one in backlog.chunks():
                 if one.tick <= tick or one.since < first:
                     continue
                 if len(one.data) > room:
@@ -167,9 +167,9 @@ class TopicHistory:
         """The rows of these topics that are kept, up to `until` (s, steady clock) or a little more."""
         return b"".join(
             one.data
-            for past in self._topics.values()
-            if past.topic.name in topics
-            for one in past.chunks()
+            for backlog in self._topics.values()
+            if backlog.topic.name in topics
+            for one in backlog.chunks()
             if one.since < until
         )
 

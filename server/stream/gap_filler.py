@@ -19,7 +19,7 @@ Ask = Callable[[Mapping[str, int]], Awaitable[BacklogReply | None]]
 class GapFiller:
     """One process, through any number of its runs, and what only it sends.
 
-    `deliver` is called with its blocks, in order. At first everything waits, until `go_on`.
+    `deliver` is called with its blocks, in order. At first everything waits, until `begin_delivery`.
     """
 
     def __init__(self, topics: Sequence[Topic], ask: Ask, deliver: Callable[[list[Block]], None]) -> None:
@@ -30,23 +30,23 @@ class GapFiller:
         """Of the process, as it was last heard; empty before."""
         self._over: set[str] = set()
         self._expected: dict[int, int] = {}
-        self._asked: dict[str, int] = {}
+        self._last_request: dict[str, int] = {}
         self._waiting: list[tuple[str, list[Block]]] = []
-        self._waits = True
+        self._paused = True
         self._asking: asyncio.Task[None] | None = None
 
     def everything(self) -> dict[str, int]:
         """The question for all that is kept."""
         return {topic.name: 0 for topic in self.topics}
 
-    def go_on(self, kept: BacklogReply | None) -> None:
+    def begin_delivery(self, backlog: BacklogReply | None) -> None:
         """Pass on what the process has kept, where it has told, and then what arrives."""
-        self._waits = False
-        self._merge(kept)
+        self._paused = False
+        self._merge(backlog)
 
     def take(self, run: str, blocks: list[Block]) -> None:
         """Blocks have arrived from this run of the process; where it has no name, nothing is asked for."""
-        if self._waits:
+        if self._paused:
             self._waiting.append((run, blocks))
         elif not run or run in self._over:
             self._deliver(blocks)
@@ -56,11 +56,11 @@ class GapFiller:
             self._pass_on(blocks)
         else:
             numbers = {topic.name: self._expected.get(topic.id, 0) for topic in self.topics}
-            if numbers == self._asked:
+            if numbers == self._last_request:
                 # It was asked for these already, and has not got them: they stay missing.
                 self._pass_on(blocks)
             else:
-                self._asked = numbers
+                self._last_request = numbers
                 self._catch_up(run, blocks, numbers)
 
     async def close(self) -> None:
@@ -69,42 +69,42 @@ class GapFiller:
             self._asking.cancel()
             await asyncio.gather(self._asking, return_exceptions=True)
 
-    def _catch_up(self, run: str, blocks: list[Block], wanted: Mapping[str, int]) -> None:
-        self._waits = True
+    def _catch_up(self, run: str, blocks: list[Block], first_numbers: Mapping[str, int]) -> None:
+        self._paused = True
         self._waiting.append((run, blocks))
-        self._asking = asyncio.create_task(self._ask_and_merge(run, wanted))
+        self._asking = asyncio.create_task(self._ask_and_merge(run, first_numbers))
 
-    async def _ask_and_merge(self, run: str, wanted: Mapping[str, int]) -> None:
-        kept = await self._ask(wanted)
-        if kept is not None and kept.run != run:
+    async def _ask_and_merge(self, run: str, first_numbers: Mapping[str, int]) -> None:
+        backlog = await self._ask(first_numbers)
+        if backlog is not None and backlog.run != run:
             # Another run by now, whose numbers begin anew.
-            kept = await self._ask(self.everything())
-        self.go_on(kept)
+            backlog = await self._ask(self.everything())
+        self.begin_delivery(backlog)
 
-    def _merge(self, kept: BacklogReply | None) -> None:
+    def _merge(self, backlog: BacklogReply | None) -> None:
         waiting, self._waiting = self._waiting, []
         first = waiting[0][0] if waiting else ""
-        if kept is None:
+        if backlog is None:
             # Whatever is missing stays so.
             self._begin(first or self.run)
-        elif kept.run != self.run:
-            if first != kept.run:
+        elif backlog.run != self.run:
+            if first != backlog.run:
                 self._over.add(first)
             for run, blocks in waiting:
                 if run == self.run:
                     self._pass_on(self._fresh(blocks))
             waiting = [(run, blocks) for run, blocks in waiting if run != self.run]
-            self._begin(kept.run)
-        if kept is not None:
-            self._pass_on(self._fresh(kept.blocks))
-            self._expected = {topic.id: kept.next.get(topic.name, 0) for topic in self.topics}
+            self._begin(backlog.run)
+        if backlog is not None:
+            self._pass_on(self._fresh(backlog.blocks))
+            self._expected = {topic.id: backlog.next.get(topic.name, 0) for topic in self.topics}
         for run, blocks in waiting:
             self.take(run, blocks)
 
     def _begin(self, run: str) -> None:
         if run != self.run:
             self._over.add(self.run)
-        self.run, self._expected, self._asked = run, {}, {}
+        self.run, self._expected, self._last_request = run, {}, {}
 
     def _follow(self, blocks: list[Block]) -> bool:
         expected = dict(self._expected)

@@ -15,7 +15,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import Kind
 from robot_runtime.transport.blocks import Block
-from server.stream.broadcast import Lane, TopicHistory, Totals
+from server.stream.broadcast import BroadcastBuffer, TopicHistory, Totals
 
 HISTORY_SECONDS = 600.0
 HISTORY_TOPIC_BYTES = 4_000_000
@@ -144,12 +144,12 @@ class Client:
             await self._send(picture)
 
     async def _send_rows(self) -> None:
-        lane = self._hub.rows
-        if self._rows < lane.first:
-            for topic, count in lane.lost(self._seen):
+        buffer = self._hub.rows
+        if self._rows < buffer.first:
+            for topic, count in buffer.lost(self._seen):
                 self.answer({"op": "dropped", "topic": topic.name, "count": count})
-            self._rows = lane.first
-        message = lane.get(self._rows)
+            self._rows = buffer.first
+        message = buffer.get(self._rows)
         self._rows += 1
         self._seen = message.after
         await self._send(message.data)
@@ -164,8 +164,8 @@ class Hub:
     """Takes in blocks and hands them to all clients; `audience` is called with what pictures they want."""
 
     def __init__(self, clock: Clock, audience: Callable[[frozenset[str]], None]) -> None:
-        self.rows = Lane(ROWS_MESSAGES, ROWS_BYTES)
-        self.documents = Lane(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
+        self.rows = BroadcastBuffer(ROWS_MESSAGES, ROWS_BYTES)
+        self.documents = BroadcastBuffer(DOCUMENTS_MESSAGES, DOCUMENTS_BYTES)
         self.history = TopicHistory(HISTORY_SECONDS, HISTORY_TOPIC_BYTES)
         self.tick = 0
         self.pictures: dict[str, tuple[int, bytes]] = {}
@@ -275,10 +275,10 @@ class Hub:
         self._count_audience()
 
     def _count_audience(self) -> None:
-        wanted = frozenset[str]().union(*(client.watching for client in self._clients))
-        if wanted == self._watched:
+        topics = frozenset[str]().union(*(client.watching for client in self._clients))
+        if topics == self._watched:
             return
-        self._watched = wanted
-        for topic in self.pictures.keys() - wanted:
+        self._watched = topics
+        for topic in self.pictures.keys() - topics:
             del self.pictures[topic]
-        self._audience(wanted)
+        self._audience(topics)

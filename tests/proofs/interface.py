@@ -153,7 +153,7 @@ def run_surface() -> Iterator[Surface]:
 
 async def _record(served: Served) -> None:
     served.runtime.publish(state_block(0))
-    await until(lambda: served.container.watch.state(), "the state")
+    await until(lambda: served.container.monitor.state(), "the state")
     answer = await served.api.post("/sessions", json={"name": "kept"})
     number = answer.json()["id"]
     assert number == 1

@@ -27,10 +27,10 @@ from server.features.comm_tests.runs import CommTestStore
 from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import NewExport
 from server.features.scenarios.library import _shipped, keep_scenario
-from server.features.sessions.bookmarks import Markers
+from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import PERIOD, Recorder
-from server.features.sessions.retention import Tidying
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.session import find_row, new_row
 from server.platform import store as store_module
 from server.platform.notices import Notices
@@ -107,7 +107,7 @@ class Work:
     ) -> int:
         session = (await recorder.start(new_row(self.settings, clock, name, "", "null"))).id
         self.acknowledged()
-        markers = Markers(recorder._store, clock, recorder)
+        markers = Bookmarks(recorder._store, clock, recorder)
         for flush in range(FLUSHES):
             clock.forward(PERIOD)
             recorder.add(self.noise())
@@ -182,8 +182,10 @@ class Work:
             self.doubtful(f"{kind}/{session}")
         await catalogue.delete(session)
         await catalogue.purge(session)
-        tidying = Tidying(store, self.settings, Notices(clock := SimulatedClock(), lambda _: None), clock)
-        await tidying.tidy(1e9)
+        retention = RetentionWorker(
+            store, self.settings, Notices(clock := SimulatedClock(), lambda _: None), clock
+        )
+        await retention.apply(1e9)
         self.acknowledged()
 
 

@@ -20,7 +20,7 @@ from server.http.serving import make_server, open_socket
 from server.platform.certificate import prepare_certificate, trust_only
 from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.processes.supervisor import Command
+from server.processes.supervisor import ProcessCommand
 from server.stream.bridge import RuntimeSilentError
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
@@ -69,7 +69,7 @@ class Served:
 
 
 @asynccontextmanager
-async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIterator[Served]:
+async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> AsyncIterator[Served]:
     """Run the server of these settings, on a port of the system's choice."""
     certificate = prepare_certificate(settings) if settings.tls else None
     with open_socket("127.0.0.1", 0) as listener:
@@ -96,7 +96,9 @@ async def serve(settings: Settings, commands: Sequence[Command] = ()) -> AsyncIt
                 await running
 
 
-def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: Command) -> None:
+def play(
+    settings: Settings, scenario: Callable[[Served], Awaitable[None]], *commands: ProcessCommand
+) -> None:
     """Let `scenario` be played with the server of these settings."""
 
     async def run() -> None:

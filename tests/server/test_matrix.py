@@ -308,7 +308,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
             house = House(app, settings, runtime)
             await until(lambda: runtime.is_heard("stream"), "the server to listen")
             runtime.publish(state_block(0))
-            await until(house.container.watch.state, "the state")
+            await until(house.container.monitor.state, "the state")
             for who in ROLES:
                 if who != "anonymous":
                     house.people[who] = await house.enter(who)

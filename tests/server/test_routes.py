@@ -14,7 +14,7 @@ import server.stream.bridge as bridge_module
 from robot_runtime.transport.blocks import read_blocks
 from server.openapi import main as print_openapi
 from server.platform.settings import Settings
-from server.processes.supervisor import Command
+from server.processes.supervisor import ProcessCommand
 from tests.server.blocks import depth_block, link_block, state_block, truth_block
 from tests.server.serving import Served, play, serve
 from tests.server.waiting import SECONDS, until
@@ -41,7 +41,7 @@ def test_health_names_every_part_and_its_words(settings: Settings) -> None:
         assert list(await states()) == [*heard, "scene"]
         assert (await served.api.get("/health")).json()["status"] == "starting"
         served.runtime.publish(state_block(0), link_block(0, 10), link_block(1, 20), truth_block(0))
-        await until(lambda: served.container.watch.health().status == "ok", "all to be well")
+        await until(lambda: served.container.monitor.health().status == "ok", "all to be well")
         assert await states() == dict.fromkeys(heard, "ok") | {"scene": "absent"}
 
     play(settings, scenario)
@@ -54,7 +54,7 @@ def test_the_newest_state_is_shown(settings: Settings) -> None:
         assert "/api/health" in answer.json()["detail"]
         served.runtime.publish(state_block(0, set_point_default=0.5), state_block(1, set_point_default=0.75))
         await until(
-            lambda: (served.container.watch.state() or {}).get("set_point_default") == 0.75, "the state"
+            lambda: (served.container.monitor.state() or {}).get("set_point_default") == 0.75, "the state"
         )
         answer = await served.api.get("/robot")
         assert (answer.status_code, answer.json()["set_point_default"]) == (200, 0.75)
@@ -346,7 +346,7 @@ def test_a_session_is_completed_when_the_server_ends_in_order(settings: Settings
         async with serve(settings) as served:
             await served.api.post("/sessions", json={"name": "cut"})
             served.runtime.publish(depth_block(0, 4))
-            seen = served.container.watch._newest
+            seen = served.container.monitor._newest
             await until(lambda: "depth" in seen, "the samples")
         async with serve(settings) as served:
             (session,) = (await served.api.get("/sessions")).json()
@@ -385,7 +385,9 @@ def test_every_answer_binds_the_browser(settings: Settings) -> None:
 
 
 def test_a_part_that_dies_shows_in_health_and_as_a_notice(settings: Settings) -> None:
-    broken = Command("board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')"))
+    broken = ProcessCommand(
+        "board", "emulated board", (sys.executable, "-c", "raise SystemExit('no firmware')")
+    )
 
     async def scenario(served: Served) -> None:
         board = {"state": "starting", "text": ""}
@@ -407,7 +409,7 @@ def test_damaged_blocks_are_thrown_away(settings: Settings) -> None:
             served.runtime.publish_bytes(bad)
         served.runtime.publish(depth_block(0, 2))
         await until(lambda: served.container.bridge.damaged == 5, "the damaged blocks")
-        await until(lambda: "depth" in served.container.watch._newest, "the good one")
+        await until(lambda: "depth" in served.container.monitor._newest, "the good one")
         kept = b"".join(b"".join(one) for one in served.container.hub.history.since(-1, 10**6))
         assert [block.data for block in read_blocks(kept) if block.topic.name == "depth"] == [good]
 

@@ -1847,6 +1847,16 @@ export interface components {
             time: number;
         };
         /**
+         * BookmarkChanges
+         * @description What is to be different; what is left out stays as it is.
+         */
+        BookmarkChanges: {
+            /** Text */
+            text?: string | null;
+            /** Time */
+            time?: number | null;
+        };
+        /**
          * CardCommand
          * @description Holds a card before the simulated camera, or takes it away.
          */
@@ -2221,6 +2231,36 @@ export interface components {
             signals: components["schemas"]["Signal"][];
         };
         /**
+         * ComparisonQuery
+         * @description The same, with what the figures are taken over.
+         */
+        ComparisonQuery: {
+            /**
+             * @default {
+             *       "by": "start",
+             *       "marker": "",
+             *       "number": 1
+             *     }
+             */
+            align: components["schemas"]["Align"];
+            /** Band */
+            band?: number | null;
+            /**
+             * Points
+             * @description columns of each line
+             * @default 1000
+             */
+            points: number;
+            /** @description for the figures; the time armed without */
+            range?: components["schemas"]["TimeRange"] | null;
+            /** Sessions */
+            sessions: number[];
+            /** Signals */
+            signals: string[];
+            /** @description what is drawn; everything without */
+            view?: components["schemas"]["TimeRange"] | null;
+        };
+        /**
          * ControlDetails
          * @description The same, and the counts of stick commands.
          */
@@ -2268,10 +2308,10 @@ export interface components {
             role?: ("viewer" | "operator") | null;
         };
         /**
-         * DeviceShape
+         * DeviceDetails
          * @description A browser or a program that may come in; times in s since 1970.
          */
-        DeviceShape: {
+        DeviceDetails: {
             /** Id */
             id: number;
             /**
@@ -2448,6 +2488,43 @@ export interface components {
             state: "complete" | "cancelled" | "failed";
             /** Title */
             title: string;
+        };
+        /**
+         * ExportOptions
+         * @description What of a session is to be in the file, and as what.
+         */
+        ExportOptions: {
+            /**
+             * Columns
+             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
+             */
+            columns?: string[] | null;
+            /**
+             * End
+             * @description s since the session's start; null for its end
+             */
+            end?: number | null;
+            /**
+             * Format
+             * @enum {string}
+             */
+            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
+            /**
+             * Period
+             * @description s between the lines of csv-grid
+             * @default 0.1
+             */
+            period: number;
+            /**
+             * Start
+             * @description s since the session's start; null for its beginning
+             */
+            start?: number | null;
+            /**
+             * Topics
+             * @description names of topics; null for all. Not for csv-grid, archive and report
+             */
+            topics?: string[] | null;
         };
         /**
          * Figure
@@ -2655,13 +2732,17 @@ export interface components {
              * @enum {string}
              */
             state: "waiting" | "running" | "done" | "failed";
-            wanted: components["schemas"]["Wanted"];
+            wanted: components["schemas"]["ExportOptions"];
         };
         /**
-         * KeptLayout
-         * @description A layout by its name.
+         * LayoutDetails
+         * @description The same with its document, which may be of another version of the program.
          */
-        KeptLayout: {
+        LayoutDetails: {
+            /** Document */
+            document: {
+                [key: string]: unknown;
+            };
             /** Id */
             id: number;
             /** Name */
@@ -2698,55 +2779,38 @@ export interface components {
             why: string;
         };
         /**
-         * LimitCycleFound
-         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
-         */
-        LimitCycleFound: {
-            /**
-             * Amplitude
-             * @description d: of the command, either way from the bias
-             */
-            amplitude: number;
-            /**
-             * Asymmetry
-             * @description share of the cycle by which its halves differ; 0: none
-             */
-            asymmetry: number;
-            /**
-             * Bias
-             * @description mean command, which balances the load
-             */
-            bias: number;
-            /** Cycles */
-            cycles: number;
-            /**
-             * Period
-             * @description ultimate period, s
-             */
-            period: number;
-            /**
-             * Remarks
-             * @description what makes these figures doubtful
-             */
-            remarks: string[];
-            /**
-             * Swing
-             * @description a: half of the height from peak to peak
-             */
-            swing: number;
-            /**
-             * Ultimate Gain
-             * @description command for each unit of the loop
-             */
-            ultimate_gain: number;
-        };
-        /**
          * Lines
          * @description The lines of a part of the time.
          */
         Lines: {
             /** Sessions */
             sessions: components["schemas"]["Drawn"][];
+        };
+        /**
+         * LinesQuery
+         * @description Sessions, signals of them, and how they are laid over each other.
+         */
+        LinesQuery: {
+            /**
+             * @default {
+             *       "by": "start",
+             *       "marker": "",
+             *       "number": 1
+             *     }
+             */
+            align: components["schemas"]["Align"];
+            /**
+             * Points
+             * @description columns of each line
+             * @default 1000
+             */
+            points: number;
+            /** Sessions */
+            sessions: number[];
+            /** Signals */
+            signals: string[];
+            /** @description what is drawn; everything without */
+            view?: components["schemas"]["TimeRange"] | null;
         };
         /**
          * LinkFault
@@ -2851,19 +2915,9 @@ export interface components {
          * @description A program's token, which is shown this once.
          */
         MadeToken: {
-            device: components["schemas"]["DeviceShape"];
+            device: components["schemas"]["DeviceDetails"];
             /** Token */
             token: string;
-        };
-        /**
-         * MarkChanges
-         * @description What is to be different; what is left out stays as it is.
-         */
-        MarkChanges: {
-            /** Text */
-            text?: string | null;
-            /** Time */
-            time?: number | null;
         };
         /**
          * Me
@@ -2882,6 +2936,49 @@ export interface components {
             robot: string;
             /** Signed In */
             signed_in: boolean;
+        };
+        /**
+         * MeasuredLimitCycle
+         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
+         */
+        MeasuredLimitCycle: {
+            /**
+             * Amplitude
+             * @description d: of the command, either way from the bias
+             */
+            amplitude: number;
+            /**
+             * Asymmetry
+             * @description share of the cycle by which its halves differ; 0: none
+             */
+            asymmetry: number;
+            /**
+             * Bias
+             * @description mean command, which balances the load
+             */
+            bias: number;
+            /** Cycles */
+            cycles: number;
+            /**
+             * Period
+             * @description ultimate period, s
+             */
+            period: number;
+            /**
+             * Remarks
+             * @description what makes these figures doubtful
+             */
+            remarks: string[];
+            /**
+             * Swing
+             * @description a: half of the height from peak to peak
+             */
+            swing: number;
+            /**
+             * Ultimate Gain
+             * @description command for each unit of the loop
+             */
+            ultimate_gain: number;
         };
         /**
          * ModeCommand
@@ -2911,6 +3008,19 @@ export interface components {
             text: string;
             /** Time */
             time: number;
+        };
+        /**
+         * NewBookmark
+         * @description A moment to be marked: s since the session's start, or null for now.
+         */
+        NewBookmark: {
+            /**
+             * Text
+             * @default
+             */
+            text: string;
+            /** Time */
+            time?: number | null;
         };
         /**
          * NewCode
@@ -2971,19 +3081,6 @@ export interface components {
             document: components["schemas"]["LayoutDocument"];
             /** Name */
             name: string;
-        };
-        /**
-         * NewMark
-         * @description A moment to be marked: s since the session's start, or null for now.
-         */
-        NewMark: {
-            /**
-             * Text
-             * @default
-             */
-            text: string;
-            /** Time */
-            time?: number | null;
         };
         /**
          * NewProfile
@@ -3423,6 +3520,21 @@ export interface components {
              * @enum {string}
              */
             state: "running" | "complete" | "cancelled" | "failed" | "interrupted";
+        };
+        /**
+         * SavedLayout
+         * @description A layout by its name.
+         */
+        SavedLayout: {
+            /** Id */
+            id: number;
+            /** Name */
+            name: string;
+            /**
+             * Saved
+             * Format: date-time
+             */
+            saved: string;
         };
         /**
          * ScenarioCheck
@@ -4212,7 +4324,7 @@ export interface components {
          */
         TuningRun: {
             /** @description of a relay experiment */
-            cycle: components["schemas"]["LimitCycleFound"] | null;
+            cycle: components["schemas"]["MeasuredLimitCycle"] | null;
             /**
              * Figures
              * @description of a step response, by name
@@ -4265,7 +4377,7 @@ export interface components {
         TuningRunDetail: {
             curve: components["schemas"]["TuningCurve"];
             /** @description of a relay experiment */
-            cycle: components["schemas"]["LimitCycleFound"] | null;
+            cycle: components["schemas"]["MeasuredLimitCycle"] | null;
             /**
              * Figures
              * @description of a step response, by name
@@ -4521,118 +4633,6 @@ export interface components {
             /** Text */
             text: string;
         };
-        /**
-         * Wanted
-         * @description What of a session is to be in the file, and as what.
-         */
-        Wanted: {
-            /**
-             * Columns
-             * @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone
-             */
-            columns?: string[] | null;
-            /**
-             * End
-             * @description s since the session's start; null for its end
-             */
-            end?: number | null;
-            /**
-             * Format
-             * @enum {string}
-             */
-            format: "csv" | "csv-grid" | "jsonl" | "parquet" | "mcap" | "archive" | "report";
-            /**
-             * Period
-             * @description s between the lines of csv-grid
-             * @default 0.1
-             */
-            period: number;
-            /**
-             * Start
-             * @description s since the session's start; null for its beginning
-             */
-            start?: number | null;
-            /**
-             * Topics
-             * @description names of topics; null for all. Not for csv-grid, archive and report
-             */
-            topics?: string[] | null;
-        };
-        /**
-         * WantedComparison
-         * @description The same, with what the figures are taken over.
-         */
-        WantedComparison: {
-            /**
-             * @default {
-             *       "by": "start",
-             *       "marker": "",
-             *       "number": 1
-             *     }
-             */
-            align: components["schemas"]["Align"];
-            /** Band */
-            band?: number | null;
-            /**
-             * Points
-             * @description columns of each line
-             * @default 1000
-             */
-            points: number;
-            /** @description for the figures; the time armed without */
-            range?: components["schemas"]["TimeRange"] | null;
-            /** Sessions */
-            sessions: number[];
-            /** Signals */
-            signals: string[];
-            /** @description what is drawn; everything without */
-            view?: components["schemas"]["TimeRange"] | null;
-        };
-        /**
-         * WantedLines
-         * @description Sessions, signals of them, and how they are laid over each other.
-         */
-        WantedLines: {
-            /**
-             * @default {
-             *       "by": "start",
-             *       "marker": "",
-             *       "number": 1
-             *     }
-             */
-            align: components["schemas"]["Align"];
-            /**
-             * Points
-             * @description columns of each line
-             * @default 1000
-             */
-            points: number;
-            /** Sessions */
-            sessions: number[];
-            /** Signals */
-            signals: string[];
-            /** @description what is drawn; everything without */
-            view?: components["schemas"]["TimeRange"] | null;
-        };
-        /**
-         * WholeLayout
-         * @description The same with its document, which may be of another version of the program.
-         */
-        WholeLayout: {
-            /** Document */
-            document: {
-                [key: string]: unknown;
-            };
-            /** Id */
-            id: number;
-            /** Name */
-            name: string;
-            /**
-             * Saved
-             * Format: date-time
-             */
-            saved: string;
-        };
     };
     responses: never;
     parameters: never;
@@ -4690,7 +4690,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["DeviceShape"][];
+                    "application/json": components["schemas"]["DeviceDetails"][];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -4781,7 +4781,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["DeviceShape"];
+                    "application/json": components["schemas"]["DeviceDetails"];
                 };
             };
             /** @description There is no such device */
@@ -5408,7 +5408,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["WantedComparison"];
+                "application/json": components["schemas"]["ComparisonQuery"];
             };
         };
         responses: {
@@ -5459,7 +5459,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["WantedLines"];
+                "application/json": components["schemas"]["LinesQuery"];
             };
         };
         responses: {
@@ -6012,7 +6012,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["KeptLayout"][];
+                    "application/json": components["schemas"]["SavedLayout"][];
                 };
             };
             /** @description The database does not work */
@@ -6054,7 +6054,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["KeptLayout"];
+                    "application/json": components["schemas"]["SavedLayout"];
                 };
             };
             /** @description There are too many */
@@ -6103,7 +6103,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["WholeLayout"];
+                    "application/json": components["schemas"]["LayoutDetails"];
                 };
             };
             /** @description There is no such layout */
@@ -8255,7 +8255,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NewMark"];
+                "application/json": components["schemas"]["NewBookmark"];
             };
         };
         responses: {
@@ -8375,7 +8375,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["MarkChanges"];
+                "application/json": components["schemas"]["BookmarkChanges"];
             };
         };
         responses: {

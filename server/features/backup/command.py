@@ -85,8 +85,8 @@ def put_back(folder: DataFolder, file: Path) -> str:
     except (sqlite3.DatabaseError, OSError) as problem:
         fresh.unlink(missing_ok=True)
         raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem
-    kept = f" What was there before is {aside}." if aside else ""
-    return f"{folder.database} is what it was in {file} (revision {revision}): {_count(file)}.{kept}"
+    saved = f" What was there before is {aside}." if aside else ""
+    return f"{folder.database} is what it was in {file} (revision {revision}): {_count(file)}.{saved}"
 
 
 def _examine(file: Path) -> str:
@@ -113,16 +113,16 @@ def _put_aside(folder: DataFolder) -> Path:
     """
     aside = place(folder, "replaced")
     logs = {path: _beside(aside, end) for end in LOGS if (path := _beside(folder.database, end)).exists()}
-    for path, kept in logs.items():
-        write_whole(kept, path.read_bytes(), 0o600)
+    for path, saved in logs.items():
+        write_whole(saved, path.read_bytes(), 0o600)
     try:
         with closing(open_database(folder.database, "rw")) as database:
             database.execute("PRAGMA journal_mode = DELETE")
     except sqlite3.DatabaseError:
         pass
     else:
-        for kept in logs.values():
-            kept.unlink()
+        for saved in logs.values():
+            saved.unlink()
     os.link(folder.database, aside)
     sync(folder.backups)
     for end in (*LOGS, "-shm"):

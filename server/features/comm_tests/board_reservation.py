@@ -15,11 +15,11 @@ from robot_runtime.clock import Clock
 from robot_runtime.durable_files import sync, write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.boards.firmware import firmware_path
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
-from server.processes.logs import PartLog
+from server.processes.logs import ProcessLog
 from server.processes.process import Process
-from server.processes.supervisor import Parts, Tell
+from server.processes.supervisor import ProcessSupervisor, Tell
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 DISARM_SECONDS = 3.0
@@ -28,11 +28,11 @@ PORT_SECONDS = 10.0
 """Within which the emulated board must have its port, which it makes when it starts."""
 RESTORE_SECONDS = 120.0
 """An upload at 115200 baud takes 5 s, three attempts with a board that does not answer some 40 s."""
-LOOK_SECONDS = 0.05
-LINES_TOLD = 2
+POLL_SECONDS = 0.05
+LINES_SHOWN = 2
 
 
-class Board:
+class RobotBoard:
     """The robot's board, whose port nobody else has open. `tell` hears what becomes of its firmware.
 
     `problem` says why the firmware could not be brought back, and what to do; None where it is there.
@@ -54,14 +54,14 @@ class Board:
         return self._settings.data.firmware_away.exists()
 
     @asynccontextmanager
-    async def lend(self, name: str) -> AsyncIterator[list[str]]:
+    async def reserve(self, name: str) -> AsyncIterator[list[str]]:
         """While entered the board is the test's of this name; the value are the lab's arguments for it.
 
         Raises RefusedError where the disk does not take the note that the firmware is away.
         """
         note = self._settings.data.firmware_away
         try:
-            await asyncio.to_thread(_mark, note, name)
+            await asyncio.to_thread(_write_note, note, name)
         except OSError as problem:
             raise RefusedError(
                 f"{note} cannot be written: {problem.strerror}. Without it nobody would bring the robot's "
@@ -83,13 +83,13 @@ class Board:
             )
             self._tell("firmware", "alarm", self.problem)
             return
-        await asyncio.to_thread(_unmark, self._settings.data.firmware_away)
+        await asyncio.to_thread(_remove_note, self._settings.data.firmware_away)
         self.problem = None
         self._tell("firmware", "info", "The robot's firmware is back on its board.")
 
     async def _upload(self) -> str:
         """What went wrong, in words; empty where the firmware is there."""
-        output = PartLog(self._settings.data.logs / "restore.log")
+        output = ProcessLog(self._settings.data.logs / "restore.log")
         settings = self._settings
         firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
         command = [sys.executable, "-m", "robot_runtime.experiments.comm_test", "--restore", str(firmware)]
@@ -97,7 +97,7 @@ class Board:
         try:
             async with asyncio.timeout(PORT_SECONDS):
                 while not Path(self._port).exists():
-                    await asyncio.sleep(LOOK_SECONDS)
+                    await asyncio.sleep(POLL_SECONDS)
         except TimeoutError:
             return f"there is no {self._port}"
         try:
@@ -114,35 +114,37 @@ class Board:
             return f"the upload could not be started: {problem.strerror}"
         finally:
             output.trim()
-        return "" if status == 0 else output.last(LINES_TOLD) or f"the upload ended with exit status {status}"
+        return (
+            "" if status == 0 else output.last(LINES_SHOWN) or f"the upload ended with exit status {status}"
+        )
 
 
-class Handover:
+class BoardReservation:
     """Of the board between the runtime and the lab; `occupied` says why it cannot be lent now, if so."""
 
     def __init__(
         self,
-        board: Board,
+        board: RobotBoard,
         bridge: Bridge,
-        watch: Watch,
-        parts: Parts,
+        monitor: HealthMonitor,
+        processes: ProcessSupervisor,
         clock: Clock,
         occupied: Callable[[], str | None],
     ) -> None:
         self._board = board
         self._bridge = bridge
-        self._watch = watch
-        self._parts = parts
+        self._monitor = monitor
+        self._processes = processes
         self._clock = clock
         self._occupied = occupied
 
     @asynccontextmanager
-    async def lend(self, name: str) -> AsyncIterator[list[str]]:
+    async def reserve(self, name: str) -> AsyncIterator[list[str]]:
         """As `Board.lend`, but the robot is disarmed and its runtime ends before, and comes back afterwards.
 
         Raises RefusedError where that is not possible.
         """
-        reason = self._bridge.lent or self._occupied()
+        reason = self._bridge.reserved_reason or self._occupied()
         if reason:
             raise RefusedError(reason)
         why = (
@@ -153,66 +155,66 @@ class Handover:
             # A session may have been about to start when the board was asked for.
             if reason := self._occupied():
                 raise RefusedError(reason)
-            async with self._without_runtime(why), self._board.lend(name) as arguments:
+            async with self._without_runtime(why), self._board.reserve(name) as arguments:
                 yield arguments
 
-    async def start_parts(self) -> None:
+    async def start_processes(self) -> None:
         """Start every part; where an earlier server could not bring the firmware back, that comes first."""
         if not self._board.away:
-            self._parts.start()
+            self._processes.start()
             return
         why = "A communication test was cut off; the robot's firmware is being uploaded to its board again."
         with self._nobody_commands(why):
             async with self._without_runtime(why):
-                self._parts.start()
+                self._processes.start()
                 await self._board.restore()
 
     @contextmanager
     def _nobody_commands(self, why: str) -> Iterator[None]:
-        self._bridge.lent = why
+        self._bridge.reserved_reason = why
         try:
             yield
         finally:
-            self._bridge.lent = None
+            self._bridge.reserved_reason = None
 
     @asynccontextmanager
     async def _without_runtime(self, why: str) -> AsyncIterator[None]:
-        await self._parts.pause("runtime", why)
+        await self._processes.pause("runtime", why)
         self._bridge.stopped = True
         try:
             yield
         finally:
             self._bridge.stopped = False
-            self._watch.firmware_away = self._board.problem
-            self._parts.resume("runtime")
+            self._monitor.firmware_away = self._board.problem
+            self._processes.resume("runtime")
 
     async def _disarm(self) -> None:
-        asked = self._clock.now()
+        sent = self._clock.now()
         try:
             await self._bridge.command("stop", {})
         except RuntimeSilentError as problem:
             if not problem.waited:
                 return  # no runtime: a board that hears nothing disarms by itself within a second
             raise RefusedError(f"The robot could not be disarmed before the test. {problem}") from problem
-        while self._may_be_armed(asked):
-            if self._clock.now() - asked > DISARM_SECONDS:
+        while self._may_be_armed(sent):
+            if self._clock.now() - sent > DISARM_SECONDS:
                 raise RefusedError(
                     f"The robot was not disarmed within {DISARM_SECONDS:g} s, so its board cannot run a "
                     "communication test. Look at the System page, and try again."
                 )
-            await asyncio.sleep(LOOK_SECONDS)
+            await asyncio.sleep(POLL_SECONDS)
 
     def _may_be_armed(self, since: float) -> bool:
         """Whether the newest that the runtime has said is that it is armed, or is older than the STOP."""
-        state = self._watch.state() or {}
+        state = self._monitor.state() or {}
         time = state.get("time")
         return not isinstance(time, int | float) or time < since or state.get("armed") is not False
 
 
-def _mark(path: Path, name: str) -> None:
+def _write_note(path: Path, name: str) -> None:
     write_whole(path, f"{name}\n".encode())
 
 
-def _unmark(path: Path) -> None:
+def _remove_note(path: Path) -> None:
     path.unlink(missing_ok=True)
     sync(path.parent)

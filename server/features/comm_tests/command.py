@@ -14,7 +14,7 @@ from server.platform.settings import Settings, SetupError
 if TYPE_CHECKING:
     from robot_runtime.experiments.comm_test.document import CommTest
     from server.features.comm_tests.reference import Place as Cell
-    from server.features.comm_tests.runs import KeptRuns
+    from server.features.comm_tests.runs import CommTestRuns
     from server.platform.models import CommTestRun
 
 RUN = click.argument("run", type=int)
@@ -85,8 +85,8 @@ def compare(settings: Settings, runs: tuple[str, ...]) -> None:
     """
     from server.features.comm_tests import tables
 
-    with _open_runs(settings) as kept:
-        click.echo(tables.show_comparison({name: _rates(kept, name) for name in runs}))
+    with _open_runs(settings) as runs_store:
+        click.echo(tables.show_comparison({name: _rates(runs_store, name) for name in runs}))
 
 
 @commtest.command()
@@ -103,15 +103,15 @@ def export(settings: Settings, run: int, format: str) -> None:  # noqa: A002 - t
 
 
 @contextmanager
-def _open_runs(settings: Settings) -> "Iterator[KeptRuns]":
-    from server.features.comm_tests.runs import KeptRuns
+def _open_runs(settings: Settings) -> "Iterator[CommTestRuns]":
+    from server.features.comm_tests.runs import CommTestRuns
     from server.platform.shell_store import open_reader
 
     with open_reader(settings.data) as store:
-        yield KeptRuns(store)
+        yield CommTestRuns(store)
 
 
-def _rates(runs: "KeptRuns", name: str) -> "dict[Cell, float]":
+def _rates(runs: "CommTestRuns", name: str) -> "dict[Cell, float]":
     from server.features.comm_tests import tables
     from server.features.comm_tests.reference import TABLES, read_table
 
@@ -123,7 +123,7 @@ def _rates(runs: "KeptRuns", name: str) -> "dict[Cell, float]":
     return tables.places(runs.cells(int(name)))
 
 
-def _find(runs: "KeptRuns", number: int) -> "CommTestRun":
+def _find(runs: "CommTestRuns", number: int) -> "CommTestRun":
     run = runs.find(number)
     if run is None:
         raise SetupError(f"There is no run {number}; `mucat commtest list` shows those that there are.")

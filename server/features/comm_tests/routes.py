@@ -8,8 +8,8 @@ from fastapi.responses import Response
 from robot_runtime.experiments.comm_test.document import CommTest, DocumentError
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests import tables
-from server.features.comm_tests.lab import Lab, read_limited
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
+from server.features.comm_tests.runner import CommTestRunner, read_limited
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import (
     Check,
@@ -25,7 +25,7 @@ from server.features.comm_tests.schemas import (
 )
 from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -78,13 +78,16 @@ def check(document: DocumentText) -> Check:
     ),
 )
 async def start(
-    request: Request, watch: Provided[Watch], lab: Provided[Lab], wanted: CommTestStart
+    request: Request,
+    watch: Provided[HealthMonitor],
+    comm_tests: Provided[CommTestRunner],
+    body: CommTestStart,
 ) -> Started:
     """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
-    if wanted.place == "robot":
+    if body.place == "robot":
         require_control(request)
     watch.require_disarmed("A communication test builds and uploads programs.")
-    return Started(run=await lab.start(wanted.text, wanted.place))
+    return Started(run=await comm_tests.start(body.text, body.place))
 
 
 @router.post(
@@ -94,17 +97,17 @@ async def start(
     operation_id="cancelTestRun",
     openapi_extra=needs(Need.OPERATOR),
 )
-async def cancel(lab: Provided[Lab]) -> None:
+async def cancel(comm_tests: Provided[CommTestRunner]) -> None:
     """The cells that are finished are kept. Its end is told on the live socket."""
-    lab.cancel()
+    comm_tests.cancel()
 
 
 @router.get(
     "/runs", summary="All runs, newest first", operation_id="listTestRuns", openapi_extra=needs(Need.VIEWER)
 )
-def get_runs(lab: Provided[Lab]) -> list[RunSummary]:
+def get_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
     """One's own and those that come with the program."""
-    return list(lab.runs.summaries())
+    return list(comm_tests.runs.summaries())
 
 
 @router.get(
@@ -114,9 +117,9 @@ def get_runs(lab: Provided[Lab]) -> list[RunSummary]:
     openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def get_run(lab: Provided[Lab], run: Identifier) -> CommTestRunDetails:
+def get_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommTestRunDetails:
     """With its configuration and its cells."""
-    return lab.runs.whole(_find(lab.runs, run))
+    return comm_tests.runs.whole(_find(comm_tests.runs, run))
 
 
 @router.get(
@@ -127,10 +130,10 @@ def get_run(lab: Provided[Lab], run: Identifier) -> CommTestRunDetails:
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}, "description": "A line for each cell"}, **UNKNOWN},
 )
-def get_csv(lab: Provided[Lab], run: Identifier) -> Response:
+def get_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """A line for each cell."""
-    found = _find(lab.runs, run)
-    return _file(tables.write_csv(found, lab.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
+    found = _find(comm_tests.runs, run)
+    return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
 @router.get(
@@ -144,10 +147,10 @@ def get_csv(lab: Provided[Lab], run: Identifier) -> Response:
         **UNKNOWN,
     },
 )
-def get_json(lab: Provided[Lab], run: Identifier) -> Response:
+def get_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Everything that is known of it, and its cells."""
-    found = _find(lab.runs, run)
-    text = tables.write_json(found, lab.runs.cells(run))
+    found = _find(comm_tests.runs, run)
+    text = tables.write_json(found, comm_tests.runs.cells(run))
     return _file(text, "application/json", f"comm_test_{run}.json")
 
 

@@ -20,7 +20,7 @@ from server.platform.store import Reader, Store
 End = Literal["complete", "cancelled", "failed"]
 
 
-class KeptRuns:
+class CommTestRuns:
     """The runs of a database, to be looked at. All methods raise StoreError."""
 
     def __init__(self, store: Reader) -> None:
@@ -39,8 +39,8 @@ class KeptRuns:
     def cells(self, run: int) -> Sequence[CommTestCell]:
         """The cells of a run, in the order in which they were run."""
         with self._reader.read() as database:
-            wanted = select(CommTestCell).where(col(CommTestCell.run_id) == run)
-            return database.exec(wanted.order_by(col(CommTestCell.number))).all()
+            query = select(CommTestCell).where(col(CommTestCell.run_id) == run)
+            return database.exec(query.order_by(col(CommTestCell.number))).all()
 
     def summaries(self) -> Sequence[RunSummary]:
         """All runs with their figures, newest first."""
@@ -70,7 +70,7 @@ class KeptRuns:
         )
 
 
-class CommTestStore(KeptRuns):
+class CommTestStore(CommTestRuns):
     """The same, to be added to. What is awaited is on the disk when it returns."""
 
     def __init__(self, store: Store) -> None:

@@ -9,8 +9,8 @@ from typing import Any
 from robot_runtime.clock import SteadyClock
 from robot_runtime.experiments.comm_test.document import CommTest
 from server.features.comm_tests import tables
-from server.features.comm_tests.board_reservation import Board
-from server.features.comm_tests.lab import Lab
+from server.features.comm_tests.board_reservation import RobotBoard
+from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.schemas import Place
 from server.platform.models import CommTestRun
@@ -32,17 +32,17 @@ async def _perform(
 ) -> int:
     await runs.mark_interrupted()
     progress = _Progress(tests)
-    board = Board(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
-    lab = Lab(settings, runs, SteadyClock(), progress.tell, board.lend)
+    board = RobotBoard(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
+    comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.tell, board.reserve)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, lab.cancel)
-    first = await lab.start(text, place)
-    await lab.wait()
+        loop.add_signal_handler(number, comm_tests.cancel)
+    first = await comm_tests.start(text, place)
+    await comm_tests.wait()
     return _conclude([run for run in reversed(runs.list()) if (run.id or 0) >= first], len(tests), runs)
 
 
-def _conclude(done: Sequence[CommTestRun], wanted: int, runs: CommTestStore) -> int:
+def _conclude(done: Sequence[CommTestRun], expected: int, runs: CommTestStore) -> int:
     for run in done:
         print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
         if run.state == "cancelled":
@@ -50,7 +50,7 @@ def _conclude(done: Sequence[CommTestRun], wanted: int, runs: CommTestStore) -> 
             print(f"mucat: {words}", file=sys.stderr)  # noqa: T201
         elif run.state != "complete":
             print(f"mucat: run {run.id} failed: {run.problem}", file=sys.stderr)  # noqa: T201
-    return 0 if len(done) == wanted and all(run.state == "complete" for run in done) else 1
+    return 0 if len(done) == expected and all(run.state == "complete" for run in done) else 1
 
 
 class _Progress:

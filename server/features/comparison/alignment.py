@@ -37,16 +37,16 @@ def find_moment(
             raise NoMomentError(_too_few(align.number, len(steps)))
         return steps[align.number - 1][0]
     if align.by == "marker":
-        wanted = align.marker.strip().casefold()
+        sought = align.marker.strip().casefold()
         for marker in markers:
-            if marker.text.strip().casefold() == wanted:
+            if marker.text.strip().casefold() == sought:
                 return marker.time
         raise NoMomentError(f"This session has no marker “{align.marker}”.")
     return 0.0
 
 
-def _too_few(wanted: int, there: int) -> str:
+def _too_few(sought: int, there: int) -> str:
     if there == 0:
         return "The set point never changed while the robot was armed."
     times = "once" if there == 1 else f"{there} times"
-    return f"The set point changed only {times} while the robot was armed, so there is no step {wanted}."
+    return f"The set point changed only {times} while the robot was armed, so there is no step {sought}."

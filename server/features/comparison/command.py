@@ -44,7 +44,7 @@ def report(
     from server.features.comparison.schemas import (
         DEFAULT_SIGNALS,
         SESSIONS_MAX,
-        WantedComparison,
+        ComparisonQuery,
     )
     from server.platform.shell_store import open_reader
 
@@ -52,14 +52,14 @@ def report(
         raise SetupError(f"A report holds {SESSIONS_MAX} sessions at most.")
     moment = {"by": "marker" if marker else align, "number": step, "marker": marker or ""}
     try:
-        wanted = WantedComparison(
+        query = ComparisonQuery(
             sessions=list(sessions),
             signals=list(signals or DEFAULT_SIGNALS),
             align=Align.model_validate(moment),
             points=POINTS,
         )
         with open_reader(settings.data) as store:
-            text = write_report(Comparer(store).compare(wanted))
+            text = write_report(Comparer(store).compare(query))
         out.write_text(text, encoding="utf-8")
     except ValueError as problem:
         raise SetupError(f"The report cannot be made: {problem}") from problem

@@ -28,17 +28,17 @@ from server.features.comparison.history import (
     set_point_steps,
 )
 from server.features.comparison.moments import ControlHistory, Span
-from server.features.comparison.result_cache import Kept
+from server.features.comparison.result_cache import ResultCache
 from server.features.comparison.samples import Samples
 from server.features.comparison.schemas import (
     Compared,
     Comparison,
+    ComparisonQuery,
     Drawn,
     Lines,
+    LinesQuery,
     SignalLine,
     TimeRange,
-    WantedComparison,
-    WantedLines,
 )
 from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
@@ -55,7 +55,7 @@ THREADS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class _Laid:
+class _AlignedSession:
     """A session, and where it lies on the common time axis."""
 
     recording: Recording
@@ -80,34 +80,34 @@ class Comparer:
         self._store = store
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
-        self._histories: Kept[ControlHistory] = Kept()
-        self._measured: Kept[dict[str, Figure]] = Kept()
-        self._counted: Kept[dict[str, Figure]] = Kept()
+        self._histories: ResultCache[ControlHistory] = ResultCache()
+        self._measured: ResultCache[dict[str, Figure]] = ResultCache()
+        self._counted: ResultCache[dict[str, Figure]] = ResultCache()
 
     def signals(self, session: int) -> list[Signal]:
         """What of a session can be drawn."""
         return list_signals(self._open(session))
 
-    def compare(self, wanted: WantedComparison) -> Comparison:
+    def compare(self, query: ComparisonQuery) -> Comparison:
         """Lines, figures and differences of the sessions, in the order asked for."""
-        laid = self._lay(wanted)
+        aligned = self._align(query)
         return Comparison(
-            align=wanted.align,
-            signals=_wanted_signals(wanted.signals, laid),
-            sessions=list(self._threads.map(lambda one: self._compare_one(one, wanted), laid)),
+            align=query.align,
+            signals=_chosen_signals(query.signals, aligned),
+            sessions=list(self._threads.map(lambda one: self._compare_one(one, query), aligned)),
             figures=list(FIGURES),
-            differences=find_differences([(one.row, one.history) for one in laid]),
+            differences=find_differences([(one.row, one.history) for one in aligned]),
         )
 
-    def lines(self, wanted: WantedLines) -> Lines:
+    def lines(self, query: LinesQuery) -> Lines:
         """The lines alone, for a part of the time."""
-        laid = self._lay(wanted)
+        aligned = self._align(query)
         return Lines(
             sessions=[
                 Drawn(
-                    id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, wanted)
+                    id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, query)
                 )
-                for one in laid
+                for one in aligned
             ]
         )
 
@@ -117,13 +117,13 @@ class Comparer:
             raise UnknownSessionError(session)
         return Recording(self._store, row)
 
-    def _lay(self, wanted: WantedLines) -> list[_Laid]:
-        recordings = [self._open(one) for one in dict.fromkeys(wanted.sessions)]
-        return list(self._threads.map(lambda one: self._lay_one(one, wanted), recordings))
+    def _align(self, query: LinesQuery) -> list[_AlignedSession]:
+        recordings = [self._open(one) for one in dict.fromkeys(query.sessions)]
+        return list(self._threads.map(lambda one: self._align_one(one, query), recordings))
 
-    def _lay_one(self, recording: Recording, wanted: WantedLines) -> _Laid:
+    def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
         # At once, since what is wanted of one topic is read together.
-        found = self._samples.read(recording, {*wanted.signals, MEASURED, SET_POINT, OUTPUT})
+        found = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
         key = (recording.row.identifier,)
         history = self._histories.recall(key)
         if history is None:
@@ -133,14 +133,14 @@ class Comparer:
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         markers = read_markers(self._store, recording)
         try:
-            offset, problem = find_moment(wanted.align, history, steps, markers), ""
+            offset, problem = find_moment(query.align, history, steps, markers), ""
         except NoMomentError as missing:
             offset, problem = None, str(missing)
-        return _Laid(recording, history, steps, markers, offset, problem)
+        return _AlignedSession(recording, history, steps, markers, offset, problem)
 
-    def _compare_one(self, one: _Laid, wanted: WantedComparison) -> Compared:
+    def _compare_one(self, one: _AlignedSession, query: ComparisonQuery) -> Compared:
         row = one.row
-        taken = _range(one, wanted)
+        taken = _range(one, query)
         return Compared(
             id=row.id or 0,
             name=row.name,
@@ -153,14 +153,16 @@ class Comparer:
             set_point_steps=len(one.steps),
             events=read_events(one.recording, EVENTS_MAX),
             markers=one.markers,
-            series=self._draw(one, wanted),
+            series=self._draw(one, query),
             range=[(span.start, span.end) for span in taken.spans],
-            figures=self._measure(one, taken, wanted),
+            figures=self._measure(one, taken, query),
         )
 
-    def _measure(self, one: _Laid, taken: EvaluationRange, wanted: WantedComparison) -> dict[str, Figure]:
-        band = wanted.band
-        if wanted.range is not None and one.offset is None:
+    def _measure(
+        self, one: _AlignedSession, taken: EvaluationRange, query: ComparisonQuery
+    ) -> dict[str, Figure]:
+        band = query.band
+        if query.range is not None and one.offset is None:
             return complete({}, one.problem)
         key = (one.row.identifier, taken, band)
         measured = self._measured.recall(key)
@@ -174,14 +176,14 @@ class Comparer:
             self._counted.keep(place, counted, one.row)
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
-    def _draw(self, one: _Laid, wanted: WantedLines) -> dict[str, SignalLine]:
+    def _draw(self, one: _AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:
         if one.offset is None:
             return {}
-        view = _shift(wanted.view, one.offset) if wanted.view else Span(0.0, max(one.row.duration, 1e-3))
-        found = self._samples.read(one.recording, wanted.signals)
+        view = _shift(query.view, one.offset) if query.view else Span(0.0, max(one.row.duration, 1e-3))
+        found = self._samples.read(one.recording, query.signals)
         drawn = {
-            name: decimate(found[name], view.start, view.end, wanted.points)
-            for name in wanted.signals
+            name: decimate(found[name], view.start, view.end, query.points)
+            for name in query.signals
             if name in found
         }
         return {
@@ -190,10 +192,10 @@ class Comparer:
         }
 
 
-def _range(one: _Laid, wanted: WantedComparison) -> EvaluationRange:
-    if wanted.range is not None:
-        return EvaluationRange(() if one.offset is None else (_shift(wanted.range, one.offset),))
-    anchor = one.offset if wanted.align.by in ("armed", "set_point") else None
+def _range(one: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
+    if query.range is not None:
+        return EvaluationRange(() if one.offset is None else (_shift(query.range, one.offset),))
+    anchor = one.offset if query.align.by in ("armed", "set_point") else None
     return EvaluationRange(one.history.armed, anchor)
 
 
@@ -202,10 +204,10 @@ def _shift(part: TimeRange, offset: float) -> Span:
     return Span(low + offset, max(high, low + 1e-3) + offset)
 
 
-def _wanted_signals(names: Sequence[str], laid: Sequence[_Laid]) -> list[Signal]:
+def _chosen_signals(names: Sequence[str], aligned: Sequence[_AlignedSession]) -> list[Signal]:
     known: dict[str, Signal] = {}
     topics = {split(name)[0] for name in names}
-    for one in laid:
+    for one in aligned:
         for signal in list_signals(one.recording, topics):
             known.setdefault(signal.name, signal)
     return [known[name] for name in names if name in known]

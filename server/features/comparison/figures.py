@@ -56,7 +56,7 @@ def measure(
     recording: Recording,
     samples: Samples,
     history: ControlHistory,
-    wanted: EvaluationRange,
+    evaluated: EvaluationRange,
     band: float | None = None,
 ) -> dict[str, Figure]:
     """Those of FIGURES that follow from depth, set point and command; `band` is that of the settling time, m.
@@ -64,13 +64,13 @@ def measure(
     Raises StoreError, RecordingError.
     """
     found: dict[str, Figure] = {}
-    if wanted.spans:
+    if evaluated.spans:
         series = samples.read(recording, [MEASURED, SET_POINT, OUTPUT])
         depth, set_point = series.get(MEASURED), series.get(SET_POINT)
         if depth is not None and set_point is not None:
-            found |= _depth_figures(depth, set_point, history, wanted, band)
+            found |= _depth_figures(depth, set_point, history, evaluated, band)
         if (output := series.get(OUTPUT)) is not None:
-            found["effort"] = _effort(output, wanted)
+            found["effort"] = _effort(output, evaluated)
     return found
 
 
@@ -91,12 +91,14 @@ def complete(found: Mapping[str, Figure], why: str) -> dict[str, Figure]:
 
 
 def _depth_figures(
-    depth: Series, set_point: Series, history: ControlHistory, wanted: EvaluationRange, band: float | None
+    depth: Series, set_point: Series, history: ControlHistory, evaluated: EvaluationRange, band: float | None
 ) -> dict[str, Figure]:
-    response = _step(depth, set_point, history, wanted, band)
+    response = _step(depth, set_point, history, evaluated, band)
     found = _step_figures(response)
     steady = (
-        Span((response.begin + response.end) / 2, response.end) if response is not None else wanted.spans[0]
+        Span((response.begin + response.end) / 2, response.end)
+        if response is not None
+        else evaluated.spans[0]
     )
     # At its very end the next set point may be in force.
     part = depth.within(steady.start, float(np.nextafter(steady.end, steady.start)))
@@ -109,24 +111,24 @@ def _depth_figures(
         )
         found["steady_error"] = Figure(value=mean, mark=mark)
         found |= _cycle_figures(find_limit_cycle(Series(part.times, errors)), steady, part)
-    inside = wanted.mask(depth.times)
+    inside = evaluated.mask(depth.times)
     if inside.any():
         errors = _held(set_point, depth.times[inside]) - depth.values[inside]
         found["rmse"] = Figure(
-            value=rms(errors), mark=FigureMark(start=wanted.spans[0].start, end=wanted.spans[-1].end)
+            value=rms(errors), mark=FigureMark(start=evaluated.spans[0].start, end=evaluated.spans[-1].end)
         )
     return found
 
 
 def _step(
-    depth: Series, set_point: Series, history: ControlHistory, wanted: EvaluationRange, band: float | None
+    depth: Series, set_point: Series, history: ControlHistory, evaluated: EvaluationRange, band: float | None
 ) -> StepResponse | None:
     """The response to the first step in the range that is high enough, or to the one that is meant."""
     changes = [time for time, _ in set_point_steps(set_point, history.armed)]
     armings = [span.start for span in history.armed]
-    for span in wanted.spans:
+    for span in evaluated.spans:
         for begin in sorted({*armings, *changes}):
-            meant = wanted.anchor is None or abs(begin - wanted.anchor) < 1e-6
+            meant = evaluated.anchor is None or abs(begin - evaluated.anchor) < 1e-6
             recorded = begin >= depth.times[0] - LATE_MOST
             if not (meant and recorded and span.start <= begin < span.end):
                 continue
@@ -195,8 +197,8 @@ def _cycle_figures(cycle: LimitCycle | None, steady: Span, part: Series) -> dict
     }
 
 
-def _effort(output: Series, wanted: EvaluationRange) -> Figure:
-    inside = wanted.mask(output.times)
+def _effort(output: Series, evaluated: EvaluationRange) -> Figure:
+    inside = evaluated.mask(output.times)
     if not inside.any():
         return Figure(value=None, words="There is no command in this range.")
     return Figure(value=100 * effort(output.values[inside]))

@@ -12,7 +12,7 @@ from server.features.metrics.series import Series
 from server.features.sessions.recorded_state import depth_loop
 from server.features.sessions.recording import Recording
 from server.features.sessions.timeline import Moment
-from server.platform.models import Gap, Marker
+from server.platform.models import BookmarkRow, Gap
 from server.platform.store import Reader
 
 ARMED_FLAG = 1
@@ -57,7 +57,7 @@ def set_point_steps(set_point: Series, armed: tuple[Span, ...]) -> list[tuple[fl
 def read_markers(store: Reader, recording: Recording) -> list[Moment]:
     """The session's markers in the order of time. Raises StoreError."""
     row = recording.row
-    query = select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time))
+    query = select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))
     with store.read() as database:
         return [
             Moment(one.time - row.started_steady, "marker", "info", one.text) for one in database.exec(query)
@@ -76,8 +76,8 @@ def _spans_of_states(changes: list[dict[str, Any]], origin: float, end: float) -
     for document in changes:
         now = document["time"] - origin
         if document.get("armed") and since is None:
-            told = document.get("armed_since")
-            since = (told if isinstance(told, int | float) else document["time"]) - origin
+            armed_since = document.get("armed_since")
+            since = (armed_since if isinstance(armed_since, int | float) else document["time"]) - origin
         elif not document.get("armed") and since is not None:
             yield Span(since, now)
             since = None

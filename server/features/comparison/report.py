@@ -30,12 +30,12 @@ DEPTHS = frozenset(
         "truth.position_2",
     )
 )
-TOLD = frozenset({"armed", "disarmed", "fin_check", "controller"})
+SHOWN_KINDS = frozenset({"armed", "disarmed", "fin_check", "controller"})
 """Kinds of events that have a sign above the charts, as what is no mere information has."""
 HIGH_FIRST, HIGH, GAP, EDGE, ROW = 300, 180, 46, 60, 22
 FONT = "Inter, Helvetica, Arial, sans-serif"
 ALIGNED = {"start": "the start of the recording", "armed": "arming"}
-WANTED = ("set_point", "wanted")
+SET_POINTS = ("set_point", "wanted")
 
 
 def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
@@ -148,14 +148,14 @@ def _kinds(signals: Sequence[Signal]) -> str:
     if len(signals) < 2:
         return ""
     kinds = (
-        f"{'dashed' if one.column.startswith(WANTED) else 'solid'}: {one.column.replace('_', ' ')}"
+        f"{'dashed' if one.column.startswith(SET_POINTS) else 'solid'}: {one.column.replace('_', ' ')}"
         for one in signals
     )
     return f"   {', '.join(dict.fromkeys(kinds))}"
 
 
 def _trace(session: Compared, signal: Signal, colour: str, number: int, together: int) -> go.Scatter:
-    wanted = signal.column.startswith(WANTED)
+    dashed = signal.column.startswith(SET_POINTS)
     times, values = _points(session.series[signal.name], session.offset or 0.0)
     name = f"{session.name}, {signal.column.replace('_', ' ')}" if together > 1 else session.name
     return go.Scatter(
@@ -164,16 +164,16 @@ def _trace(session: Compared, signal: Signal, colour: str, number: int, together
         yaxis=f"y{number if number > 1 else ''}",
         name=name,
         mode="lines",
-        line={"color": colour, "width": 1.5, "dash": "dash" if wanted else "solid"},
-        line_shape="hv" if wanted else "linear",
+        line={"color": colour, "width": 1.5, "dash": "dash" if dashed else "solid"},
+        line_shape="hv" if dashed else "linear",
         hovertemplate=f"%{{y:.4~g}} {signal.unit}",
     )
 
 
 def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
     """What happened: a stroke for what was to be expected, a triangle for a caution or an alarm."""
-    told = [one for one in session.events if one.kind in TOLD or one.severity != "info"]
-    happened = [(one, "line-ns" if one.severity == "info" else "triangle-down") for one in told]
+    shown = [one for one in session.events if one.kind in SHOWN_KINDS or one.severity != "info"]
+    happened = [(one, "line-ns" if one.severity == "info" else "triangle-down") for one in shown]
     happened += [(one, "diamond") for one in session.markers]
     return go.Scatter(
         x=[one.time - (session.offset or 0.0) for one, _ in happened],

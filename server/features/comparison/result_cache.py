@@ -11,7 +11,7 @@ T = TypeVar("T")
 RESULTS_KEPT = 64
 
 
-class Kept(Generic[T]):
+class ResultCache(Generic[T]):
     """The newest results about complete sessions; may be used from several threads."""
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ from fastapi.responses import HTMLResponse, Response
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from server.features.comparison.comparisons import Comparisons
-from server.features.comparison.schemas import Comparison, Lines, TimeRange, WantedComparison, WantedLines
+from server.features.comparison.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, TimeRange
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
@@ -39,9 +39,9 @@ class ReportQuery(BaseModel):
     view_start: float | None = Field(default=None, description="what the charts show at first")
     view_end: float | None = None
 
-    def wanted(self) -> WantedComparison:
+    def parse(self) -> ComparisonQuery:
         """What is compared. Raises ValidationError."""
-        return WantedComparison.model_validate(
+        return ComparisonQuery.model_validate(
             {
                 "sessions": self.sessions.split(","),
                 "signals": [name for name in self.signals.split(",") if name],
@@ -69,10 +69,10 @@ def get_report(comparisons: Provided[Comparisons], query: Annotated[ReportQuery,
     from server.features.comparison.report import write_report  # Plotly is not needed before
 
     try:
-        wanted = query.wanted()
+        body = query.parse()
     except ValidationError as problem:
         raise RequestValidationError(problem.errors()) from problem
-    comparison = comparisons.comparer.compare(wanted)
+    comparison = comparisons.comparer.compare(body)
     name = "_".join(str(one.id) for one in comparison.sessions)
     return HTMLResponse(
         write_report(comparison, _range(query.view_start, query.view_end)),
@@ -99,9 +99,9 @@ def get_signals(comparisons: Provided[Comparisons], session: Identifier) -> list
     openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def compare(comparisons: Provided[Comparisons], wanted: WantedComparison) -> Comparison:
+def compare(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
     """Lines, figures and what was different about the sessions."""
-    return comparisons.comparer.compare(wanted)
+    return comparisons.comparer.compare(body)
 
 
 @router.post(
@@ -111,6 +111,6 @@ def compare(comparisons: Provided[Comparisons], wanted: WantedComparison) -> Com
     openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def lines(comparisons: Provided[Comparisons], wanted: WantedLines) -> Lines:
+def lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
     """What is fetched when somebody looks closer."""
-    return comparisons.comparer.lines(wanted)
+    return comparisons.comparer.lines(body)

@@ -18,7 +18,7 @@ class Samples:
     """The signals of sessions; may be asked from several threads."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[str, str], Series] = OrderedDict()
+        self._cache: OrderedDict[tuple[str, str], Series] = OrderedDict()
         self._bytes = 0
         self._lock = Lock()
 
@@ -27,10 +27,10 @@ class Samples:
 
         Raises ValueError on what is no signal's name, StoreError, RecordingError.
         """
-        wanted = {name: split(name) for name in names}
-        found = {name: series for name in wanted if (series := self._recall(recording, name))}
+        chosen = {name: split(name) for name in names}
+        found = {name: series for name in chosen if (series := self._recall(recording, name))}
         missing: dict[str, list[str]] = {}
-        for name, (topic, column) in wanted.items():
+        for name, (topic, column) in chosen.items():
             if name not in found:
                 missing.setdefault(topic, []).append(column)
         for topic, columns in missing.items():
@@ -42,20 +42,20 @@ class Samples:
     def _recall(self, recording: Recording, name: str) -> Series | None:
         key = recording.row.identifier, name
         with self._lock:
-            if key in self._kept:
-                self._kept.move_to_end(key)
-            return self._kept.get(key)
+            if key in self._cache:
+                self._cache.move_to_end(key)
+            return self._cache.get(key)
 
     def _keep(self, recording: Recording, name: str, series: Series) -> None:
         if recording.row.state == "recording" or series.bytes > KEPT_BYTES:
             return
         with self._lock:
             self._bytes += series.bytes
-            replaced = self._kept.pop((recording.row.identifier, name), None)
+            replaced = self._cache.pop((recording.row.identifier, name), None)
             self._bytes -= replaced.bytes if replaced else 0
-            self._kept[recording.row.identifier, name] = series
+            self._cache[recording.row.identifier, name] = series
             while self._bytes > KEPT_BYTES:
-                _, oldest = self._kept.popitem(last=False)
+                _, oldest = self._cache.popitem(last=False)
                 self._bytes -= oldest.bytes
 
 
@@ -87,21 +87,21 @@ def _read_rows(recording: Recording, topic: str, columns: list[str]) -> dict[str
 
 def _read_documents(recording: Recording, topic: str, columns: Iterable[str]) -> dict[str, Series]:
     known = DOCUMENT_COLUMNS.get(topic, {})
-    wanted = {column: known[column].read for column in columns if column in known}
-    if not wanted:
+    chosen = {column: known[column].read for column in columns if column in known}
+    if not chosen:
         return {}
     times: list[float] = []
-    values: dict[str, list[float]] = {column: [] for column in wanted}
+    values: dict[str, list[float]] = {column: [] for column in chosen}
     for document in recording.documents(topic):
         try:
-            row = {column: read(document) for column, read in wanted.items()}
+            row = {column: read(document) for column, read in chosen.items()}
         except (KeyError, TypeError, ValueError):
             continue  # of a version that had no such number
         times.append(document["time"])
         for column, value in row.items():
             values[column].append(value)
     return {
-        column: _ordered(recording, np.array(times), np.array(values[column])) for column in wanted if times
+        column: _ordered(recording, np.array(times), np.array(values[column])) for column in chosen if times
     }
 
 

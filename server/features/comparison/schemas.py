@@ -28,7 +28,7 @@ class TimeRange(BaseModel):
     end: Annotated[float, Field(allow_inf_nan=False)]
 
 
-class WantedLines(BaseModel):
+class LinesQuery(BaseModel):
     """Sessions, signals of them, and how they are laid over each other."""
 
     model_config = ConfigDict(extra="forbid")
@@ -39,7 +39,7 @@ class WantedLines(BaseModel):
     view: TimeRange | None = Field(default=None, description="what is drawn; everything without")
 
 
-class WantedComparison(WantedLines):
+class ComparisonQuery(LinesQuery):
     """The same, with what the figures are taken over."""
 
     range: TimeRange | None = Field(default=None, description="for the figures; the time armed without")

@@ -16,7 +16,7 @@ from robot_runtime.transport.lifetime import end_with_parent
 from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.files import FileWriteError, write_part
 from server.features.exports.formats import check
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.recording import RecordingError
 from server.features.sessions.session import find_row
@@ -35,7 +35,9 @@ def main() -> int:
     write.add_argument("database", type=Path)
     write.add_argument("session", type=int)
     write.add_argument(
-        "wanted", type=Wanted.model_validate_json, help="server.features.exports.schemas.Wanted, JSON"
+        "options",
+        type=ExportOptions.model_validate_json,
+        help="ExportOptions, JSON",
     )
     write.add_argument("path", type=Path)
     look = actions.add_parser("examine", help="look whether an archive can be imported")
@@ -45,7 +47,7 @@ def main() -> int:
     os.nice(NICENESS)
     try:
         if options.action == "write":
-            _write(options.database, options.session, options.wanted, options.path)
+            _write(options.database, options.session, options.options, options.path)
         else:
             examine(options.path, _Progress().tell)
             _tell({"examined": True})
@@ -58,13 +60,13 @@ def main() -> int:
     return 0
 
 
-def _write(database: Path, session: int, wanted: Wanted, path: Path) -> None:
+def _write(database: Path, session: int, options: ExportOptions, path: Path) -> None:
     store = Reader(database)
     row = find_row(store, session)
     if row is None:
         raise ExportRequestError(f"There is no session {session} any more.")
-    source = ExportSelection(store, row, wanted, _Progress().tell)
-    written = write_part(path, lambda output: check(wanted).write(store, source, output))
+    source = ExportSelection(store, row, options, _Progress().tell)
+    written = write_part(path, lambda output: check(options).write(store, source, output))
     _tell(written._asdict())
 
 
@@ -72,12 +74,12 @@ class _Progress:
     """Tells it a few times a second."""
 
     def __init__(self) -> None:
-        self._told = time.monotonic()
+        self._reported = time.monotonic()
 
     def tell(self, share: float) -> None:
         now = time.monotonic()
-        if now - self._told >= TELL_SECONDS:
-            self._told = now
+        if now - self._reported >= TELL_SECONDS:
+            self._reported = now
             _tell({"progress": share})
 
 

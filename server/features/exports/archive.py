@@ -15,8 +15,8 @@ from typing import Any, BinaryIO
 from sqlmodel import SQLModel, col, select
 
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.exports.zip_stream import Packing
-from server.platform.models import Gap, Marker, SessionTag
+from server.features.exports.zip_stream import ZipWriter
+from server.platform.models import BookmarkRow, Gap, SessionTag
 from server.platform.store import Reader
 
 FORMAT = "mucat-session"
@@ -58,7 +58,7 @@ class _Members:
     """Members of the zip file, and their checksums."""
 
     def __init__(self, output: BinaryIO) -> None:
-        self._packing = Packing(output, packed=False)
+        self._packing = ZipWriter(output, packed=False)
         self._sums: dict[str, str] = {}
 
     @contextmanager
@@ -91,7 +91,7 @@ def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:
 
         parts = {
             "tags": [one["tag"] for one in rows(SessionTag, "tag")],
-            "markers": rows(Marker, "time"),
+            "markers": rows(BookmarkRow, "time"),
             "gaps": rows(Gap, "id"),
         }
     return {"format": FORMAT, "version": VERSION, "session": session, **parts}

@@ -126,7 +126,7 @@ class ArchivedGap(_Strict):
     missed: Count
 
 
-class Archived(_Strict):
+class ArchivedDocument(_Strict):
     """What `session.json` holds."""
 
     session: ArchivedSession
@@ -243,20 +243,20 @@ class Archive:
             raise ArchiveError(f"{CHECKSUMS} is not an object.")
         return sums
 
-    def _session(self) -> tuple[Archived, dict[str, Any]]:
-        told = self._read_json(SESSION)
-        if not isinstance(told, dict) or told.get("format") != FORMAT:
+    def _session(self) -> tuple[ArchivedDocument, dict[str, Any]]:
+        document = self._read_json(SESSION)
+        if not isinstance(document, dict) or document.get("format") != FORMAT:
             raise ArchiveError(
                 f"Its {SESSION} does not say that it is an archive; export the format archive."
             )
-        version = told.get("version")
+        version = document.get("version")
         if version != VERSION:
             raise ArchiveError(
                 f"It is of format {version!r}, and this version of µ-CAT reads format {VERSION}. "
                 "Install the version of µ-CAT that wrote it, or a newer one."
             )
         try:
-            return Archived.model_validate(told), told["session"]["topics"]
+            return ArchivedDocument.model_validate(document), document["session"]["topics"]
         except ValidationError as problem:
             first = problem.errors()[0]
             where = ".".join(str(place) for place in first["loc"])

@@ -26,7 +26,7 @@ IMPORT_SECONDS = 3600.0
 @click.option("--period", type=float, metavar="S", help="Seconds between lines of csv-grid. Default: 0.1.")
 @click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
 @with_settings
-def export_session(settings: Settings, session: int, output: Path | None, **options: Any) -> None:
+def export_session(settings: Settings, session: int, output: Path | None, **choice: Any) -> None:
     """Write a session as a file, also beside a running server."""
     from pydantic import ValidationError
 
@@ -34,21 +34,21 @@ def export_session(settings: Settings, session: int, output: Path | None, **opti
     from server.features.exports.description import file_name
     from server.features.exports.files import put_in_place, write_part
     from server.features.exports.formats import check
-    from server.features.exports.schemas import Wanted
+    from server.features.exports.schemas import ExportOptions
     from server.features.exports.selection import ExportSelection
     from server.features.sessions.session import find_row
     from server.platform.shell_store import open_reader
 
     try:
-        wanted = Wanted.model_validate(
-            {name: value for name, value in options.items() if value not in (None, ())}
+        options = ExportOptions.model_validate(
+            {name: value for name, value in choice.items() if value not in (None, ())}
         )
-        kind = check(wanted)
+        kind = check(options)
         with open_reader(settings.data) as store:
             row = find_row(store, session)
             if row is None:
                 raise SetupError(f"There is no session {session} in {settings.data.path}.")
-            source = ExportSelection(store, row, wanted, _Progress().tell)
+            source = ExportSelection(store, row, options, _Progress().tell)
             path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
             written = write_part(part, lambda file: kind.write(store, source, file))
@@ -101,11 +101,11 @@ class _Progress:
     """Writes percents to a terminal."""
 
     def __init__(self) -> None:
-        self._told = -1
+        self._reported = -1
 
     def tell(self, share: float) -> None:
         percent = int(100 * share)
-        if percent != self._told and sys.stderr.isatty():
-            self._told = percent
+        if percent != self._reported and sys.stderr.isatty():
+            self._reported = percent
             sys.stderr.write(f"\r{percent:3} %" + ("\r     \r" if percent == 100 else ""))
             sys.stderr.flush()

@@ -8,7 +8,7 @@ from typing import Any
 from sqlmodel import col, select
 
 from server.features.sessions.recording import Recording
-from server.platform.models import Gap, Marker, SessionTag
+from server.platform.models import BookmarkRow, Gap, SessionTag
 from server.platform.store import Reader
 
 
@@ -17,7 +17,9 @@ def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
     row = recording.row
     with store.read() as database:
         gaps = database.exec(select(Gap).where(Gap.session_id == row.id).order_by(col(Gap.id))).all()
-        markers = database.exec(select(Marker).where(Marker.session_id == row.id).order_by(col(Marker.time)))
+        markers = database.exec(
+            select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))
+        )
         tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == row.id))
         marks = [
             {"time": marker.time - row.started_steady, "text": marker.text, "made": _iso(marker.made)}

@@ -16,7 +16,7 @@ class ExportProcessError(Exception):
     """The work could not be done; the text says why."""
 
 
-class Child:
+class ExportProcess:
     """One such process; call `run` once."""
 
     def __init__(self, arguments: list[str], progress: Callable[[float], None]) -> None:
@@ -60,12 +60,12 @@ class Child:
         *lines, self._partial = (self._partial + data).split(b"\n")
         for line in lines:
             try:
-                told = json.loads(line)
+                document = json.loads(line)
             except ValueError:
-                told = None
-            if not isinstance(told, dict):
+                document = None
+            if not isinstance(document, dict):
                 self._words = (self._words + line + b"\n")[-WORDS_BYTES:]
-            elif "progress" in told:
-                self._progress(told["progress"])
+            elif "progress" in document:
+                self._progress(document["progress"])
             else:
-                self._last = told
+                self._last = document

@@ -13,7 +13,7 @@ from server.platform.errors import InsufficientStorageError
 BUFFER_BYTES = 1 << 18
 
 
-class Written(NamedTuple):
+class WrittenFile(NamedTuple):
     """A file's size in bytes and its SHA-256 in hexadecimal."""
 
     bytes: int
@@ -24,14 +24,14 @@ class FileWriteError(InsufficientStorageError):
     """The disk is full"""
 
 
-def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
+def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
     """Write a file and have it on the disk. Where anything fails it is gone again.
 
     Raises FileWriteError, and whatever `write` does.
     """
     try:
         with path.open("wb", buffering=BUFFER_BYTES) as file:
-            summed = _Summed(file)
+            summed = _ChecksumWriter(file)
             write(cast("BinaryIO", summed))
             file.flush()
             os.fsync(file.fileno())
@@ -41,7 +41,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> Written:
     except BaseException:
         path.unlink(missing_ok=True)
         raise
-    return Written(summed.tell(), summed.sha256)
+    return WrittenFile(summed.tell(), summed.sha256)
 
 
 def put_in_place(part: Path, path: Path) -> None:
@@ -59,7 +59,7 @@ def explain(problem: OSError, path: Path) -> str:
     return f"{path.parent} cannot be written: {problem.strerror or problem}."
 
 
-class _Summed:
+class _ChecksumWriter:
     """A file that counts and sums what is written to it."""
 
     def __init__(self, file: BinaryIO) -> None:

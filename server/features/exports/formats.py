@@ -9,7 +9,7 @@ from server.features.exports.json_lines import write_lines
 from server.features.exports.mcap_file import check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
 from server.features.exports.report import write_session_report
-from server.features.exports.schemas import Format, Wanted
+from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
 from server.platform.store import Reader
@@ -41,15 +41,15 @@ KINDS: dict[Format, ExportFormat] = {
 WHOLE_ONLY = ("archive", "report")
 
 
-def check(wanted: Wanted) -> ExportFormat:
+def check(options: ExportOptions) -> ExportFormat:
     """The format of what is wanted. Raises ExportRequestError where choices do not go together."""
-    if wanted.columns is not None and wanted.format != "csv-grid":
+    if options.columns is not None and options.format != "csv-grid":
         raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")
-    if wanted.topics is not None and wanted.format in ("csv-grid", *WHOLE_ONLY):
-        choose = "columns" if wanted.format == "csv-grid" else "nothing: it holds the whole session"
-        raise ExportRequestError(f"For {wanted.format} choose {choose}, not topics.")
-    if wanted.format in WHOLE_ONLY and (wanted.start is not None or wanted.end is not None):
-        raise ExportRequestError(f"The {wanted.format} holds the whole session; leave start and end out.")
-    kind = KINDS[wanted.format]
+    if options.topics is not None and options.format in ("csv-grid", *WHOLE_ONLY):
+        choose = "columns" if options.format == "csv-grid" else "nothing: it holds the whole session"
+        raise ExportRequestError(f"For {options.format} choose {choose}, not topics.")
+    if options.format in WHOLE_ONLY and (options.start is not None or options.end is not None):
+        raise ExportRequestError(f"The {options.format} holds the whole session; leave start and end out.")
+    kind = KINDS[options.format]
     kind.check()
     return kind

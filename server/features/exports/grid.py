@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import csv_text
-from server.features.exports.zip_stream import Packing
+from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
@@ -40,7 +40,7 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
     Raises ExportRequestError on columns that are not there or too many lines, StoreError, RecordingError.
     """
     chosen = _choose(source)
-    period = source.wanted.period
+    period = source.options.period
     first, last = _range(source)
     count = floor((last - first) / period + 1e-9) + 1
     if count > LINES_MAX:
@@ -48,10 +48,10 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
             f"This would be {count} lines; the most are {LINES_MAX}. Choose a longer period or shorter range."
         )
     limits = {topic: GAPS * _usual_gap(source, topic) for topic in chosen}
-    packing = Packing(output)
-    told = "\n".join(f"  {topic}: {limit:.4g} s" for topic, limit in limits.items())
+    packing = ZipWriter(output)
+    document = "\n".join(f"  {topic}: {limit:.4g} s" for topic, limit in limits.items())
     readme = README.format(
-        name=source.row.name, period=period, first=first, last=last, gaps=GAPS, limits=told
+        name=source.row.name, period=period, first=first, last=last, gaps=GAPS, limits=document
     )
     packing.text("README.txt", readme)
     packing.text("session.json", as_text(describe_session(store, source)))
@@ -71,27 +71,27 @@ def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
         for name, topic in source.topics.items()
         if topic["kind"] == "rows" and name in source.names
     }
-    if source.wanted.columns is None:
+    if source.options.columns is None:
         if not there:
             raise ExportRequestError("No topic has numbers in this range; there is no table to make.")
         return there
     chosen: dict[str, dict[str, str]] = {}
-    for wanted in source.wanted.columns:
-        topic, _, column = wanted.partition(".")
+    for options in source.options.columns:
+        topic, _, column = options.partition(".")
         if topic in source.topics and topic not in there:
-            raise ExportRequestError(f"{topic} has no numbers in this range; leave {wanted} out.")
+            raise ExportRequestError(f"{topic} has no numbers in this range; leave {options} out.")
         if column not in there.get(topic, {}):
             known = ", ".join(f"{topic}.{one}" for one in there.get(topic, {})) or ", ".join(there)
-            raise ExportRequestError(f"There is no column {wanted}; there are {known}.")
+            raise ExportRequestError(f"There is no column {options}; there are {known}.")
         chosen.setdefault(topic, {})[column] = there[topic][column]
     return chosen
 
 
 def _range(source: ExportSelection) -> tuple[float, float]:
     """The first and the last moment, in s since the start."""
-    wanted = source.wanted
-    first = 0.0 if wanted.start is None else wanted.start
-    last = source.row.duration if wanted.end is None else wanted.end
+    options = source.options
+    first = 0.0 if options.start is None else options.start
+    last = source.row.duration if options.end is None else options.end
     if last < first:
         raise ExportRequestError("The range lies outside of the session. Choose another.")
     return first, last
@@ -103,7 +103,7 @@ def _usual_gap(source: ExportSelection, topic: str) -> float:
     within = [(last - first) / (count - 1) for first, last, count in spans if count > 1]
     between = [later[0] - earlier[1] for earlier, later in pairwise(spans)]
     gaps = within or between
-    return statistics.median(gaps) if gaps else source.wanted.period
+    return statistics.median(gaps) if gaps else source.options.period
 
 
 def _window(

@@ -20,10 +20,10 @@ from sqlmodel import SQLModel, col, select
 from robot_runtime.durable_files import PART
 from robot_runtime.errors import RefusedError
 from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
-from server.features.exports.export_process import Child, ExportProcessError
+from server.features.exports.export_process import ExportProcess, ExportProcessError
 from server.features.exports.files import FileWriteError, explain
 from server.features.sessions.session import IMPORTING, REMOVING
-from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
 from server.platform.store import Store
 
@@ -49,8 +49,8 @@ class Imports:
     async def recover(self) -> None:
         """Let go of what a killed server has not finished. Raises StoreError."""
         if self._folder.is_dir():
-            for left in self._folder.iterdir():
-                left.unlink(missing_ok=True)
+            for file in self._folder.iterdir():
+                file.unlink(missing_ok=True)
         unfinished = col(SessionRow.state) == IMPORTING
         await self._store.write(
             partial(_execute, update(SessionRow).where(unfinished).values(state=REMOVING))
@@ -104,7 +104,7 @@ class Imports:
 
     async def _take(self, path: Path) -> int:
         try:
-            await Child(["examine", str(path)], lambda _: None).run()
+            await ExportProcess(["examine", str(path)], lambda _: None).run()
         except ExportProcessError as problem:
             raise ArchiveError(f"The archive cannot be imported. {problem}") from problem
         with open_archive(path) as archive:
@@ -134,7 +134,7 @@ class Imports:
         session = {"session_id": number}
         small: list[tuple[type[SQLModel], list[dict[str, Any]]]] = [
             (SessionTag, [session | {"tag": tag} for tag in dict.fromkeys(content.tags)]),
-            (Marker, [session | marker.model_dump() for marker in content.markers]),
+            (BookmarkRow, [session | marker.model_dump() for marker in content.markers]),
             (Gap, [session | gap.model_dump() for gap in content.gaps]),
         ]
         for table, rows in small:

@@ -16,10 +16,10 @@ from pydantic import ValidationError
 from robot_runtime.durable_files import PART, make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from server.features.exports.description import file_name
-from server.features.exports.export_process import Child, ExportProcessError
+from server.features.exports.export_process import ExportProcess, ExportProcessError
 from server.features.exports.files import FileWriteError, explain, put_in_place
 from server.features.exports.formats import check
-from server.features.exports.schemas import Job, NewExport, Wanted
+from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.exports.selection import ExportSelection
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
@@ -43,7 +43,7 @@ class Jobs:
         self._store = store
         self._jobs: dict[str, Job] = {}
         self._wake = asyncio.Event()
-        self._running: tuple[str, Child] | None = None
+        self._running: tuple[str, ExportProcess] | None = None
 
     def open(self) -> None:
         """Find what earlier servers have made, and clear away what they did not finish."""
@@ -70,19 +70,19 @@ class Jobs:
         """Where the file of a job is, or will be."""
         return self._folder / job.id
 
-    def add(self, row: SessionRow, wanted: NewExport) -> Job:
+    def add(self, row: SessionRow, options: NewExport) -> Job:
         """Have a file made.
 
         Raises ExportRequestError where it cannot be, RefusedError where too many are kept.
         """
         if len(self._jobs) >= JOBS_MAX:
             raise RefusedError(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
-        plain = Wanted.model_validate(wanted.model_dump(exclude={"session"}))
+        plain = ExportOptions.model_validate(options.model_dump(exclude={"session"}))
         kind = check(plain)
         source = ExportSelection(self._store, row, plain)
         job = Job(
             id=token_hex(8),
-            session=wanted.session,
+            session=options.session,
             session_name=row.name,
             wanted=plain,
             state="waiting",
@@ -120,21 +120,21 @@ class Jobs:
                 continue
 
     async def _make(self, job: str) -> None:
-        wanted = self._jobs[job]
+        options = self._jobs[job]
         part = self._folder / (job + PART)
         arguments = [
             "write",
             str(self._database),
-            str(wanted.session),
-            wanted.wanted.model_dump_json(),
+            str(options.session),
+            options.wanted.model_dump_json(),
             str(part),
         ]
-        child = Child(arguments, lambda share: self._change(job, progress=share))
+        child = ExportProcess(arguments, lambda share: self._change(job, progress=share))
         self._running = job, child
         self._change(job, state="running")
         try:
             written = await child.run()
-            done = wanted.model_copy(update={"state": "done", "progress": 1.0, **written})
+            done = options.model_copy(update={"state": "done", "progress": 1.0, **written})
             await asyncio.to_thread(self._keep, done, part)
             if job in self._jobs:
                 self._jobs[job] = done

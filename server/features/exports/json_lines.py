@@ -38,10 +38,10 @@ def _lines(source: ExportSelection, name: str, place: int) -> Iterator[tuple[flo
     elif kind == "documents":
         for document in source.documents(name, source.start, source.end):
             time = document["time"]
-            told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
-            line = json.dumps({**document, **told}, ensure_ascii=False, separators=(",", ":"))
+            common = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
+            line = json.dumps({**document, **common}, ensure_ascii=False, separators=(",", ":"))
             yield time, place, line.encode()
     else:
         for time, jpeg in source.pictures(name, source.start, source.end):
-            told = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
-            yield time, place, json.dumps({**told, "jpeg": base64.b64encode(jpeg).decode()}).encode()
+            common = {"topic": name, "time": round(source.since_start(time), 6), "utc": source.utc(time)}
+            yield time, place, json.dumps({**common, "jpeg": base64.b64encode(jpeg).decode()}).encode()

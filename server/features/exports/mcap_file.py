@@ -19,7 +19,7 @@ from server.features.exports.pose import Pose, level, stamp
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.sessions.recorded_state import depth_loop
-from server.platform.models import Marker
+from server.platform.models import BookmarkRow
 from server.platform.store import Reader
 
 LIBRARY = "mucat"
@@ -66,7 +66,7 @@ def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None
         channels.add(FRAMES, "foxglove.FrameTransform", first, level(first))
     own = [channels.of(name, source.topics[name]) for name in source.names]
     posing = {source.names.index(name) for name in pose.topics}
-    for time, place, data, told in heapq.merge(*_samples(store, source)):
+    for time, place, data, document in heapq.merge(*_samples(store, source)):
         if place < len(own):
             writer.add_message(own[place], time, data, time)
         if place in posing:
@@ -74,8 +74,8 @@ def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None
             if seen:
                 channels.add(TRANSFORMS, "foxglove.FrameTransform", time, seen[0])
                 channels.add(POSE, "foxglove.PoseInFrame", time, seen[1])
-        elif told is not None:
-            channels.add(LOG, "foxglove.Log", time, _log(told, time))
+        elif document is not None:
+            channels.add(LOG, "foxglove.Log", time, _log(document, time))
     writer.finish()  # type: ignore[no-untyped-call]
 
 
@@ -169,7 +169,7 @@ def _pictures(source: ExportSelection, name: str, place: int) -> Iterator[_Sampl
 
 
 def _markers(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
-    query = select(Marker).where(Marker.session_id == source.row.id).order_by(col(Marker.time))
+    query = select(BookmarkRow).where(BookmarkRow.session_id == source.row.id).order_by(col(BookmarkRow.time))
     with store.read() as database:
         markers = database.exec(query).all()
     for marker in markers:
@@ -182,17 +182,17 @@ def _markers(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
             )
 
 
-def _log(told: dict[str, Any], time: int) -> bytes:
-    if told["topic"] == "debug":
-        level = told["level"] + DEBUG_LEVEL_OFFSET
+def _log(document: dict[str, Any], time: int) -> bytes:
+    if document["topic"] == "debug":
+        level = document["level"] + DEBUG_LEVEL_OFFSET
     else:
-        level = SEVERITIES.get(told.get("severity", ""), INFO)
+        level = SEVERITIES.get(document.get("severity", ""), INFO)
     message = {
         "timestamp": stamp(time),
         "level": level,
-        "message": told["text"],
-        "name": told.get("kind", told["topic"]),
-        "file": told["topic"],
+        "message": document["text"],
+        "name": document.get("kind", document["topic"]),
+        "file": document["topic"],
         "line": 0,
     }
     return _dump(message)

@@ -7,7 +7,7 @@ from typing import Any, BinaryIO
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
-from server.features.exports.zip_stream import Packing
+from server.features.exports.zip_stream import ZipWriter
 from server.platform.store import Reader
 
 INTEGERS = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int32", "I": "uint32", "q": "int64"}
@@ -33,7 +33,7 @@ def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     documents is text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
     """
     check_parquet()
-    packing = Packing(output, packed=False)
+    packing = ZipWriter(output, packed=False)
     packing.text("session.json", as_text(describe_session(store, source)))
     for name in source.names:
         with packing.member(f"{name}.parquet") as file:

@@ -2,7 +2,7 @@
 
 from typing import BinaryIO
 
-from server.features.comparison.schemas import DEFAULT_SIGNALS, WantedComparison
+from server.features.comparison.schemas import DEFAULT_SIGNALS, ComparisonQuery
 from server.features.exports.selection import ExportSelection
 from server.platform.store import Reader
 
@@ -16,5 +16,5 @@ def write_session_report(store: Reader, source: ExportSelection, output: BinaryI
     from server.features.comparison.report import write_report
 
     assert source.row.id is not None
-    wanted = WantedComparison(sessions=[source.row.id], signals=list(DEFAULT_SIGNALS), points=POINTS)
-    output.write(write_report(Comparer(store).compare(wanted)).encode())
+    query = ComparisonQuery(sessions=[source.row.id], signals=list(DEFAULT_SIGNALS), points=POINTS)
+    output.write(write_report(Comparer(store).compare(query)).encode())

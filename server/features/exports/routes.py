@@ -15,7 +15,7 @@ from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -48,12 +48,12 @@ async def get_exports(jobs: Provided[Jobs]) -> list[Job]:
     openapi_extra=needs(Need.OPERATOR),
     responses=answers(UnknownSessionError, ConflictError, ExportRequestError),
 )
-async def start_export(store: Provided[Store], jobs: Provided[Jobs], wanted: NewExport) -> Job:
+async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
     """Files are made one after the other, apart from the server; GET tells how far it is."""
-    row = await run_in_threadpool(find_row, store, wanted.session)
+    row = await run_in_threadpool(find_row, store, body.session)
     if row is None:
-        raise NotFoundError(f"There is no session {wanted.session}; GET /api/sessions lists those there are.")
-    return jobs.add(row, wanted)
+        raise NotFoundError(f"There is no session {body.session}; GET /api/sessions lists those there are.")
+    return jobs.add(row, body)
 
 
 @router.get(
@@ -127,7 +127,7 @@ async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     ),
 )
 async def import_session(
-    request: Request, watch: Provided[Watch], imports: Provided[Imports], store: Provided[Store]
+    request: Request, watch: Provided[HealthMonitor], imports: Provided[Imports], store: Provided[Store]
 ) -> Session:
     """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
     watch.require_disarmed("An upload takes time and disk from what is recorded.")

@@ -17,7 +17,7 @@ Name = Annotated[str, Field(min_length=1, max_length=100)]
 Seconds = Annotated[float, Field(ge=-SECONDS_MAX, le=SECONDS_MAX)]
 
 
-class Wanted(BaseModel):
+class ExportOptions(BaseModel):
     """What of a session is to be in the file, and as what."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
@@ -37,7 +37,7 @@ class Wanted(BaseModel):
     )
 
 
-class NewExport(Wanted):
+class NewExport(ExportOptions):
     """A file that is wanted."""
 
     session: Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
@@ -49,7 +49,7 @@ class Job(BaseModel):
     id: str
     session: int
     session_name: str
-    wanted: Wanted
+    wanted: ExportOptions
     state: State
     progress: float = Field(description="0 to 1")
     made: datetime = Field(description="UTC, when it was asked for")

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from math import inf
 
 from robot_runtime.contract.topics import TIME
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.sessions.recording import Recording
 from server.platform.errors import InvalidError
 from server.platform.models import Chunk, SessionRow
@@ -28,21 +28,23 @@ class ExportSelection(Recording):
     Raises ExportRequestError on a topic that the session does not have, or a range that is none.
     """
 
-    def __init__(self, store: Reader, row: SessionRow, wanted: Wanted, tell: Tell = lambda _: None) -> None:
+    def __init__(
+        self, store: Reader, row: SessionRow, options: ExportOptions, tell: Tell = lambda _: None
+    ) -> None:
         super().__init__(store, row)
-        self.wanted = wanted
-        self.start = -inf if wanted.start is None else row.started_steady + wanted.start
-        self.end = inf if wanted.end is None else row.started_steady + wanted.end
+        self.options = options
+        self.start = -inf if options.start is None else row.started_steady + options.start
+        self.end = inf if options.end is None else row.started_steady + options.end
         if self.start >= self.end:
             raise ExportRequestError("The range ends before it starts. Choose an end after the start.")
         there = self.counts(self.start, self.end)
-        unknown = [name for name in wanted.topics or () if name not in self.topics]
+        unknown = [name for name in options.topics or () if name not in self.topics]
         if unknown:
             raise ExportRequestError(
                 f"This session has no topic {', '.join(unknown)}; it has {', '.join(self.topics)}."
             )
         self.names = [
-            name for name in self.topics if name in there and (not wanted.topics or name in wanted.topics)
+            name for name in self.topics if name in there and (not options.topics or name in options.topics)
         ]
         """Chosen topics that have samples."""
         # Reading a column of a row costs more than the sums below, which are made for every sample.

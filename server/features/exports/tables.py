@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.selection import ExportSelection
-from server.features.exports.zip_stream import Packing
+from server.features.exports.zip_stream import ZipWriter
 from server.features.sessions.chunks import row_layout
 from server.platform.store import Reader
 
@@ -19,7 +19,7 @@ def write_tables(store: Reader, source: ExportSelection, output: BinaryIO) -> No
 
     Raises StoreError, RecordingError.
     """
-    packing = Packing(output)
+    packing = ZipWriter(output)
     packing.text("session.json", as_text(describe_session(store, source)))
     for name in source.names:
         if source.topics[name]["kind"] == "picture":

@@ -10,7 +10,7 @@ LEVEL = 1
 """zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""
 
 
-class Packing:
+class ZipWriter:
     """A zip file around `output`, whose members are deflated where `packed`, else stored as they are."""
 
     def __init__(self, output: BinaryIO, *, packed: bool = True) -> None:

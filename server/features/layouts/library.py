@@ -23,7 +23,7 @@ class UnknownLayoutError(NotFoundError):
     """There is no such layout"""
 
 
-class KeptLayout(BaseModel):
+class SavedLayout(BaseModel):
     """A layout by its name."""
 
     id: int
@@ -31,7 +31,7 @@ class KeptLayout(BaseModel):
     saved: datetime
 
 
-class WholeLayout(KeptLayout):
+class LayoutDetails(SavedLayout):
     """The same with its document, which may be of another version of the program."""
 
     document: dict[str, Any]
@@ -43,24 +43,24 @@ class Layouts:
     def __init__(self, store: Store) -> None:
         self._store = store
 
-    def list(self) -> Sequence[KeptLayout]:
+    def list(self) -> Sequence[SavedLayout]:
         """All of them, by name."""
         columns = (col(LayoutRow.id), col(LayoutRow.name), col(LayoutRow.saved))
         with self._store.read() as database:
             found = database.exec(select(*columns).order_by(func.lower(LayoutRow.name))).all()
-        return [KeptLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
+        return [SavedLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
 
-    def get(self, layout: int) -> WholeLayout:
+    def get(self, layout: int) -> LayoutDetails:
         """One of them. Raises UnknownLayoutError."""
         with self._store.read() as database:
             row = database.get(LayoutRow, layout)
             if row is None:
                 raise UnknownLayoutError(f"There is no layout {layout}. Somebody may have deleted it.")
-            return WholeLayout(
+            return LayoutDetails(
                 id=layout, name=row.name, saved=_utc(row.saved), document=json.loads(row.document)
             )
 
-    async def save(self, name: str, document: LayoutDocument) -> KeptLayout:
+    async def save(self, name: str, document: LayoutDocument) -> SavedLayout:
         """Keep it under its name, over one of that name. Raises RefusedError where there are too many."""
         text, now = document.model_dump_json(exclude_none=True), time.time()
 
@@ -70,15 +70,15 @@ class Layouts:
                 change = update(LayoutRow).where(col(LayoutRow.id) == found)
                 connection.execute(change.values(document=text, saved=now))
                 return int(found)
-            kept = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
-            if kept >= LAYOUTS_MOST:
+            count = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
+            if count >= LAYOUTS_MOST:
                 raise RefusedError(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
             row = {"name": name, "document": text, "saved": now}
             key = connection.execute(insert(LayoutRow).values(row)).inserted_primary_key
             assert key is not None
             return int(key[0])
 
-        return KeptLayout(id=await self._store.write(write), name=name, saved=_utc(now))
+        return SavedLayout(id=await self._store.write(write), name=name, saved=_utc(now))
 
     async def delete(self, layout: int) -> None:
         """Delete one for good. Raises UnknownLayoutError."""

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from server.features.layouts.document import LayoutDocument
-from server.features.layouts.library import KeptLayout, Layouts, UnknownLayoutError, WholeLayout
+from server.features.layouts.library import LayoutDetails, Layouts, SavedLayout, UnknownLayoutError
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -37,7 +37,7 @@ class NewLayout(BaseModel):
     openapi_extra=needs(Need.VIEWER),
     responses=STORING,
 )
-def list_layouts(layouts: Provided[Layouts]) -> Sequence[KeptLayout]:
+def list_layouts(layouts: Provided[Layouts]) -> Sequence[SavedLayout]:
     """By name."""
     return layouts.list()
 
@@ -49,7 +49,7 @@ def list_layouts(layouts: Provided[Layouts]) -> Sequence[KeptLayout]:
     openapi_extra=needs(Need.VIEWER),
     responses={**UNKNOWN, **STORING},
 )
-def get_layout(layouts: Provided[Layouts], layout: LayoutIdentifier) -> WholeLayout:
+def get_layout(layouts: Provided[Layouts], layout: LayoutIdentifier) -> LayoutDetails:
     """With its document as it was kept, which the page reads."""
     return layouts.get(layout)
 
@@ -62,9 +62,9 @@ def get_layout(layouts: Provided[Layouts], layout: LayoutIdentifier) -> WholeLay
     openapi_extra=needs(Need.OPERATOR),
     responses={**answers(_409="There are too many"), **STORING},
 )
-async def save_layout(layouts: Provided[Layouts], wanted: NewLayout) -> KeptLayout:
+async def save_layout(layouts: Provided[Layouts], body: NewLayout) -> SavedLayout:
     """Keep it under its name, over one of that name."""
-    return await layouts.save(wanted.name, wanted.document)
+    return await layouts.save(body.name, body.document)
 
 
 @router.delete(

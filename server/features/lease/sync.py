@@ -17,16 +17,16 @@ class LeaseSync:
 
     def __init__(self, ask: Callable[[int], Awaitable[None]]) -> None:
         self._ask = ask
-        self._wanted = ("", 0)
+        self._target = ("", 0)
         self._news = asyncio.Event()
 
     def see_run(self, run: str) -> None:
         """Note the run of the runtime that is heard now."""
-        self._want(run, self._wanted[1])
+        self._set_target(run, self._target[1])
 
     def see_epoch(self, epoch: int) -> None:
         """Note the epoch in force."""
-        self._want(self._wanted[0], epoch)
+        self._set_target(self._target[0], epoch)
 
     async def run(self) -> None:
         """Background task: tell each new epoch."""
@@ -34,14 +34,14 @@ class LeaseSync:
             await self._news.wait()
             self._news.clear()
             try:
-                await self._ask(self._wanted[1])
+                await self._ask(self._target[1])
             except RuntimeSilentError:
                 await asyncio.sleep(TRY_AGAIN_SECONDS)
                 self._news.set()
             except RefusedError as problem:
                 log.error("the runtime does not take the control's epoch: %s", problem)
 
-    def _want(self, run: str, epoch: int) -> None:
-        if (run, epoch) != self._wanted:
-            self._wanted = run, epoch
+    def _set_target(self, run: str, epoch: int) -> None:
+        if (run, epoch) != self._target:
+            self._target = run, epoch
             self._news.set()

@@ -18,7 +18,7 @@ from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from server.features.parameters.changes import Changes
 from server.features.parameters.schemas import Restored
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.problems import COMMAND, SILENT, answers
 from server.http.sign_in.identity import Caller
@@ -39,7 +39,7 @@ router = APIRouter(prefix="/api/robot", tags=["robot"])
     responses=answers(_503="The runtime has said nothing yet"),
     response_model=State,
 )
-async def get_robot(watch: Provided[Watch]) -> object:
+async def get_robot(watch: Provided[HealthMonitor]) -> object:
     """As the runtime sent it last; its `time` says when that was (s, steady clock)."""
     state = watch.state()
     if state is None:
@@ -70,14 +70,14 @@ def _add_route(cls: type[RobotCommand], need: Need) -> None:
         caller: Caller,
         command: Any,
     ) -> Restored | None:
-        wanted: RobotCommand = cls() if command is None else command
-        if isinstance(wanted, ArmCommand):
-            if wanted.alone:
+        request: RobotCommand = cls() if command is None else command
+        if isinstance(request, ArmCommand):
+            if request.alone:
                 raise RefusedError("Only a scenario may let the robot go on without the server.")
             check_room(settings.data)
-        elif isinstance(wanted, AcknowledgeCommand):
+        elif isinstance(request, AcknowledgeCommand):
             alarms.acknowledge()
-        restored = await changes.command(caller.name, wanted)
+        restored = await changes.command(caller.name, request)
         return restored if cls.policy.tunes else None
 
     # FastAPI takes the body's schema from here.

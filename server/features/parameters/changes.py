@@ -27,7 +27,7 @@ from server.stream.bridge import Bridge
 log = logging.getLogger(__name__)
 
 SHOWN = 100
-KEPT = 1000
+CHANGES_MOST = 1000
 
 
 Send = Callable[[RobotCommand], Awaitable[None]]
@@ -167,7 +167,9 @@ def _insert(connection: Connection, row: ParameterChangeRow) -> None:
         insert(ParameterChangeRow).values(row.model_dump(exclude={"id"}))
     ).inserted_primary_key
     assert key is not None
-    connection.execute(delete(ParameterChangeRow).where(col(ParameterChangeRow.id) <= int(key[0]) - KEPT))
+    connection.execute(
+        delete(ParameterChangeRow).where(col(ParameterChangeRow.id) <= int(key[0]) - CHANGES_MOST)
+    )
 
 
 def _values(row: ParameterChangeRow) -> list[ChangedValue]:

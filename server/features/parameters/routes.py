@@ -81,9 +81,9 @@ async def get_changes(changes: Provided[Changes]) -> list[Change]:
     openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def undo(changes: Provided[Changes], caller: Caller, wanted: Undo) -> Restored:
+async def undo(changes: Provided[Changes], caller: Caller, body: Undo) -> Restored:
     """Set back what the newest change has changed; then the one before it is the newest."""
-    return await changes.undo(caller.name, wanted.change)
+    return await changes.undo(caller.name, body.change)
 
 
 @router.get(
@@ -106,11 +106,11 @@ async def get_profiles(profiles: Provided[Profiles]) -> list[Profile]:
     openapi_extra=needs(Need.OPERATOR),
     responses={**answers(_409="The name is taken"), **SILENT},
 )
-async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], wanted: NewProfile) -> Profile:
+async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], body: NewProfile) -> Profile:
     """Every parameter as it is now, under a name."""
     listed = await ask_parameters(bridge)
     values = {one["name"]: one["value"] for one in listed["parameters"]}
-    return await profiles.save(wanted.name, wanted.note, values)
+    return await profiles.save(body.name, body.note, values)
 
 
 @router.post(
@@ -122,10 +122,10 @@ async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], w
     responses={**answers(ProfileError, _409="The name is taken"), **SILENT},
 )
 async def import_profile(
-    bridge: Provided[Bridge], profiles: Provided[Profiles], wanted: ProfileText
+    bridge: Provided[Bridge], profiles: Provided[Profiles], body: ProfileText
 ) -> Imported:
     """Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told."""
-    found = read_file(wanted.text)
+    found = read_file(body.text)
     listed = await ask_parameters(bridge)
     profile = await profiles.save(found.name, found.note, found.parameters)
     known = {one["name"] for one in listed["parameters"]}
@@ -161,8 +161,8 @@ async def restore_profile(
     found = await run_in_threadpool(profiles.find, profile)
     if not found.values:
         raise RefusedError(f"The profile “{found.name}” holds no parameters.")
-    wanted = ParametersCommand(values=found.values, partly=True)
-    return await changes.command(caller.name, wanted, why=f"Profile “{found.name}”")
+    body = ParametersCommand(values=found.values, partly=True)
+    return await changes.command(caller.name, body, why=f"Profile “{found.name}”")
 
 
 @router.delete(

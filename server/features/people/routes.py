@@ -8,7 +8,7 @@ from fastapi import APIRouter, Path, Request, Response
 from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
     DeviceChanges,
-    DeviceShape,
+    DeviceDetails,
     MadeCode,
     MadeToken,
     Me,
@@ -58,10 +58,10 @@ async def pair(
     settings: Provided[Settings],
     access: Provided[Access],
     response: Response,
-    wanted: Pairing,
+    body: Pairing,
 ) -> Me:
     """Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more."""
-    identity, secret = await access.pair(wanted.code, wanted.name, request.scope[IDENTITY])
+    identity, secret = await access.pair(body.code, body.name, request.scope[IDENTITY])
     if secret is not None:
         response.set_cookie(
             access.cookie,
@@ -96,19 +96,19 @@ async def sign_out(access: Provided[Access], caller: Caller, response: Response)
     openapi_extra=needs(Need.OPERATOR),
 )
 async def make_code(
-    request: Request, settings: Provided[Settings], access: Provided[Access], wanted: NewCode
+    request: Request, settings: Provided[Settings], access: Provided[Access], body: NewCode
 ) -> MadeCode:
     """For one browser, within ten minutes."""
-    code = access.codes.make(wanted.role)
+    code = access.codes.make(body.role)
     link = pairing_link(settings.base_url(_called(request)), code)
     expires = time.time() + CODE_SECONDS
-    return MadeCode(code=code, link=link, role=wanted.role, expires=expires, qr_svg=qr_svg(link))
+    return MadeCode(code=code, link=link, role=body.role, expires=expires, qr_svg=qr_svg(link))
 
 
 @router.get(
     "/devices", summary="Who may come in", operation_id="listDevices", openapi_extra=needs(Need.OPERATOR)
 )
-async def get_devices(access: Provided[Access], caller: Caller) -> list[DeviceShape]:
+async def get_devices(access: Provided[Access], caller: Caller) -> list[DeviceDetails]:
     """Browsers and programs, in the order in which they came."""
     return [_describe(caller, device) for device in access.devices.all()]
 
@@ -121,13 +121,13 @@ async def get_devices(access: Provided[Access], caller: Caller) -> list[DeviceSh
     responses=UNKNOWN | STORING,
 )
 async def change(
-    access: Provided[Access], caller: Caller, device: Number, said: DeviceChanges
-) -> DeviceShape:
+    access: Provided[Access], caller: Caller, device: Number, body: DeviceChanges
+) -> DeviceDetails:
     """A new role closes its live sockets, which come back in that role."""
-    if said.role is not None:
-        await access.set_role(device, said.role, caller)
-    if said.name is not None:
-        await access.rename(device, said.name)
+    if body.role is not None:
+        await access.set_role(device, body.role, caller)
+    if body.name is not None:
+        await access.rename(device, body.name)
     return _describe(caller, access.devices.get(device))
 
 
@@ -152,9 +152,9 @@ async def revoke(access: Provided[Access], caller: Caller, device: Number) -> No
     openapi_extra=needs(Need.OPERATOR),
     responses=STORING,
 )
-async def make_token(access: Provided[Access], caller: Caller, wanted: NewToken) -> MadeToken:
+async def make_token(access: Provided[Access], caller: Caller, body: NewToken) -> MadeToken:
     """The token is shown this once; the program sends it as `Authorization: Bearer`."""
-    device, token = await access.make_program(wanted.name, wanted.role, caller)
+    device, token = await access.make_program(body.name, body.role, caller)
     return MadeToken(token=token, device=_describe(caller, device))
 
 
@@ -176,8 +176,8 @@ def _me(request: Request, settings: Settings, access: Access, identity: Identity
     )
 
 
-def _describe(caller: Identity, device: Device) -> DeviceShape:
-    return DeviceShape(
+def _describe(caller: Identity, device: Device) -> DeviceDetails:
+    return DeviceDetails(
         id=device.id,
         name=device.name,
         role=device.role,

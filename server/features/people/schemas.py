@@ -54,7 +54,7 @@ class MadeCode(BaseModel):
     qr_svg: str
 
 
-class DeviceShape(BaseModel):
+class DeviceDetails(BaseModel):
     """A browser or a program that may come in; times in s since 1970."""
 
     id: int
@@ -86,4 +86,4 @@ class MadeToken(BaseModel):
     """A program's token, which is shown this once."""
 
     token: str
-    device: DeviceShape
+    device: DeviceDetails

@@ -11,15 +11,15 @@ from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import LineFaultChange, TimedEvent
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from server.features.parameters.changes import Changes, Send
-from server.features.scenarios.live_setup import Before, Surroundings
+from server.features.scenarios.live_setup import LiveSetup, SavedState
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
 from server.features.scenarios.snapshot import ScenarioSnapshot
 from server.features.sessions.recorder import Recorder
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import Parts, Tell
+from server.processes.supervisor import ProcessSupervisor, Tell
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 LOOK_SECONDS = 0.1
@@ -28,7 +28,7 @@ SETTLE_SECONDS = 0.5
 NEEDED = ("board", "runtime", "simulator")
 
 
-class Live:
+class LiveExecutor:
     """The robot that runs, its water and its recorder, as a stage. `stopped` is whom a STOP is told."""
 
     def __init__(
@@ -38,8 +38,8 @@ class Live:
         recorder: Recorder,
         bridge: Bridge,
         changes: Changes,
-        watch: Watch,
-        parts: Parts,
+        monitor: HealthMonitor,
+        processes: ProcessSupervisor,
         clock: Clock,
         tell: Tell,
     ) -> None:
@@ -48,13 +48,13 @@ class Live:
         self._recorder = recorder
         self._bridge = bridge
         self._changes = changes
-        self._watch = watch
-        self._parts = parts
+        self._monitor = monitor
+        self._processes = processes
         self._clock = clock
         self._tell = tell
-        self._left = ScenarioSnapshot(settings.data.scenario_before)
+        self._snapshot = ScenarioSnapshot(settings.data.scenario_before)
         self._recovering = False
-        self._surroundings = Surroundings(
+        self._surroundings = LiveSetup(
             bridge, settings.data.board_socket if settings.emulated_board else None
         )
 
@@ -68,7 +68,7 @@ class Live:
         self.check(run.scenario)
         run.phase = "preparing"
         before = await self._surroundings.read(self._state())
-        await asyncio.to_thread(self._left.keep, before)
+        await asyncio.to_thread(self._snapshot.save, before)
         async with self._changes.together(run.who, f"Scenario “{run.scenario.title}”") as send:
             try:
                 await self._surroundings.prepare(run.scenario, before, send)
@@ -80,14 +80,14 @@ class Live:
 
     async def recover(self) -> None:
         """End what a killed server has left running: disarm, close the recording, put everything back."""
-        before = await asyncio.to_thread(self._left.read)
+        before = await asyncio.to_thread(self._snapshot.read)
         recording = self._recorder.session
         session = recording.id if recording is not None and recording.origin == "scenario" else None
         if before is None and session is None:
             return
         self._recovering = True
         try:
-            while (state := self._watch.state()) is None:
+            while (state := self._monitor.state()) is None:
                 await asyncio.sleep(LOOK_SECONDS)
             if session is not None:
                 words = "The server was killed, and the scenario ends here."
@@ -96,7 +96,7 @@ class Live:
             # A runtime that has started since is as robot.toml says.
             if before is not None and state["run"] == before.robot["run"]:
                 await self._put_back(before, self._changes.put_back)
-            await asyncio.to_thread(self._left.forget)
+            await asyncio.to_thread(self._snapshot.forget)
         finally:
             self._recovering = False
         words = (
@@ -105,7 +105,7 @@ class Live:
         self._tell("scenario", "caution", words)
 
     async def _record(self, run: RunRecord, send: Send) -> None:
-        row = describe_session(self._settings, self._clock, run, json.dumps(self._watch.state()))
+        row = describe_session(self._settings, self._clock, run, json.dumps(self._monitor.state()))
         session = await begin(self._recorder, self._store, run, row)
         try:
             await self._play(run, row.started_steady, send)
@@ -117,11 +117,11 @@ class Live:
             await _whole(self._finish(session))
 
     async def _play(self, run: RunRecord, began: float, send: Send) -> None:
-        processes = self._processes()
+        processes = self._process_ids()
         coming = list(run.scenario.events)
         while True:
             run.elapsed = self._clock.now() - began
-            self._look(run, processes)
+            self._check_processes(run, processes)
             while coming and coming[0].at <= run.elapsed:
                 run.check()
                 await self._happen(run, coming.pop(0), began, send)
@@ -142,14 +142,14 @@ class Live:
                 run.remarks.append(f"At {event.at:g} s: {words}")
         await mark(self._store, run.session, max(self._clock.now(), began), words)
 
-    def _look(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:
+    def _check_processes(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:
         """Raises RunFailedError where what the run needs is no longer there."""
         recording = self._recorder.session
         if recording is None or recording.id != run.session:
             raise RunCancelledError("Somebody stopped the recording.")
-        if self._bridge.lent is not None:
-            raise RunFailedError(self._bridge.lent)
-        for name, pid in self._processes().items():
+        if self._bridge.reserved_reason is not None:
+            raise RunFailedError(self._bridge.reserved_reason)
+        for name, pid in self._process_ids().items():
             if pid != processes[name]:
                 raise RunFailedError(f"The {name} ended in the middle of it, and with it what was set.")
 
@@ -163,11 +163,11 @@ class Live:
         if self._recorder.session is not None and self._recorder.session.id == session:
             await self._recorder.stop(session)
 
-    async def _put_back(self, before: Before, send: Send) -> None:
+    async def _put_back(self, before: SavedState, send: Send) -> None:
         if problems := await self._surroundings.put_back(before, send):
-            told = " ".join(problems)
-            self._tell("scenario", "caution", f"Not everything is as before the scenario. {told}")
-        await asyncio.to_thread(self._left.forget)
+            text = " ".join(problems)
+            self._tell("scenario", "caution", f"Not everything is as before the scenario. {text}")
+        await asyncio.to_thread(self._snapshot.forget)
 
     def _occupied(self) -> list[str]:
         recording = self._recorder.session
@@ -177,9 +177,9 @@ class Live:
             return [
                 "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
             ]
-        if self._bridge.lent is not None:
-            return [self._bridge.lent]
-        state = self._watch.state()
+        if self._bridge.reserved_reason is not None:
+            return [self._bridge.reserved_reason]
+        state = self._monitor.state()
         if state is None:
             return ["The robot's runtime has said nothing yet. Wait a moment."]
         reasons = []
@@ -191,7 +191,7 @@ class Live:
             reasons.append("The robot is in failsafe. Acknowledge its alarms first.")
         if not state["connected"]:
             reasons.append(f"There is no connection to the board: {state['connection']}.")
-        reasons += [f"The {name} does not run." for name, pid in self._processes().items() if pid is None]
+        reasons += [f"The {name} does not run." for name, pid in self._process_ids().items() if pid is None]
         return reasons
 
     def _unlike(self, scenario: Scenario) -> list[str]:
@@ -203,7 +203,7 @@ class Live:
             reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
         if scenario.robot != SimulationParameters():
             reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")
-        state = self._watch.state() or {}
+        state = self._monitor.state() or {}
         rate = state.get("control_rate", scenario.control.rate)
         if rate != scenario.control.rate:
             reasons.append(
@@ -213,16 +213,16 @@ class Live:
         return reasons
 
     def _state(self) -> dict[str, Any]:
-        state = self._watch.state()
+        state = self._monitor.state()
         if state is None:
             raise RefusedError("The robot's runtime has said nothing yet. Wait a moment.")
         return state
 
-    def _processes(self) -> dict[str, int | None]:
+    def _process_ids(self) -> dict[str, int | None]:
         # In the loop the simulator may be on another computer; where it is lost, the robot disarms.
         needed = [name for name in NEEDED if not (self._settings.in_the_loop and name == "simulator")]
-        parts = {name: self._parts.get(name) for name in needed}
-        return {name: part.pid for name, part in parts.items() if part is not None}
+        processes = {name: self._processes.get(name) for name in needed}
+        return {name: part.pid for name, part in processes.items() if part is not None}
 
 
 async def _whole(step: Any) -> None:

@@ -33,7 +33,7 @@ DIRECTIONS = ("to_board", "from_board")
 
 
 @dataclass(frozen=True, slots=True)
-class Before:
+class SavedState:
     """How everything was: the runtime's `state`, the simulator's `surroundings`, the scene's `contents`.
 
     `sight` is None where no scene is rendered.
@@ -44,7 +44,7 @@ class Before:
     sight: Question | None
 
 
-class Surroundings:
+class LiveSetup:
     """The runtime, the simulator and the board, as a scenario speaks to them.
 
     `board_socket` is None where the board is a real one. Everything may raise RefusedError or
@@ -55,15 +55,15 @@ class Surroundings:
         self._bridge = bridge
         self._board_socket = board_socket
 
-    async def read(self, robot: Question) -> Before:
+    async def read(self, robot: Question) -> SavedState:
         """How everything is now; `robot` is the newest `state`."""
         water = await self._bridge.ask_simulator("surroundings", {})
         try:
-            return Before(robot, water, await self._bridge.scene("contents", {}))
+            return SavedState(robot, water, await self._bridge.scene("contents", {}))
         except RuntimeSilentError:
-            return Before(robot, water, None)
+            return SavedState(robot, water, None)
 
-    async def prepare(self, scenario: Scenario, before: Before, send: Send) -> None:
+    async def prepare(self, scenario: Scenario, before: SavedState, send: Send) -> None:
         """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
         await self._set_water(_water_of(scenario), before.water)
         start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
@@ -98,7 +98,7 @@ class Surroundings:
         """Let the fins rest."""
         await self._bridge.disarm()
 
-    async def put_back(self, before: Before, send: Send) -> list[str]:
+    async def put_back(self, before: SavedState, send: Send) -> list[str]:
         """Make everything as it was; what could not be, in words."""
         robot = before.robot
         steps: list[Callable[[], Awaitable[None]]] = [
@@ -116,21 +116,21 @@ class Surroundings:
                 problems.append(str(problem))
         return list(dict.fromkeys(problems))
 
-    async def _set_water(self, wanted: Question, present: Question | None) -> None:
+    async def _set_water(self, target: Question, present: Question | None) -> None:
         ask = self._bridge.ask_simulator
-        for fault in wanted["faults"] if present is None else present["faults"]:
+        for fault in target["faults"] if present is None else present["faults"]:
             await ask("fault", fault if present is None else {"sensor": fault["sensor"], "kind": "none"})
         # The old waves might break in the new basin.
         await ask("waves", STILL)
-        await ask("world", wanted["world"])
+        await ask("world", target["world"])
         for name in ("beacons", "current", "waves", "trim"):
-            await ask(name, wanted[name])
+            await ask(name, target[name])
         await ask("reset", {})
 
-    async def _set_sight(self, wanted: Question | None) -> None:
-        if wanted is not None:
+    async def _set_sight(self, target: Question | None) -> None:
+        if target is not None:
             for name in ("world", "targets"):
-                await self._bridge.scene(name, wanted[name])
+                await self._bridge.scene(name, target[name])
 
     async def _clean_line(self, seed: int) -> None:
         if self._board_socket is None:

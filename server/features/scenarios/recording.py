@@ -11,7 +11,7 @@ from robot_runtime.errors import RefusedError
 from server.features.scenarios.run import RunRecord
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
-from server.platform.models import Marker, SessionRow
+from server.platform.models import BookmarkRow, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 
@@ -48,4 +48,4 @@ def _find_before(store: Store, name: str, session: int) -> int | None:
 async def mark(store: Store, session: int, moment: float, text: str) -> None:
     """Point out a moment (s, the session's clock). Raises StoreError."""
     values = {"session_id": session, "time": moment, "text": text, "made": time()}
-    await store.write(lambda connection: connection.execute(insert(Marker).values(values)))
+    await store.write(lambda connection: connection.execute(insert(BookmarkRow).values(values)))

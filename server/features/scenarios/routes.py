@@ -80,12 +80,12 @@ async def get_state(scenarios: Provided[ScenarioRuns]) -> ScenarioState:
     responses=START,
 )
 async def start(
-    request: Request, scenarios: Provided[ScenarioRuns], caller: Caller, wanted: ScenarioStart
+    request: Request, scenarios: Provided[ScenarioRuns], caller: Caller, body: ScenarioStart
 ) -> ScenarioStarted:
     """Live: at once, or refused with the reasons. In simulated time: at once, or in its turn."""
-    if wanted.place == "live":
+    if body.place == "live":
         require_control(request)
-    run = scenarios.start(wanted.text, wanted.place, wanted.board, caller.name)
+    run = scenarios.start(body.text, body.place, body.board, caller.name)
     return ScenarioStarted(run=run)
 
 

@@ -21,7 +21,7 @@ QUEUE_MAX = 20
 TELL_SECONDS = 0.25
 
 
-class Stage(Protocol):
+class ScenarioExecutor(Protocol):
     """Where a scenario is performed."""
 
     def check(self, scenario: Scenario) -> None:
@@ -37,8 +37,10 @@ class Stage(Protocol):
 class ScenarioRunner:
     """At most one scenario runs at a time; `tell` hears of all progress."""
 
-    def __init__(self, live: Stage, simulated: Stage, tell: Callable[[dict[str, Any]], None]) -> None:
-        self._stages: dict[Place, Stage] = {"live": live, "simulated": simulated}
+    def __init__(
+        self, live: ScenarioExecutor, simulated: ScenarioExecutor, tell: Callable[[dict[str, Any]], None]
+    ) -> None:
+        self._stages: dict[Place, ScenarioExecutor] = {"live": live, "simulated": simulated}
         self._tell = tell
         self._number = 0
         self._active: RunRecord | None = None
@@ -110,7 +112,7 @@ class ScenarioRunner:
 
     async def _work(self) -> None:
         while self._active is not None:
-            telling = asyncio.create_task(self._keep_telling())
+            telling = asyncio.create_task(self._announce_regularly())
             try:
                 self._last = await self._perform(self._active)
             finally:
@@ -142,7 +144,7 @@ class ScenarioRunner:
             state, problem = "failed", f"The server made a mistake ({why!r}); its log says more."
         return run.end(state, problem)
 
-    async def _keep_telling(self) -> None:
+    async def _announce_regularly(self) -> None:
         while True:
             self.announce()
             await asyncio.sleep(TELL_SECONDS)

@@ -13,7 +13,7 @@ from robot_runtime.clock import SteadyClock
 from server.features.lease.command import in_control, renew_control
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import EndedRun, ScenarioEvent, ScenarioStart, ScenarioState
-from server.features.scenarios.simulated_run import Simulated
+from server.features.scenarios.simulated_run import SimulatedExecutor
 from server.platform.folder_lock import claim
 from server.platform.notices import Notices
 from server.platform.running_server import ask
@@ -24,15 +24,15 @@ from server.platform.store import Store
 LOOK_SECONDS = 0.25
 
 
-def run_scenario(wanted: ScenarioStart, settings: Settings) -> int:
+def run_scenario(start: ScenarioStart, settings: Settings) -> int:
     """Run a scenario and print its events as they come. Exit status: 1 where it did not come to its end.
 
     Raises SetupError where it cannot be begun.
     """
     with ExitStack() as claimed:
-        if wanted.place == "simulated" and _enter(claimed, claim(settings.data)):
-            return _conclude(_run_here(wanted, settings))
-    return _conclude(_run_there(wanted, settings.data))
+        if start.place == "simulated" and _enter(claimed, claim(settings.data)):
+            return _conclude(_run_here(start, settings))
+    return _conclude(_run_there(start, settings.data))
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
@@ -44,43 +44,43 @@ def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
     return True
 
 
-def _run_here(wanted: ScenarioStart, settings: Settings) -> EndedRun:
+def _run_here(start: ScenarioStart, settings: Settings) -> EndedRun:
     with open_writer(settings.data) as store:
-        return asyncio.run(_simulate(wanted, settings, store))
+        return asyncio.run(_simulate(start, settings, store))
 
 
-async def _simulate(wanted: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
-    told = _Progress()
-    simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
+async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> EndedRun:
+    progress = _Progress()
+    simulated = SimulatedExecutor(settings, store, Notices(SteadyClock(), lambda _: None))
     runs = ScenarioRunner(
-        simulated, simulated, lambda message: told.tell(ScenarioState.model_validate(message))
+        simulated, simulated, lambda message: progress.tell(ScenarioState.model_validate(message))
     )
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
-    runs.start(wanted.text, wanted.place, wanted.board)
+    runs.start(start.text, start.place, start.board)
     await runs.wait()
     last = runs.state().last
     assert last is not None
     return last
 
 
-def _run_there(wanted: ScenarioStart, folder: DataFolder) -> EndedRun:
+def _run_there(start: ScenarioStart, folder: DataFolder) -> EndedRun:
     """Ask the server that runs; Ctrl-C cancels the run there."""
-    if wanted.place == "simulated":
-        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
+    if start.place == "simulated":
+        number = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(number, folder, lambda: None)
     with in_control(folder):
-        number = ask(folder, "POST", "/scenarios/runs", wanted.model_dump())["run"]
+        number = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(number, folder, lambda: renew_control(folder))
 
 
 def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedRun:
-    told = _Progress()
+    progress = _Progress()
     try:
         while True:
             keep()
             state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
-            told.tell(state)
+            progress.tell(state)
             if state.last is not None and state.last.run >= number:
                 return state.last
             sleep(LOOK_SECONDS)
@@ -101,7 +101,7 @@ class _Progress:
     def __init__(self) -> None:
         self._run: int | None = None
         self._events: list[ScenarioEvent] = []
-        self._told = 0
+        self._printed = 0
 
     def tell(self, state: ScenarioState) -> None:
         """What is new in it."""
@@ -112,12 +112,12 @@ class _Progress:
         if active is None or active.phase not in ("running", "ending"):
             return
         if active.run != self._run:
-            self._run, self._events, self._told = active.run, active.events, 0
+            self._run, self._events, self._printed = active.run, active.events, 0
             click.echo(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
         self._tell_until(active.elapsed)
 
     def _tell_until(self, time: float) -> None:
         past = [event for event in self._events if event.at <= time]
-        for event in past[self._told :]:
+        for event in past[self._printed :]:
             click.echo(f"{event.at:8.1f} s  {event.words}")
-        self._told = max(self._told, len(past))
+        self._printed = max(self._printed, len(past))

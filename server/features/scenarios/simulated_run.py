@@ -50,7 +50,7 @@ class ScenarioClock:
         return self.time
 
 
-class Simulated:
+class SimulatedExecutor:
     """A process for each scenario, as a stage."""
 
     def __init__(self, settings: Settings, store: Store, notices: Notices) -> None:

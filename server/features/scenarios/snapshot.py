@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from robot_runtime.durable_files import write_whole
-from server.features.scenarios.live_setup import Before
+from server.features.scenarios.live_setup import SavedState
 
 
 class ScenarioSnapshot:
@@ -14,14 +14,14 @@ class ScenarioSnapshot:
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def keep(self, before: Before) -> None:
+    def save(self, before: SavedState) -> None:
         """Write it down, so that not even a power cut loses it. Raises OSError."""
         write_whole(self._path, json.dumps(asdict(before)).encode())
 
-    def read(self) -> Before | None:
+    def read(self) -> SavedState | None:
         """What a server that was killed has left; None where nothing is left, or it cannot be read."""
         try:
-            return Before(**json.loads(self._path.read_text(encoding="utf-8")))
+            return SavedState(**json.loads(self._path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
             return None
 

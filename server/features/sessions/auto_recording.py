@@ -19,7 +19,7 @@ REST_SECONDS = 5.0
 """How long it records on after the robot was disarmed: until the fins rest and it has begun to rise."""
 
 
-class ArmingRecording:
+class AutoRecorder:
     """Begins a session when the robot becomes armed while none records, and ends it after it was disarmed.
 
     `make_row` makes the session of a name and the robot's state. A session of this origin that is there

@@ -12,7 +12,7 @@ from server.features.sessions.recorder import Recorder
 from server.features.sessions.schemas import Bookmark
 from server.features.sessions.session import SessionStateError, require
 from server.platform.errors import NotFoundError
-from server.platform.models import Marker, SessionRow
+from server.platform.models import BookmarkRow, SessionRow
 from server.platform.store import Store
 
 
@@ -20,7 +20,7 @@ class UnknownBookmarkError(NotFoundError):
     """The session has no such mark"""
 
 
-class Markers:
+class Bookmarks:
     """The marks of all sessions. Times are in s since the session's start.
 
     Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError where
@@ -40,9 +40,9 @@ class Markers:
             require(connection, session)
             start, duration = _span(connection, session)
             steady = _place(moment, start, duration, now)
-            row = Marker(session_id=session, time=steady, text=text, made=time())
+            row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
             key = connection.execute(
-                insert(Marker).values(row.model_dump(exclude={"id"}))
+                insert(BookmarkRow).values(row.model_dump(exclude={"id"}))
             ).inserted_primary_key
             assert key is not None
             row.id = int(key[0])
@@ -62,7 +62,7 @@ class Markers:
             if text is not None:
                 row.text = text
             connection.execute(
-                update(Marker).where(col(Marker.id) == mark).values(time=row.time, text=row.text)
+                update(BookmarkRow).where(col(BookmarkRow.id) == mark).values(time=row.time, text=row.text)
             )
             return show_marks([row], start)[0]
 
@@ -73,7 +73,7 @@ class Markers:
 
         def write(connection: Connection) -> None:
             _require_mark(connection, session, mark)
-            connection.execute(delete(Marker).where(col(Marker.id) == mark))
+            connection.execute(delete(BookmarkRow).where(col(BookmarkRow.id) == mark))
 
         await self._store.write(write)
 
@@ -83,7 +83,7 @@ class Markers:
         return self._clock.now() if active is not None and active.id == session else None
 
 
-def show_marks(markers: Iterable[Marker], start: float) -> list[Bookmark]:
+def show_marks(markers: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
     """Marks in the order of their times, of a session that began at `start` (s, steady clock)."""
     return [
         Bookmark(
@@ -96,15 +96,15 @@ def show_marks(markers: Iterable[Marker], start: float) -> list[Bookmark]:
     ]
 
 
-def _require_mark(connection: Connection, session: int, mark: int) -> Marker:
+def _require_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     require(connection, session)
-    query = select(Marker.time, Marker.text, Marker.made).where(
-        Marker.id == mark, Marker.session_id == session
+    query = select(BookmarkRow.time, BookmarkRow.text, BookmarkRow.made).where(
+        BookmarkRow.id == mark, BookmarkRow.session_id == session
     )
     found = connection.execute(query).first()
     if found is None:
         raise UnknownBookmarkError(f"Session {session} has no mark {mark}.")
-    return Marker(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
+    return BookmarkRow(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
 
 
 def _span(connection: Connection, session: int) -> tuple[float, float]:

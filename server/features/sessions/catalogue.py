@@ -23,7 +23,7 @@ from server.features.sessions.session import (
     from_row,
     require,
 )
-from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.store import Reader, Store
 
 
@@ -61,14 +61,14 @@ class Listing:
             tagged: defaultdict[int, list[str]] = defaultdict(list)
             for tag in database.exec(select(SessionTag)):
                 tagged[tag.session_id].append(tag.tag)
-            counts = select(Marker.session_id, func.count()).group_by(col(Marker.session_id))
+            counts = select(BookmarkRow.session_id, func.count()).group_by(col(BookmarkRow.session_id))
             marked = dict(database.exec(counts).all())
             rows = database.exec(query).all()
             sessions = [from_row(row, tagged[row.id or 0], marked.get(row.id or 0, 0)) for row in rows]
         # SQLite's LIKE knows no letters but English ones.
         words = search.casefold().split()
-        wanted = {tag.casefold() for tag in tags}
-        return [one for one in sessions if _holds(one, words) and wanted <= {t.casefold() for t in one.tags}]
+        chosen = {tag.casefold() for tag in tags}
+        return [one for one in sessions if _holds(one, words) and chosen <= {t.casefold() for t in one.tags}]
 
     def find(self, session: int) -> Session:
         """One session, also from the bin."""
@@ -77,7 +77,7 @@ class Listing:
             if row is None or row.state in HIDDEN:
                 raise UnknownSessionError(session)
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
-            markers = select(func.count()).select_from(Marker).where(Marker.session_id == session)
+            markers = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
             return from_row(row, tags, database.exec(markers).one())
 
     def row(self, session: int) -> SessionRow:
@@ -108,7 +108,7 @@ class Listing:
                 configuration=row.configuration,
                 robot_state=json.loads(row.robot_state or "null"),
                 marks=show_marks(
-                    database.exec(select(Marker).where(Marker.session_id == session)).all(), start
+                    database.exec(select(BookmarkRow).where(BookmarkRow.session_id == session)).all(), start
                 ),
                 gaps=[
                     SessionGap(**gap.model_dump(include={"topic", "kind", "missed"}), time=gap.time - start)
@@ -136,8 +136,8 @@ class Catalogue(Listing):
         kept: bool | None = None,
     ) -> Session:
         """Write down what people say about a session; None leaves it as it is."""
-        said = {"name": name, "note": note, "kept": kept}
-        values = {field: value for field, value in said.items() if value is not None}
+        changes = {"name": name, "note": note, "kept": kept}
+        values = {field: value for field, value in changes.items() if value is not None}
 
         def write(connection: Connection) -> None:
             require(connection, session)

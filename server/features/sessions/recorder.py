@@ -25,7 +25,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME, RECORDED, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
-from server.features.sessions.resume import InterruptedSession, Missing, find_left
+from server.features.sessions.resume import InterruptedSession, Missing, find_interrupted
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import from_row
 from server.platform.errors import ConflictError
@@ -109,8 +109,8 @@ class Recorder:
 
         Raises StoreError.
         """
-        left = await asyncio.to_thread(find_left, self._store)
-        kept = -1 if left is None else left.row.id
+        interrupted = await asyncio.to_thread(find_interrupted, self._store)
+        kept = -1 if interrupted is None else interrupted.row.id
         for name, duration in await self._store.write(lambda found: _mark_interrupted(found, kept)):
             self._notices.tell(
                 "recording",
@@ -118,21 +118,21 @@ class Recorder:
                 f"“{name}” was cut off after {duration:.1f} s. What was stored is kept; at most the last "
                 "second before the end is missing.",
             )
-        return left
+        return interrupted
 
-    async def resume(self, left: InterruptedSession, missing: Mapping[str, Missing]) -> None:
+    async def resume(self, interrupted: InterruptedSession, missing: Mapping[str, Missing]) -> None:
         """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
 
         `missing` is what each sender has that is not stored, by its name. To be called before any of that is
         added, and `caught_up` afterwards. Raises StoreError.
         """
         runtime = missing.get("runtime")
-        row = left.row
+        row = interrupted.row
         if runtime is None or not (runtime.same_run and runtime.whole):
             sent = {name: count for one in missing.values() for name, count in one.sent.items() if count}
             gaps = [
                 {"session_id": row.id, "topic": name, "kind": "missed", "missed": count}
-                | {"time": left.last[name].time}
+                | {"time": interrupted.last[name].time}
                 for name, count in sent.items()
             ]
             await self._store.write(lambda connection: _interrupt(connection, gaps))
@@ -147,13 +147,13 @@ class Recorder:
             return
         self._reset()
         self._started_steady = row.started_steady
-        self._numbers.update({name: last.chunks for name, last in left.last.items()})
-        self._expected.update({BY_NAME[name].id: last.following for name, last in left.last.items()})
+        self._numbers.update({name: last.chunks for name, last in interrupted.last.items()})
+        self._expected.update({BY_NAME[name].id: last.following for name, last in interrupted.last.items()})
         for sender in missing.values():
             if sender.same_run:
                 self._skip |= sender.first
-        if "notice" in left.last:
-            self._notices.go_on(left.last["notice"].following)
+        if "notice" in interrupted.last:
+            self._notices.go_on(interrupted.last["notice"].following)
         self.session = from_row(row)
         self._accepts = True
         away = self._clock.now() - row.started_steady - row.duration
@@ -351,10 +351,10 @@ def _as_of(block: Block, now: float) -> Block:
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:
-    left = batch.bytes
-    while left > BACKLOG_BYTES:
+    interrupted = batch.bytes
+    while interrupted > BACKLOG_BYTES:
         chunk = batch.chunks.pop(0)
-        left -= len(chunk["data"])
+        interrupted -= len(chunk["data"])
         batch.note(chunk["topic"], "not stored", chunk["count"], now)
 
 
@@ -385,12 +385,12 @@ def _interrupt(connection: Connection, gaps: list[dict[str, Any]]) -> None:
 
 def _mark_interrupted(connection: Connection, but: int | None) -> list[tuple[str, float]]:
     """Names and durations (s) of the sessions that were marked."""
-    left = col(SessionRow.state) == "recording", col(SessionRow.id) != but
-    found = connection.execute(select(SessionRow.name, SessionRow.duration).where(*left))
+    interrupted = col(SessionRow.state) == "recording", col(SessionRow.id) != but
+    found = connection.execute(select(SessionRow.name, SessionRow.duration).where(*interrupted))
     marked = [(name, duration) for name, duration in found]
     connection.execute(
         update(SessionRow)
-        .where(*left)
+        .where(*interrupted)
         .values(state="interrupted", ended=col(SessionRow.started) + col(SessionRow.duration))
     )
     return marked

@@ -153,12 +153,12 @@ class Recording:
                 raise KeyError(f"{topic} has no column {name}; it has {', '.join(plain)}")
         places = [plain.index(name) for name in names]
         # A chunk holds the first bytes of all its rows, then the second ones; only wanted ones are joined.
-        wanted = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
+        offsets = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
         pieces = [
-            table[:, wanted].transpose(1, 0, 2).reshape(len(wanted), -1)
+            table[:, offsets].transpose(1, 0, 2).reshape(len(offsets), -1)
             for table in self._tables(topic, start, end)
         ]
-        whole = np.concatenate(pieces, axis=1) if pieces else np.empty((len(wanted), 0), np.uint8)
+        whole = np.concatenate(pieces, axis=1) if pieces else np.empty((len(offsets), 0), np.uint8)
 
         def column(first: int, type_: "np.dtype[Any]") -> "Floats":
             rows = np.ascontiguousarray(whole[first : first + type_.itemsize].T)

@@ -137,10 +137,10 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Pi
     names = [field.name for field in fields(_Piece)]
     found: dict[str, list[_Piece]] = {}
     with recording.read() as database:
-        for name, wanted in ranges.items():
-            since = wanted.start if wanted.since == -inf else wanted.since
-            first, last = recording.numbers(database, name, since, wanted.end)
-            if wanted.since == -inf:
+        for name, chosen in ranges.items():
+            since = chosen.start if chosen.since == -inf else chosen.since
+            first, last = recording.numbers(database, name, since, chosen.end)
+            if chosen.since == -inf:
                 first = max(0, first - LISTED_CHUNKS)
             query = (
                 select(*(getattr(Chunk, name) for name in names))
@@ -214,25 +214,25 @@ class _Reader:
         self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
         self._recorded = recorded
 
-    def read(self, pieces: list[_Piece], wanted: _Range) -> Iterator[tuple[float, Block]]:
+    def read(self, pieces: list[_Piece], chosen: _Range) -> Iterator[tuple[float, Block]]:
         """The blocks, each with the time of its first sample."""
         earlier: tuple[_Piece, int] | None = None
-        has_earlier = not wanted.newest
+        has_earlier = not chosen.newest
         for piece in pieces:
-            if piece.first_time >= wanted.end:
+            if piece.first_time >= chosen.end:
                 break
-            if piece.last_time < wanted.since:
+            if piece.last_time < chosen.since:
                 earlier = (piece, piece.count)
                 continue
             samples = self._open(piece)
             if samples is None:
                 continue
-            first = _count_before(samples, piece, wanted.since)
-            last = _count_before(samples, piece, wanted.end)
+            first = _count_before(samples, piece, chosen.since)
+            last = _count_before(samples, piece, chosen.end)
             if first > 0:
                 earlier = (piece, first)
             if first < last:
-                has_earlier = has_earlier or samples.time(first) < wanted.start
+                has_earlier = has_earlier or samples.time(first) < chosen.start
                 yield from self._blocks(samples, piece, first, last)
         if not has_earlier and earlier is not None:
             piece, count = earlier

@@ -54,7 +54,7 @@ class Missing:
     sent: Mapping[str, int]
 
 
-def find_left(store: Store) -> InterruptedSession | None:
+def find_interrupted(store: Store) -> InterruptedSession | None:
     """The newest session that was left recording since this computer was started. Raises StoreError."""
     with store.read() as database:
         row = database.exec(
@@ -79,40 +79,42 @@ def find_left(store: Store) -> InterruptedSession | None:
     return InterruptedSession(row, last)
 
 
-def find_missing(left: InterruptedSession, topics: Sequence[Topic], kept: BacklogReply) -> Missing:
+def find_missing(interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply) -> Missing:
     """Compare what is stored with what the sender of these topics has kept."""
     blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
-    for block in kept.blocks:
+    for block in backlog.blocks:
         blocks[block.topic.id].append(block)
     first: dict[int, int] = {}
     sent: dict[str, int] = {}
     whole = True
     for topic in topics:
-        following, there = kept.next.get(topic.name, 0), blocks[topic.id]
-        last = left.last.get(topic.name)
+        following, there = backlog.next.get(topic.name, 0), blocks[topic.id]
+        last = interrupted.last.get(topic.name)
         if last is None:
-            first[topic.id] = _first_since(left.row.started_steady, there, following)
+            first[topic.id] = _first_since(interrupted.row.started_steady, there, following)
             continue
         # Of this run nothing may be stored yet, although another one is.
-        wanted = last.following if last.run == kept.run else 0
-        ahead = (following - wanted) % NUMBERS
-        first[topic.id] = wanted
+        missing_from = last.following if last.run == backlog.run else 0
+        ahead = (following - missing_from) % NUMBERS
+        first[topic.id] = missing_from
         sent[topic.name] = ahead
-        whole = whole and (ahead == 0 or _holds(there, wanted))
-    stored = any(topic.name in left.last and left.last[topic.name].run == kept.run for topic in topics)
-    same_run = stored or _new(left, topics, kept)
+        whole = whole and (ahead == 0 or _holds(there, missing_from))
+    stored = any(
+        topic.name in interrupted.last and interrupted.last[topic.name].run == backlog.run for topic in topics
+    )
+    same_run = stored or _new(interrupted, topics, backlog)
     return Missing(first, same_run, whole, sent if same_run else {})
 
 
-def _new(left: InterruptedSession, topics: Sequence[Topic], kept: BacklogReply) -> bool:
+def _new(interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply) -> bool:
     """True if nothing of this sender is stored yet, and it is the one with which the session began.
 
     That is known of the runtime, whose `state` is stored at the start. A session takes any simulator.
     """
-    if any(topic.name in left.last for topic in topics):
+    if any(topic.name in interrupted.last for topic in topics):
         return False
-    state = json.loads(left.row.robot_state)
-    return _STATE not in topics or (isinstance(state, dict) and state.get("run") == kept.run)
+    state = json.loads(interrupted.row.robot_state)
+    return _STATE not in topics or (isinstance(state, dict) and state.get("run") == backlog.run)
 
 
 def _holds(blocks: Sequence[Block], number: int) -> bool:

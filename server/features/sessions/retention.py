@@ -18,7 +18,7 @@ from sqlmodel import col, select
 from robot_runtime.clock import Clock, boot
 from server.features.sessions.session import HIDDEN, REMOVING
 from server.features.sessions.storage import GIGABYTE, measure
-from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.notices import Notices
 from server.platform.schema import INCREMENTAL
 from server.platform.settings import Settings
@@ -38,7 +38,7 @@ DAY = 86_400.0
 JUMP_SECONDS = 60.0
 """By which the wall clock may move on beside the steady clock; a robot without a battery for its clock knows
 the time only once somebody has told it."""
-NAMES_TOLD = 3
+NAMES_SHOWN = 3
 
 
 class _Candidate(NamedTuple):
@@ -51,7 +51,7 @@ class _Candidate(NamedTuple):
     deleted: float | None
 
 
-class Tidying:
+class RetentionWorker:
     """The only one that removes sessions. `wake` makes it look at once.
 
     For a day after the wall clock has jumped nothing goes by its age, which nobody knows.
@@ -65,34 +65,34 @@ class Tidying:
         self._ahead: float | None = None
         """By how much the wall clock is ahead of the steady clock."""
         self._ages_known_from = 0.0
-        self._wanted = asyncio.Event()
-        self._hopeless = False
+        self._requested = asyncio.Event()
+        self._out_of_candidates = False
 
     def wake(self) -> None:
         """Look soon."""
-        self._wanted.set()
+        self._requested.set()
 
     async def run(self) -> None:
         """Tidy up every minute, for ever."""
         while True:
-            self._wanted.clear()
+            self._requested.clear()
             try:
-                await self.tidy(time())
+                await self.apply(time())
             except StoreError as problem:
                 log.warning("nothing can be tidied up: %s", problem)
             try:
-                await asyncio.wait_for(self._wanted.wait(), PERIOD)
+                await asyncio.wait_for(self._requested.wait(), PERIOD)
             except TimeoutError:
                 continue
 
-    async def tidy(self, now: float) -> None:
+    async def apply(self, now: float) -> None:
         """Once, at this time (UTC, s since 1970). Raises StoreError."""
         rules = self._settings.sessions
         ages_known = await self._ages_known(now)
         if ages_known:
             await self._empty_bin(now - rules.undo_days * DAY)
         if ages_known and rules.keep_days > 0:
-            await self._let_go_old(now, now - rules.keep_days * DAY)
+            await self._expire_old(now, now - rules.keep_days * DAY)
         if rules.keep_free > 0:
             await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
         for session in await self._doomed():
@@ -125,7 +125,7 @@ class Tidying:
             )
         )
 
-    async def _let_go_old(self, now: float, before: float) -> None:
+    async def _expire_old(self, now: float, before: float) -> None:
         rows = [row for row in await self._unprotected() if row.started < before]
         if rows:
             days = self._settings.sessions.keep_days
@@ -136,7 +136,7 @@ class Tidying:
         storage = await asyncio.to_thread(measure, self._store, self._settings)
         needed = int(self._settings.sessions.keep_free * GIGABYTE) - storage.free - storage.reusable
         if needed <= 0:
-            self._hopeless = False
+            self._out_of_candidates = False
             return
         binned = await self._find(col(SessionRow.deleted).is_not(None))
         settled = [one for one in binned if one.deleted is not None and one.deleted <= settled_before]
@@ -150,8 +150,8 @@ class Tidying:
         if rows:
             await self._change(rows, deleted=now)
             self._tell(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
-        elif not self._hopeless:
-            self._hopeless = True
+        elif not self._out_of_candidates:
+            self._out_of_candidates = True
             text = (
                 "Room is short, and every session is kept, tagged or in the bin already. Delete some, or free"
             )
@@ -160,8 +160,8 @@ class Tidying:
             )
 
     def _tell(self, rows: list[_Candidate], why: str) -> None:
-        names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_TOLD])
-        more = f" and {len(rows) - NAMES_TOLD} more" if len(rows) > NAMES_TOLD else ""
+        names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_SHOWN])
+        more = f" and {len(rows) - NAMES_SHOWN} more" if len(rows) > NAMES_SHOWN else ""
         text = f"{why}: {names}{more} went into the bin. Restore and keep what is to stay."
         self._notices.tell("storage", "caution", text)
 
@@ -214,7 +214,7 @@ class Tidying:
             await asyncio.sleep(PAUSE)
 
         def remove_rest(connection: Connection) -> None:
-            for table in (Gap, Marker, SessionTag):
+            for table in (Gap, BookmarkRow, SessionTag):
                 connection.execute(delete(table).where(col(table.session_id) == session))
             connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
 
@@ -227,13 +227,13 @@ class Tidying:
             # The driver takes one step of such a statement only, and each step is one page.
             for _ in range(PAGES_AT_ONCE):
                 connection.exec_driver_sql("PRAGMA incremental_vacuum(1)")
-            left: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
-            return left
+            free_pages: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
+            return free_pages
 
-        before, left = None, await self._store.write(give_back_some)
-        while left > 0 and left != before:
+        before, free_pages = None, await self._store.write(give_back_some)
+        while free_pages > 0 and free_pages != before:
             await asyncio.sleep(PAUSE)
-            before, left = left, await self._store.write(give_back_some)
+            before, free_pages = free_pages, await self._store.write(give_back_some)
 
 
 def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:

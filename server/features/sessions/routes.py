@@ -8,16 +8,16 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 
 from robot_runtime.clock import Clock
-from server.features.sessions.bookmarks import Markers
+from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.dependencies import STORING, UNKNOWN, Identifier, OpenRecording
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.replay import HISTORY_MAX, read_stretch
-from server.features.sessions.retention import Tidying
+from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.schemas import (
     Bookmark,
-    MarkChanges,
-    NewMark,
+    BookmarkChanges,
+    NewBookmark,
     NewSession,
     Origin,
     Session,
@@ -27,7 +27,7 @@ from server.features.sessions.schemas import (
 from server.features.sessions.session import new_row
 from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
-from server.health.monitor import Watch
+from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
@@ -78,18 +78,18 @@ def get_sessions(
 )
 async def start_session(
     bridge: Provided[Bridge],
-    watch: Provided[Watch],
+    watch: Provided[HealthMonitor],
     settings: Provided[Settings],
     clock: Provided[Clock],
     recorder: Provided[Recorder],
-    wanted: NewSession,
+    body: NewSession,
 ) -> Session:
     """Record everything from now on; refused while another records, or the board is lent to a test."""
-    if bridge.lent is not None:
-        raise RecordingRefusedError(bridge.lent)
+    if bridge.reserved_reason is not None:
+        raise RecordingRefusedError(bridge.reserved_reason)
     state = json.dumps(watch.state())
     try:
-        row = await run_in_threadpool(new_row, settings, clock, wanted.name, wanted.note, state)
+        row = await run_in_threadpool(new_row, settings, clock, body.name, body.note, state)
     except OSError as problem:
         raise RecordingRefusedError(
             f"The configuration {settings.config} cannot be read: {problem}"
@@ -117,10 +117,10 @@ def get_session(catalogue: Provided[Catalogue], session: Identifier) -> SessionD
     responses={**UNKNOWN, **STORING},
 )
 async def change_session(
-    catalogue: Provided[Catalogue], session: Identifier, wanted: SessionChanges
+    catalogue: Provided[Catalogue], session: Identifier, body: SessionChanges
 ) -> Session:
     """Change what people say about it; tags are replaced as a whole."""
-    return await catalogue.change(session, **wanted.model_dump())
+    return await catalogue.change(session, **body.model_dump())
 
 
 @router.post(
@@ -171,11 +171,11 @@ async def restore_session(catalogue: Provided[Catalogue], session: Identifier) -
     responses={**UNKNOWN, **STORING},
 )
 async def purge_session(
-    catalogue: Provided[Catalogue], tidying: Provided[Tidying], session: Identifier
+    catalogue: Provided[Catalogue], retention: Provided[RetentionWorker], session: Identifier
 ) -> None:
     """It is gone at once; the room that it took comes back little by little."""
     await catalogue.purge(session)
-    tidying.wake()
+    retention.wake()
 
 
 @router.get(
@@ -204,10 +204,10 @@ def get_thumbnail(
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def add_mark(
-    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, wanted: NewMark
+    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
 ) -> Bookmark:
     """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
-    mark = await markers.add(session, wanted.time, wanted.text)
+    mark = await markers.add(session, body.time, body.text)
     catalogue.tell(session)
     return mark
 
@@ -220,10 +220,10 @@ async def add_mark(
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def change_mark(
-    markers: Provided[Markers], session: Identifier, mark: MarkIdentifier, wanted: MarkChanges
+    markers: Provided[Bookmarks], session: Identifier, mark: MarkIdentifier, body: BookmarkChanges
 ) -> Bookmark:
     """Move it, or say something else of it."""
-    return await markers.change(session, mark, wanted.time, wanted.text)
+    return await markers.change(session, mark, body.time, body.text)
 
 
 @router.delete(
@@ -235,7 +235,7 @@ async def change_mark(
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def remove_mark(
-    markers: Provided[Markers], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
+    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
 ) -> None:
     """Take it away for good."""
     await markers.remove(session, mark)

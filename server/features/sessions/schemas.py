@@ -117,7 +117,7 @@ Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
 Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
-class NewMark(BaseModel):
+class NewBookmark(BaseModel):
     """A moment to be marked: s since the session's start, or null for now."""
 
     model_config = ConfigDict(extra="forbid")
@@ -125,7 +125,7 @@ class NewMark(BaseModel):
     text: Text = ""
 
 
-class MarkChanges(BaseModel):
+class BookmarkChanges(BaseModel):
     """What is to be different; what is left out stays as it is."""
 
     model_config = ConfigDict(extra="forbid")

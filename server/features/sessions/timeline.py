@@ -14,7 +14,7 @@ from server.features.sessions.bookmarks import show_marks
 from server.features.sessions.recording import Recording
 from server.features.sessions.schemas import Bookmark, State
 from server.features.sessions.session import from_row
-from server.platform.models import Chunk, Marker
+from server.platform.models import BookmarkRow, Chunk
 
 EVENTS_MAX = 2000
 HOLE_SECONDS = 3.0
@@ -55,7 +55,7 @@ def read_timeline(recording: Recording) -> Timeline:
     """The timeline of a session. Raises StoreError, RecordingError."""
     row = recording.row
     with recording.read() as database:
-        markers = database.exec(select(Marker).where(Marker.session_id == row.id)).all()
+        markers = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == row.id)).all()
         stretches = database.exec(
             select(Chunk.first_time, Chunk.last_time)
             .where(Chunk.session_id == row.id, Chunk.topic == "state")

@@ -62,10 +62,10 @@ def rewrite_document(document: Mapping[str, Any], topic: Topic) -> dict[str, Any
     return made
 
 
-def _rewrite(value: Any, wanted: Any) -> Any:
-    if is_dataclass(wanted):
-        return _rewrite_object(value, wanted)
-    kind, arguments = get_origin(wanted), get_args(wanted)
+def _rewrite(value: Any, target: Any) -> Any:
+    if is_dataclass(target):
+        return _rewrite_object(value, target)
+    kind, arguments = get_origin(target), get_args(target)
     if kind in (Union, UnionType):
         return _rewrite_union(value, arguments)
     if kind is list and isinstance(value, list):
@@ -78,11 +78,11 @@ def _rewrite(value: Any, wanted: Any) -> Any:
         return {name: _rewrite(one, arguments[1]) for name, one in value.items()}
     if kind is Literal and value in arguments:
         return value
-    if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):
+    if target is float and isinstance(value, int | float) and not isinstance(value, bool):
         return value
-    if wanted in (int, str, bool, NoneType) and type(value) is wanted:
+    if target in (int, str, bool, NoneType) and type(value) is target:
         return value
-    raise NoCounterpartError(f"{value!r} is no {wanted}")
+    raise NoCounterpartError(f"{value!r} is no {target}")
 
 
 def _rewrite_union(value: Any, members: tuple[Any, ...]) -> Any:
@@ -96,12 +96,12 @@ def _rewrite_union(value: Any, members: tuple[Any, ...]) -> Any:
     raise problem or NoCounterpartError(f"{value!r} is of no kind")
 
 
-def _rewrite_object(value: Any, wanted: Any) -> dict[str, Any]:
+def _rewrite_object(value: Any, target: Any) -> dict[str, Any]:
     if not isinstance(value, Mapping):
-        raise NoCounterpartError(f"{value!r} is no {wanted.__name__}")
+        raise NoCounterpartError(f"{value!r} is no {target.__name__}")
     return {
-        name: _rewrite(value[name], hint) if name in value else _stand_in(wanted, name, hint)
-        for name, hint in _hints(wanted).items()
+        name: _rewrite(value[name], hint) if name in value else _stand_in(target, name, hint)
+        for name, hint in _hints(target).items()
     }
 
 

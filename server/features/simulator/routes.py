@@ -10,7 +10,7 @@ from server.http.dependencies import Provided
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.settings import Settings
-from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, Parts
+from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
 from server.stream.bridge import Bridge
 
 router = APIRouter(prefix="/api")
@@ -46,7 +46,9 @@ class View(BaseModel):
     openapi_extra=needs(Need.CONTROL),
     responses=answers(_409="The robot is not in the loop", _423="Control is with somebody else"),
 )
-async def put_simulator(settings: Provided[Settings], parts: Provided[Parts], wanted: Place) -> None:
+async def put_simulator(
+    settings: Provided[Settings], processes: Provided[ProcessSupervisor], body: Place
+) -> None:
     """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""
     if not settings.in_the_loop:
         raise RefusedError(
@@ -54,10 +56,10 @@ async def put_simulator(settings: Provided[Settings], parts: Provided[Parts], wa
             f"robot.mode is {settings.mode}."
         )
     for name in SIMULATION:
-        if wanted.here:
-            parts.resume(name)
+        if body.here:
+            processes.resume(name)
         else:
-            await parts.pause(name, SIMULATION_ELSEWHERE)
+            await processes.pause(name, SIMULATION_ELSEWHERE)
 
 
 @router.put(

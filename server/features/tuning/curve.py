@@ -70,8 +70,8 @@ class Gathering:
             for time, motor in read_rows(block):
                 assert isinstance(motor, Motor)
                 self.fin_times.append(time)
-                for kept, angle in zip(self.fins, motor.angle, strict=True):
-                    kept.append(angle)
+                for column, angle in zip(self.fins, motor.angle, strict=True):
+                    column.append(angle)
         elif name == "control" and self._loop == "depth":
             for time, tick in read_rows(block):
                 assert isinstance(tick, Control)

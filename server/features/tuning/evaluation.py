@@ -13,7 +13,7 @@ LEAD = 3.0
 
 
 def measure_run(
-    wanted: StepStart | RelayStart,
+    experiment: StepStart | RelayStart,
     gathering: Gathering,
     starts: Mapping[str, float],
     state: RunState,
@@ -24,20 +24,20 @@ def measure_run(
     `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
     """
     began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
-    if wanted.kind == "relay":
-        return _relay(wanted, gathering, starts, began, ended, problem)
+    if experiment.kind == "relay":
+        return _relay(experiment, gathering, starts, began, ended, problem)
     step = starts.get("running", began)
     curve = gathering.curve.between(max(began, step - LEAD), ended, step)
     if state != "complete":
         return {}, curve, problem
-    figures = measure_response(curve, gathering, wanted.loop, step, ended)
+    figures = measure_response(curve, gathering, experiment.loop, step, ended)
     if not figures:
         return {}, curve, "No ticks of the loop came during the run."
     return {"figures": {name: figure.model_dump() for name, figure in figures.items()}}, curve, problem
 
 
 def _relay(
-    wanted: RelayStart,
+    experiment: RelayStart,
     gathering: Gathering,
     starts: Mapping[str, float],
     began: float,
@@ -49,7 +49,7 @@ def _relay(
     if problem or "running" not in starts:
         return {}, curve, problem
     try:
-        cycle = find_ultimate(curve, starts["running"] - began, wanted.hysteresis)
+        cycle = find_ultimate(curve, starts["running"] - began, experiment.hysteresis)
     except ValueError as why:
         return {}, curve, f"Nothing could be measured: {why}."
     return {"cycle": cycle.model_dump()}, curve, ""

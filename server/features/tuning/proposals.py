@@ -4,14 +4,14 @@ from collections.abc import Mapping
 
 from robot_runtime.contract.limits import LoopName
 from server.features.tuning.rules import RULES
-from server.features.tuning.schemas import LimitCycleFound, Proposal
+from server.features.tuning.schemas import MeasuredLimitCycle, Proposal
 
 DIGITS = 4
 """Significant digits: more than the limit cycle is known to, few enough to be read."""
 
 
 def propose(
-    loop: LoopName, cycle: LimitCycleFound, limits: Mapping[str, tuple[float, float]]
+    loop: LoopName, cycle: MeasuredLimitCycle, limits: Mapping[str, tuple[float, float]]
 ) -> list[Proposal]:
     """By each rule that holds for the loop. `limits` are least and most of each gain, by name."""
     proposals = []

@@ -7,7 +7,7 @@ import numpy as np
 from server.features.metrics.series import Floats
 from server.features.tuning.curve import Curve
 from server.features.tuning.rules import ultimate_gain
-from server.features.tuning.schemas import LimitCycleFound
+from server.features.tuning.schemas import MeasuredLimitCycle
 
 SAME = 0.05
 """s by which a tick may bear another time than what it has caused; less than the time between two ticks."""
@@ -15,7 +15,7 @@ UNLIKE = 0.2
 """Share by which cycles may differ from each other, and the halves of one, before that is remarked on."""
 
 
-def find_ultimate(curve: Curve, began: float, hysteresis: float) -> LimitCycleFound:
+def find_ultimate(curve: Curve, began: float, hysteresis: float) -> MeasuredLimitCycle:
     """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
 
     Each is the median over whole cycles, from one time that the relay turns to its greater command to the
@@ -36,7 +36,7 @@ def find_ultimate(curve: Curve, began: float, hysteresis: float) -> LimitCycleFo
     period, swing = float(np.median(periods)), float(np.median(swings))
     amplitude = float(counts.max() - counts.min()) / 2
     asymmetry = float(np.median(halves))
-    return LimitCycleFound(
+    return MeasuredLimitCycle(
         cycles=len(cycles),
         period=period,
         swing=swing,

@@ -7,7 +7,7 @@ from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import LoopName
 from server.features.tuning.figure_definitions import meanings
-from server.features.tuning.lab import TuningLab
+from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import UnknownTuningRunError
 from server.features.tuning.schemas import (
     Start,
@@ -33,7 +33,7 @@ Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
 @router.get("/state", summary="What runs", operation_id="getTuningState", openapi_extra=needs(Need.VIEWER))
-async def get_state(tuning: Provided[TuningLab]) -> TuningState:
+async def get_state(tuning: Provided[TuningRunner]) -> TuningState:
     """The run that is on, and the one that ended last, as on the live socket."""
     return tuning.state()
 
@@ -41,7 +41,7 @@ async def get_state(tuning: Provided[TuningLab]) -> TuningState:
 @router.get(
     "/runs", summary="The runs on a loop", operation_id="listTuningRuns", openapi_extra=needs(Need.VIEWER)
 )
-def get_runs(tuning: Provided[TuningLab], loop: LoopName = "depth") -> TuningRuns:
+def get_runs(tuning: Provided[TuningRunner], loop: LoopName = "depth") -> TuningRuns:
     """Newest first, without their curves; and what the figures of a step response are."""
     return TuningRuns(figures=meanings(loop), runs=list(tuning.runs.list(loop)))
 
@@ -54,9 +54,9 @@ def get_runs(tuning: Provided[TuningLab], loop: LoopName = "depth") -> TuningRun
     openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def start(tuning: Provided[TuningLab], caller: Caller, wanted: Start) -> TuningStarted:
+async def start(tuning: Provided[TuningRunner], caller: Caller, body: Start) -> TuningStarted:
     """On the armed robot, in automatic. Afterwards the loop goes on as before."""
-    return TuningStarted(run=await tuning.start(caller.name, wanted))
+    return TuningStarted(run=await tuning.start(caller.name, body))
 
 
 @router.post(
@@ -67,7 +67,7 @@ async def start(tuning: Provided[TuningLab], caller: Caller, wanted: Start) -> T
     openapi_extra=needs(Need.CONTROL),
     responses=COMMAND,
 )
-async def stop(tuning: Provided[TuningLab]) -> None:
+async def stop(tuning: Provided[TuningRunner]) -> None:
     """The robot stays armed, and goes on as before the run. What was measured so far is kept."""
     await tuning.stop()
 
@@ -79,7 +79,7 @@ async def stop(tuning: Provided[TuningLab]) -> None:
     openapi_extra=needs(Need.VIEWER),
     responses=UNKNOWN,
 )
-def get_run(tuning: Provided[TuningLab], run: Identifier) -> TuningRunDetail:
+def get_run(tuning: Provided[TuningRunner], run: Identifier) -> TuningRunDetail:
     """With its curve, and of a relay experiment with the gains that the rules propose."""
     return tuning.runs.detail(run)
 
@@ -91,10 +91,10 @@ def get_run(tuning: Provided[TuningLab], run: Identifier) -> TuningRunDetail:
     openapi_extra=needs(Need.OPERATOR),
     responses=UNKNOWN,
 )
-async def rename(tuning: Provided[TuningLab], run: Identifier, wanted: TuningName) -> TuningRunDetail:
+async def rename(tuning: Provided[TuningRunner], run: Identifier, body: TuningName) -> TuningRunDetail:
     """Call it otherwise."""
     runs = tuning.runs
-    await runs.rename(run, wanted.name)
+    await runs.rename(run, body.name)
     return await run_in_threadpool(runs.detail, run)
 
 
@@ -106,6 +106,6 @@ async def rename(tuning: Provided[TuningLab], run: Identifier, wanted: TuningNam
     openapi_extra=needs(Need.OPERATOR),
     responses=UNKNOWN,
 )
-async def delete(tuning: Provided[TuningLab], run: Identifier) -> None:
+async def delete(tuning: Provided[TuningRunner], run: Identifier) -> None:
     """For good; refused while it runs."""
     await tuning.delete(run)

@@ -34,7 +34,7 @@ class UnknownTuningRunError(NotFoundError):
     """There is no such run"""
 
 
-class TuningRunner:
+class TuningStore:
     """All runs, kept until somebody deletes them. Methods raise StoreError, and UnknownRun."""
 
     def __init__(self, store: Store) -> None:
@@ -43,8 +43,8 @@ class TuningRunner:
     def list(self, loop: LoopName) -> Sequence[TuningRun]:
         """Runs on this loop without their curves, the newest first."""
         columns = [column for column in TuningRunRow.__table__.columns if column.name != "curve"]  # type: ignore[attr-defined]
-        wanted = select(*columns).where(col(TuningRunRow.loop) == loop)
-        newest = wanted.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
+        experiment = select(*columns).where(col(TuningRunRow.loop) == loop)
+        newest = experiment.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
         with self._store.read() as database:
             rows = database.execute(newest).mappings().all()
         return [TuningRun(**_shown(TuningRunRow(**row, curve=b""))) for row in rows]
@@ -67,16 +67,16 @@ class TuningRunner:
             proposals=proposals,
         )
 
-    async def begin(self, wanted: StepStart | RelayStart, name: str, force: Force, limits: Any) -> int:
+    async def begin(self, experiment: StepStart | RelayStart, name: str, force: Force, limits: Any) -> int:
         """A run that begins now; its number. `limits` are those of the PID's gains, by name."""
         values = {
             "name": name,
-            "kind": wanted.kind,
-            "loop": wanted.loop,
+            "kind": experiment.kind,
+            "loop": experiment.loop,
             "started": time.time(),
             "state": "running",
             "problem": "",
-            "settings": wanted.model_dump_json(),
+            "settings": experiment.model_dump_json(),
             "parameters": json.dumps({**force.model_dump(), "limits": limits}),
             "figures": "{}",
             "curve": b"",

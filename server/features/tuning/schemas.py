@@ -69,9 +69,9 @@ class RelayStart(Limits):
         return _command(RelayExperimentCommand, self, run)
 
 
-def _command(cls: type[ExperimentCommand], wanted: Limits, run: int) -> ExperimentCommand:
+def _command(cls: type[ExperimentCommand], limits: Limits, run: int) -> ExperimentCommand:
     try:
-        return cls(number=run, **wanted.model_dump(exclude={"kind"}))
+        return cls(number=run, **limits.model_dump(exclude={"kind"}))
     except ConfigError as problem:
         raise RefusedError(str(problem)) from problem
 
@@ -87,7 +87,7 @@ class Force(BaseModel):
     gains: dict[str, float]
 
 
-class LimitCycleFound(BaseModel):
+class MeasuredLimitCycle(BaseModel):
     """What a relay experiment measured; medians over its cycles, values in the loop's unit."""
 
     cycles: int
@@ -124,7 +124,7 @@ class TuningRun(BaseModel):
     settings: dict[str, Any] = Field(description="as it was started")
     force: Force
     figures: dict[str, Figure] = Field(description="of a step response, by name")
-    cycle: LimitCycleFound | None = Field(description="of a relay experiment")
+    cycle: MeasuredLimitCycle | None = Field(description="of a relay experiment")
 
 
 class TuningCurve(BaseModel):

@@ -25,8 +25,8 @@ router = APIRouter(prefix="/api/vision", tags=["vision"])
 )
 async def get_vision(bridge: Provided[Bridge]) -> object:
     """All settings that may change while it looks, and what robot.toml says of them."""
-    told = await bridge.query("vision")
-    return {name: told[name] for name in ("settings", "configured")}
+    answer = await bridge.query("vision")
+    return {name: answer[name] for name in ("settings", "configured")}
 
 
 @router.post(
@@ -38,8 +38,8 @@ async def get_vision(bridge: Provided[Bridge]) -> object:
 )
 async def pick(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
     """A range for what is there in the newest picture. It changes nothing."""
-    told = await bridge.query("pick", place.model_dump())
-    return PickedColour.model_validate(told, extra="ignore")
+    answer = await bridge.query("pick", place.model_dump())
+    return PickedColour.model_validate(answer, extra="ignore")
 
 
 @router.get(
@@ -52,9 +52,9 @@ async def pick(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
 )
 async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
     """The table [vision], to be kept or to be put into robot.toml."""
-    told = await bridge.query("vision")
+    answer = await bridge.query("vision")
     return PlainTextResponse(
-        write_document(told["settings"]),
+        write_document(answer["settings"]),
         headers={"Content-Disposition": 'attachment; filename="vision.toml"'},
     )
 

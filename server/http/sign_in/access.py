@@ -45,7 +45,7 @@ class Access:
         self._token = token
         self._tell = tell
         self._close_sockets = close_sockets
-        self._limit_told = False
+        self._limit_reported = False
 
     def open(self) -> None:
         """Know who was paired, and give the shell of this computer its token. Raises StoreError, OSError."""
@@ -54,11 +54,11 @@ class Access:
 
     def identify(self, connection: HTTPConnection) -> Identity | None:
         """Who asks. What is said to be a token must be one: a cookie beside it is not looked at."""
-        said = connection.headers.get("authorization")
-        if said is not None:
-            if not said.lower().startswith(BEARER):
+        header = connection.headers.get("authorization")
+        if header is not None:
+            if not header.lower().startswith(BEARER):
                 return None
-            return self._find_bearer(said[len(BEARER) :].strip())
+            return self._find_bearer(header[len(BEARER) :].strip())
         return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
 
     def still(self, identity: Identity) -> bool:
@@ -74,11 +74,11 @@ class Access:
         try:
             role = self.codes.use(code)
         except TooManyTriesError as problem:
-            if not self._limit_told:
+            if not self._limit_reported:
                 self._tell("access", "caution", f"Somebody tries pairing codes. {problem}")
-            self._limit_told = True
+            self._limit_reported = True
             raise
-        self._limit_told = False
+        self._limit_reported = False
         if known is not None and known.kind == "browser":
             if role == "operator" and known.role == "viewer":
                 await self.set_role(known.device, role, by=known)

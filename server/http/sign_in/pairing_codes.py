@@ -91,9 +91,9 @@ class Codes:
         if (wait := self.wait) > 0:
             raise TooManyTriesError(wait)
         self._forget_old()
-        wanted = digest(normal_code(typed))
+        typed_digest = digest(normal_code(typed))
         # Every one is compared, and in full, so that the time taken tells nothing.
-        found = [code for code in self._codes if compare_digest(code.digest, wanted)]
+        found = [code for code in self._codes if compare_digest(code.digest, typed_digest)]
         if not found:
             self._wrong.append(self._clock.now())
             raise WrongCodeError

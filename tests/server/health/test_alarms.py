@@ -7,10 +7,10 @@ import pytest
 from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.alarms import Alarms
 from server.health.faults import FAULTS
-from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Inspection
+from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Watchdog
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import Part
+from server.processes.supervisor import ManagedProcess
 from tests.server.health.test_health import Bench
 
 
@@ -21,10 +21,10 @@ class Room(Bench):
         super().__init__(settings, store, *DOWN)
         self.told: list[Event] = []
         self.alarms = Alarms(self.clock, FAULTS, self.told.append)
-        self.inspection = Inspection(
+        self.watchdog = Watchdog(
             settings,
             self.clock,
-            self.watch,
+            self.monitor,
             self.parts,  # type: ignore[arg-type]
             store,
             self.alarms,
@@ -37,7 +37,7 @@ class Room(Bench):
             self.clock.forward(PERIOD)
             for hear in said.values():
                 hear(round(self.clock.now() / PERIOD))
-            self.inspection.look()
+            self.watchdog.check_once()
 
     def find(self, fault: str) -> Alarm | None:
         return next((alarm for alarm in self.alarms.listed() if alarm.fault == fault), None)
@@ -60,10 +60,10 @@ def test_all_is_well(room: Room) -> None:
 
 
 def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(room: Room) -> None:
-    heard = room.clock.now()
+    last_heard = room.clock.now()
     while "runtime_silent" not in room.active():
         room.spend(PERIOD)
-    assert room.clock.now() - heard <= SILENT_SECONDS + 2 * PERIOD
+    assert room.clock.now() - last_heard <= SILENT_SECONDS + 2 * PERIOD
     assert room.active() == {"runtime_silent", "simulator_silent"}
     room.spend(PERIOD, all=room.hear)
     assert room.active() == set()
@@ -104,7 +104,7 @@ def test_what_has_just_been_started_may_be_silent_for_longer(room: Room) -> None
 
 def test_a_server_that_was_held_up_does_not_blame_the_others(room: Room) -> None:
     room.clock.forward(30.0)
-    room.inspection.look()
+    room.watchdog.check_once()
     assert room.active() == set()
     room.spend(1.0, all=room.hear)
     assert room.told == []
@@ -115,12 +115,12 @@ def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
 ) -> None:
     ended: list[str] = []
     monkeypatch.setattr(
-        Part, "end_hung", lambda part, problem: ended.append(f"{part.command.name} {problem}")
+        ManagedProcess, "end_hung", lambda part, problem: ended.append(f"{part.command.name} {problem}")
     )
-    heard = room.clock.now()
+    last_heard = room.clock.now()
     while not ended:
         room.spend(PERIOD)
-    assert HUNG_SECONDS <= room.clock.now() - heard <= HUNG_SECONDS + 2 * PERIOD
+    assert HUNG_SECONDS <= room.clock.now() - last_heard <= HUNG_SECONDS + 2 * PERIOD
     assert ended == ["runtime said nothing for 10 s, and was ended"]
     room.spend(HUNG_SECONDS - SILENT_SECONDS - PERIOD)
     assert len(ended) == 1
@@ -132,11 +132,11 @@ def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
 def test_a_server_that_is_held_up_again_and_again_ends_nobody(
     room: Room, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended: list[Part] = []
-    monkeypatch.setattr(Part, "end_hung", lambda part, _: ended.append(part))
+    ended: list[ManagedProcess] = []
+    monkeypatch.setattr(ManagedProcess, "end_hung", lambda part, _: ended.append(part))
     for _ in range(20):
         room.clock.forward(30.0)
-        room.inspection.look()
+        room.watchdog.check_once()
         room.spend(2 * PERIOD)
         room.spend(PERIOD, all=room.hear)
     assert ended == []

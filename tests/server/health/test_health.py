@@ -6,11 +6,11 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import Block
-from server.health.monitor import GRACE_SECONDS, Watch
+from server.health.monitor import GRACE_SECONDS, HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.logs import PartLog
-from server.processes.supervisor import Command, Part
+from server.processes.logs import ProcessLog
+from server.processes.supervisor import ManagedProcess, ProcessCommand
 from tests.server.blocks import link_block, state_block, truth_block
 
 
@@ -20,16 +20,16 @@ class Bench:
     def __init__(self, settings: Settings, store: Store, *names: str) -> None:
         self.clock = SimulatedClock(1000.0)
         self.parts = {
-            name: Part(
-                Command(name, name, ()),
-                PartLog(settings.data.logs),
+            name: ManagedProcess(
+                ProcessCommand(name, name, ()),
+                ProcessLog(settings.data.logs),
                 settings.data.run,
                 self.clock,
                 lambda *_: None,
             )
             for name in names
         }
-        self.watch = Watch(settings, self.clock, store, self.parts)  # type: ignore[arg-type]
+        self.monitor = HealthMonitor(settings, self.clock, store, self.parts)  # type: ignore[arg-type]
 
     def run_all(self) -> None:
         for part in self.parts.values():
@@ -42,17 +42,17 @@ class Bench:
             link_block(number, 100 * number + 1),
             truth_block(number),
         ):
-            self.watch.see(block)
+            self.monitor.see(block)
 
     def state(self, name: str) -> str:
-        return next(part.state for part in self.watch.health().parts if part.name == name)
+        return next(part.state for part in self.monitor.health().parts if part.name == name)
 
     def text(self, name: str) -> str:
-        return next(part.text for part in self.watch.health().parts if part.name == name)
+        return next(part.text for part in self.monitor.health().parts if part.name == name)
 
     @property
     def status(self) -> str:
-        return self.watch.health().status
+        return self.monitor.health().status
 
 
 @pytest.fixture
@@ -94,7 +94,7 @@ def test_a_board_that_sends_no_more_bytes_has_failed_though_the_link_is_reported
     bench.run_all()
     bench.clock.forward(60)
     for number in range(5):
-        bench.watch.see(link_block(number, 500 + min(number, 1)))
+        bench.monitor.see(link_block(number, 500 + min(number, 1)))
         bench.clock.forward(1)
     assert bench.state("board") == "failed"
 
@@ -123,7 +123,7 @@ def test_a_part_that_ended_has_failed_whatever_was_heard(bench: Bench) -> None:
 def test_what_is_lent_is_absent_and_not_failed(bench: Bench) -> None:
     bench.run_all()
     bench.clock.forward(60)
-    bench.watch.see(truth_block(0))
+    bench.monitor.see(truth_block(0))
     asyncio.run(bench.parts["runtime"].pause("The board is lent."))
     for name in ("runtime", "link", "board"):
         assert (bench.state(name), bench.text(name)) == ("absent", "The board is lent.")
@@ -136,7 +136,7 @@ def test_what_is_lent_is_absent_and_not_failed(bench: Bench) -> None:
 def test_a_board_without_its_firmware_is_told_until_it_answers(bench: Bench) -> None:
     bench.run_all()
     bench.clock.forward(60)
-    bench.watch.firmware_away = "The firmware is not on the board."
+    bench.monitor.firmware_away = "The firmware is not on the board."
     bench.hear(0, connected=False, connection="no answer")
     assert (bench.state("link"), bench.text("link")) == ("failed", "The firmware is not on the board.")
     bench.hear(1)
@@ -162,6 +162,6 @@ def test_a_database_that_fails_is_told_with_its_reason(bench: Bench, store: Stor
 def test_a_state_that_cannot_be_read_is_none(bench: Bench) -> None:
     block = state_block(0)
     for payload in (b"", b"[]", b"[3]", b"{}", b"[" * 100_000):
-        bench.watch.see(Block(block.topic, 1, 0, bytes(12) + payload))
-        assert bench.watch.state() is None
+        bench.monitor.see(Block(block.topic, 1, 0, bytes(12) + payload))
+        assert bench.monitor.state() is None
         assert bench.state("link") in ("starting", "failed")

@@ -4,14 +4,14 @@ from pathlib import Path
 import pytest
 
 import server.processes.logs as logs_module
-from server.processes.logs import PartLog
+from server.processes.logs import ProcessLog
 
 
 def test_the_files_are_bounded_and_nothing_recent_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(logs_module, "FILE_BYTES_MAX", 100)
-    log = PartLog(tmp_path / "part.log")
+    log = ProcessLog(tmp_path / "part.log")
     with log.open() as file:
         for number in range(50):
             file.write(f"line {number:02}\n".encode())
@@ -26,7 +26,7 @@ def test_a_process_writes_on_after_its_file_was_trimmed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(logs_module, "FILE_BYTES_MAX", 100)
-    log = PartLog(tmp_path / "part.log")
+    log = ProcessLog(tmp_path / "part.log")
     code = "head -c 300 /dev/zero | tr '\\0' x; echo; echo full; read _; echo after"
     with log.open() as file:
         process = subprocess.Popen(["sh", "-c", code], stdin=subprocess.PIPE, stdout=file)
@@ -39,7 +39,7 @@ def test_a_process_writes_on_after_its_file_was_trimmed(
 
 
 def test_the_last_lines_are_found(tmp_path: Path) -> None:
-    log = PartLog(tmp_path / "part.log")
+    log = ProcessLog(tmp_path / "part.log")
     assert log.last(3) == ""
     with log.open() as file:
         file.write(b"one\ntwo\n\n  \nthree\r\nfour")
@@ -50,7 +50,7 @@ def test_the_last_lines_are_found(tmp_path: Path) -> None:
 
 
 def test_a_log_that_cannot_be_written_harms_nobody(tmp_path: Path) -> None:
-    log = PartLog(tmp_path / "missing" / "part.log")
+    log = ProcessLog(tmp_path / "missing" / "part.log")
     with log.open() as file:
         file.write(b"said\n")
     log.trim()

@@ -17,21 +17,23 @@ from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import LinkConfig
 from server.platform.pidfile import end_parts, pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, make_folders
-from server.processes.logs import PartLog
-from server.processes.supervisor import Command, Part, Parts, plan
+from server.processes.logs import ProcessLog
+from server.processes.supervisor import ManagedProcess, ProcessCommand, ProcessSupervisor, plan
 from tests.server.waiting import alive, until
 
 
 class Crew:
     """Parts made of small Python programs."""
 
-    def __init__(self, folder: Path, *commands: Command) -> None:
+    def __init__(self, folder: Path, *commands: ProcessCommand) -> None:
         self.told: list[tuple[str, str]] = []
         data = DataFolder(folder)
         make_folders(data)
-        self.parts = Parts(commands, data, SteadyClock(), lambda name, text: self.told.append((name, text)))
+        self.parts = ProcessSupervisor(
+            commands, data, SteadyClock(), lambda name, text: self.told.append((name, text))
+        )
 
-    def part(self, name: str) -> Part:
+    def part(self, name: str) -> ManagedProcess:
         part = self.parts.get(name)
         assert part is not None
         return part
@@ -42,8 +44,8 @@ class Crew:
         return psutil.Process(pid)
 
 
-def program(name: str, code: str, *needs: Path) -> Command:
-    return Command(name, f"part {name}", (sys.executable, "-c", code), needs)
+def program(name: str, code: str, *needs: Path) -> ProcessCommand:
+    return ProcessCommand(name, f"part {name}", (sys.executable, "-c", code), needs)
 
 
 def run(crew: Crew, scenario: Callable[[], Awaitable[None]]) -> None:
@@ -130,7 +132,9 @@ def test_pauses_grow_to_a_limit_and_shrink_after_a_steady_life(
     pauses: list[float] = []
     lives = iter([0, 1, 2, 3, 4, 20, 0])
     clock = SimulatedClock()
-    part = Part(Command("engine", "engine", ()), PartLog(tmp_path), tmp_path, clock, lambda *_: None)
+    part = ManagedProcess(
+        ProcessCommand("engine", "engine", ()), ProcessLog(tmp_path), tmp_path, clock, lambda *_: None
+    )
 
     async def live() -> tuple[str, bool]:
         clock.forward(next(lives))
@@ -201,7 +205,7 @@ def test_a_part_starts_when_what_it_needs_is_there(tmp_path: Path) -> None:
 
 
 def test_a_missing_program_is_told_and_the_others_run(tmp_path: Path) -> None:
-    missing = Command("board", "board", (str(tmp_path / "no" / "board"),))
+    missing = ProcessCommand("board", "board", (str(tmp_path / "no" / "board"),))
     crew = Crew(tmp_path, missing, program("other", "import time; time.sleep(600)"))
 
     async def scenario() -> None:
@@ -235,7 +239,7 @@ def test_what_is_paused_does_not_run_until_it_is_resumed(tmp_path: Path) -> None
 class Left:
     """A part that a killed server has left: started, and no longer anybody's in particular."""
 
-    def __init__(self, folder: Path, command: Command) -> None:
+    def __init__(self, folder: Path, command: ProcessCommand) -> None:
         self.command = command
         data = DataFolder(folder)
         make_folders(data)

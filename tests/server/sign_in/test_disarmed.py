@@ -34,7 +34,7 @@ async def answers(served: Served) -> list[tuple[int, str]]:
 
 def says(served: Served, armed: bool) -> bool:
     """Whether the newest state says so."""
-    state = served.container.watch.state()
+    state = served.container.monitor.state()
     return state is not None and state["armed"] is armed
 
 

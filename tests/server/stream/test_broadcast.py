@@ -3,14 +3,14 @@ from hypothesis import strategies as st
 
 from robot_runtime.contract.topics import BY_NAME, Topic
 from robot_runtime.transport.blocks import read_blocks
-from server.stream.broadcast import CHUNK_SECONDS, Lane, TopicHistory
+from server.stream.broadcast import CHUNK_SECONDS, BroadcastBuffer, TopicHistory
 from tests.server.blocks import debug_block, depth_block, link_block, state_block
 
 DEPTH, DEBUG = BY_NAME["depth"], BY_NAME["debug"]
 
 
 def test_lane_keeps_the_newest_messages() -> None:
-    lane = Lane(messages_max=3, bytes_max=10**6)
+    lane = BroadcastBuffer(messages_max=3, bytes_max=10**6)
     blocks = [depth_block(number, 1) for number in range(5)]
     for block in blocks:
         lane.append([block])
@@ -19,7 +19,7 @@ def test_lane_keeps_the_newest_messages() -> None:
 
 
 def test_lane_is_bounded_in_bytes_but_keeps_the_newest_message_however_large() -> None:
-    lane = Lane(messages_max=100, bytes_max=1000)
+    lane = BroadcastBuffer(messages_max=100, bytes_max=1000)
     for number in range(20):
         lane.append([depth_block(number, 10)])
     kept = sum(len(lane.get(number).data) for number in range(lane.first, lane.end))
@@ -29,7 +29,7 @@ def test_lane_is_bounded_in_bytes_but_keeps_the_newest_message_however_large() -
 
 
 def test_one_message_holds_all_blocks_of_a_round() -> None:
-    lane = Lane(messages_max=3, bytes_max=10**6)
+    lane = BroadcastBuffer(messages_max=3, bytes_max=10**6)
     blocks = [depth_block(0, 2), debug_block(0, "a")]
     lane.append(blocks)
     assert lane.get(0).data == blocks[0].data + blocks[1].data
@@ -37,7 +37,7 @@ def test_one_message_holds_all_blocks_of_a_round() -> None:
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=40), st.integers(0, 40))
 def test_lost_samples_are_counted_exactly(counts: list[int], read: int) -> None:
-    lane = Lane(messages_max=5, bytes_max=10**6)
+    lane = BroadcastBuffer(messages_max=5, bytes_max=10**6)
     seen = lane.totals
     first = 0
     for number, count in enumerate(counts):

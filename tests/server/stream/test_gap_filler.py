@@ -54,9 +54,9 @@ class Receiver:
     async def settle(self, count: int) -> None:
         await until(lambda: len(self.delivered) >= count, f"{count} blocks")
 
-    async def _ask(self, wanted: Mapping[str, int]) -> BacklogReply | None:
-        self.asked.append(wanted)
-        answer = self.alive and self.alive.cache.answer(write_question(wanted))
+    async def _ask(self, first_numbers: Mapping[str, int]) -> BacklogReply | None:
+        self.asked.append(first_numbers)
+        answer = self.alive and self.alive.cache.answer(write_question(first_numbers))
         await self.gate.wait()
         return BacklogReply.from_bytes(answer) if answer else None
 
@@ -64,7 +64,7 @@ class Receiver:
 def play(scenario: Callable[[Receiver], Awaitable[None]]) -> None:
     async def run() -> None:
         receiver = Receiver()
-        receiver.source.go_on(None)
+        receiver.source.begin_delivery(None)
         await scenario(receiver)
         await receiver.source.close()
 

@@ -15,7 +15,7 @@ import server.stream.bridge as bridge_module
 from robot_runtime.config import LinkConfig
 from robot_runtime.errors import RefusedError
 from server.platform.settings import Settings
-from server.processes.supervisor import Command
+from server.processes.supervisor import ProcessCommand
 from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
@@ -33,7 +33,7 @@ class Robot:
         self.settings = replace(settings, mode="robot", link=LinkConfig(port=str(port), reset="dtr"))
         code = f"import pathlib, time; p = pathlib.Path({str(self.started)!r})\n"
         code += f"p.write_text(str(pathlib.Path({str(self.uploads)!r}).exists()))\ntime.sleep(600)"
-        self.runtime = Command("runtime", "robot's runtime", (sys.executable, "-c", code))
+        self.runtime = ProcessCommand("runtime", "robot's runtime", (sys.executable, "-c", code))
         self._script = folder / "upload"
         self.upload_does("exit 0")
         monkeypatch.setattr(sys, "executable", str(self._script))
@@ -60,18 +60,18 @@ def robot(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 def runtime_state(served: Served) -> str:
-    part = served.container.parts.get("runtime")
+    part = served.container.processes.get("runtime")
     assert part is not None
     return part.state
 
 
 async def health(served: Served) -> dict[str, tuple[str, str]]:
-    parts = (await served.api.get("/health")).json()["parts"]
-    return {part["name"]: (part["state"], part["text"]) for part in parts}
+    processes = (await served.api.get("/health")).json()["parts"]
+    return {part["name"]: (part["state"], part["text"]) for part in processes}
 
 
 @asynccontextmanager
-async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]:
+async def reserved_reason(served: Served, name: str = "tested") -> AsyncIterator[list[str]]:
     """The board, with a runtime that says after STOP that the robot is disarmed."""
     asked = len(served.runtime.asked)
 
@@ -81,7 +81,7 @@ async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]
         served.runtime.publish(state_block(1000 * (asked + 1), time=now, armed=False))
 
     disarming = asyncio.create_task(disarm())
-    async with served.container.handover.lend(name) as arguments:
+    async with served.container.board_reservation.reserve(name) as arguments:
         yield arguments
     await disarming
 
@@ -89,7 +89,7 @@ async def lent(served: Served, name: str = "tested") -> AsyncIterator[list[str]]
 def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
-        async with lent(served, "grid") as arguments:
+        async with reserved_reason(served, "grid") as arguments:
             assert served.runtime.asked == [("stop", {})]
             assert arguments[:2] == ["--port", robot.settings.link.port]
             assert arguments[-2:] == ["--reset", "dtr"]
@@ -97,16 +97,16 @@ def test_the_board_is_lent_and_comes_back(robot: Robot) -> None:
                 *("paused", True),
                 False,
             )
-            parts = await health(served)
+            processes = await health(served)
             for name in ("runtime", "link", "board"):
-                assert parts[name][0] == "absent"
-                assert "lent to the communication test “grid”" in parts[name][1]
+                assert processes[name][0] == "absent"
+                assert "lent to the communication test “grid”" in processes[name][1]
             for path, body in (("robot/commands/arm", None), ("sessions", {})):
                 answer = await served.api.post(f"/{path}", json=body)
                 assert (answer.status_code, "“grid”" in answer.json()["detail"]) == (409, True)
             assert (await served.api.post("/robot/stop")).status_code == 204
             with pytest.raises(RefusedError, match="grid"):
-                async with served.container.handover.lend("another"):
+                async with served.container.board_reservation.reserve("another"):
                     pass
             assert runtime_state(served) == "paused"
         assert "--restore" in robot.uploads.read_text()
@@ -122,7 +122,7 @@ def test_it_is_not_lent_while_a_session_records(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         assert (await served.api.post("/sessions", json={"name": "dive"})).status_code == 201
         with pytest.raises(RefusedError, match="“dive” is being recorded"):
-            async with served.container.handover.lend("tested"):
+            async with served.container.board_reservation.reserve("tested"):
                 pass
         assert served.runtime.asked == []
 
@@ -139,9 +139,9 @@ def test_it_is_not_lent_before_the_robot_says_that_it_is_disarmed(
         await until(robot.started.exists, "the runtime")
         if state is not None:
             served.runtime.publish(state_block(0, **{"time": served.container.clock.now() + 60} | state))
-            await until(served.container.watch.state, "the state")
+            await until(served.container.monitor.state, "the state")
         with pytest.raises(RefusedError, match="was not disarmed within"):
-            async with served.container.handover.lend("tested"):
+            async with served.container.board_reservation.reserve("tested"):
                 pass
         assert (runtime_state(served), robot.marker.exists()) == ("running", False)
         assert (await served.api.post("/robot/commands/arm")).status_code == 204
@@ -155,7 +155,7 @@ def test_it_is_not_lent_where_nobody_answers_the_stop(robot: Robot, monkeypatch:
     async def scenario(served: Served) -> None:
         served.runtime.gates["stop"].clear()
         with pytest.raises(RefusedError, match="could not be disarmed before the test"):
-            async with served.container.handover.lend("tested"):
+            async with served.container.board_reservation.reserve("tested"):
                 pass
         served.runtime.gates["stop"].set()
         assert not robot.marker.exists()
@@ -167,7 +167,7 @@ def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None
     async def scenario(served: Served) -> None:
         robot.marker.mkdir()
         with pytest.raises(RefusedError, match="firmware-away cannot be written"):
-            async with lent(served):
+            async with reserved_reason(served):
                 pass
         assert not robot.uploads.exists()
         await until(lambda: runtime_state(served) == "running", "the runtime again")
@@ -178,18 +178,18 @@ def test_it_is_not_lent_where_the_disk_takes_no_note_of_it(robot: Robot) -> None
 def test_a_firmware_that_does_not_come_back_is_told_and_the_next_test_tries_again(robot: Robot) -> None:
     async def scenario(served: Served) -> None:
         robot.upload_does("echo avrdude: not in sync; exit 1")
-        async with lent(served):
+        async with reserved_reason(served):
             pass
         assert robot.marker.exists()
         served.runtime.publish(state_block(1500, connected=False, connection="no answer"))
-        await until(lambda: (served.container.watch.state() or {}).get("connected") is False, "the state")
+        await until(lambda: (served.container.monitor.state() or {}).get("connected") is False, "the state")
         state, words = (await health(served))["link"]
         assert state == "failed"
         assert "not in sync" in words
         assert "start the server again" in words
         await until(lambda: runtime_state(served) == "running", "the runtime all the same")
         robot.upload_does("exit 0")
-        async with lent(served):
+        async with reserved_reason(served):
             pass
         assert not robot.marker.exists()
         assert "not in sync" not in (await health(served))["link"][1]
@@ -219,7 +219,7 @@ def test_without_a_port_the_runtime_starts_all_the_same_and_the_note_stays(
     async def scenario(served: Served) -> None:
         await until(robot.started.exists, "the runtime")
         assert (robot.marker.exists(), robot.uploads.exists()) == (True, False)
-        assert served.container.watch.firmware_away is not None
-        assert f"there is no {robot.settings.link.port}" in served.container.watch.firmware_away
+        assert served.container.monitor.firmware_away is not None
+        assert f"there is no {robot.settings.link.port}" in served.container.monitor.firmware_away
 
     robot.play(scenario)

@@ -9,8 +9,8 @@ from sqlalchemy import insert
 
 from server.features.comparison.comparer import Comparer
 from server.features.comparison.definitions import FIGURES
-from server.features.comparison.schemas import Comparison, WantedComparison
-from server.platform.models import Gap, Marker
+from server.features.comparison.schemas import Comparison, ComparisonQuery
+from server.platform.models import BookmarkRow, Gap
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -34,12 +34,12 @@ RISE = (3.889720 - 0.531812) / WN
 
 def compare(store: Store, *sessions: int, **wanted: Any) -> Comparison:
     values = {"sessions": list(sessions), "signals": DEPTH} | wanted
-    return Comparer(store).compare(WantedComparison.model_validate(values))
+    return Comparer(store).compare(ComparisonQuery.model_validate(values))
 
 
 def mark(store: Store, session: int, time: float, text: str) -> None:
     values = {"session_id": session, "time": time, "text": text, "made": 0.0}
-    asyncio.run(store.write(lambda connection: connection.execute(insert(Marker).values(values))))
+    asyncio.run(store.write(lambda connection: connection.execute(insert(BookmarkRow).values(values))))
 
 
 @pytest.fixture

@@ -27,10 +27,10 @@ from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.exports.archive_reader import examine
 from server.features.exports.formats import KINDS, check
 from server.features.exports.mcap_schemas import WELL_KNOWN
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.session import find_row
-from server.platform.models import Marker
+from server.platform.models import BookmarkRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
@@ -83,14 +83,14 @@ def session(store: Store, settings: Settings) -> int:
         ],
     )
     marker = {"session_id": number, "time": 100.5, "text": "here it turned", "made": 1.0}
-    asyncio.run(store.write(lambda connection: connection.execute(insert(Marker).values(marker))))
+    asyncio.run(store.write(lambda connection: connection.execute(insert(BookmarkRow).values(marker))))
     return number
 
 
 def write(store: Store, session: int, **wanted: Any) -> io.BytesIO:
     row = find_row(store, session)
     assert row is not None
-    chosen, output = Wanted(**wanted), io.BytesIO()
+    chosen, output = ExportOptions(**wanted), io.BytesIO()
     check(chosen).write(store, ExportSelection(store, row, chosen), output)
     output.seek(0)
     return output
@@ -102,7 +102,8 @@ def test_json_lines_are_in_order_and_in_si_units(store: Store, session: int) -> 
     row = find_row(store, session)
     assert row is not None
     assert (
-        Counter(one["topic"] for one in samples) == ExportSelection(store, row, Wanted(format="csv")).counts()
+        Counter(one["topic"] for one in samples)
+        == ExportSelection(store, row, ExportOptions(format="csv")).counts()
     )
     assert [one["time"] for one in samples] == sorted(one["time"] for one in samples)
     depth = [one for one in samples if one["topic"] == "depth"]
@@ -150,7 +151,7 @@ def test_parquet_without_its_package_says_what_to_install(monkeypatch: pytest.Mo
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
     with pytest.raises(ExportRequestError, match=r"pip install mucat\[parquet\]"):
-        check(Wanted(format="parquet"))
+        check(ExportOptions(format="parquet"))
 
 
 def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session: int) -> None:
@@ -164,7 +165,7 @@ def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session:
     }
     row = find_row(store, session)
     assert row is not None
-    stored = ExportSelection(store, row, Wanted(format="csv")).counts()
+    stored = ExportSelection(store, row, ExportOptions(format="csv")).counts()
     assert {topic: counts[f"/{topic}"] for topic in stored} == stored
     schemas = {topic: summary.schemas[channel.schema_id] for topic, channel in channels.items()}
     assert {topic: schema.name for topic, schema in schemas.items()} == {

@@ -20,10 +20,10 @@ from sqlmodel import col, select
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
 from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.session import IMPORTING, REMOVING, find_row
-from server.platform.models import Chunk, Gap, Marker, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader, Store, StoreError
@@ -42,7 +42,7 @@ def session(store: Store, settings: Settings) -> int:
 
     def add(connection: Connection) -> None:
         marker = {"session_id": number, "time": 100.5, "text": "here", "made": 1e9}
-        connection.execute(insert(Marker).values(marker))
+        connection.execute(insert(BookmarkRow).values(marker))
         connection.execute(insert(SessionTag).values({"session_id": number, "tag": "pool"}))
 
     asyncio.run(store.write(add))
@@ -55,7 +55,7 @@ def archive(store: Store, session: int, tmp_path: Path) -> Path:
     assert row is not None
     path = tmp_path / "dive.mucat.zip"
     with path.open("wb") as file:
-        write_archive(store, ExportSelection(store, row, Wanted(format="archive")), file)
+        write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), file)
     return path
 
 
@@ -66,7 +66,7 @@ def contents(store: Reader, number: int) -> dict[str, Any]:
         assert row is not None
         told = row.model_dump(exclude={"id", "origin"})
         told["topics"], told["robot_state"] = json.loads(row.topics), json.loads(row.robot_state)
-        for table in (Chunk, Gap, Marker, SessionTag):
+        for table in (Chunk, Gap, BookmarkRow, SessionTag):
             rows = database.exec(select(table).where(col(table.session_id) == number))
             values = [one.model_dump(exclude={"id", "session_id"}) for one in rows]
             told[table.__name__] = sorted(values, key=repr)
@@ -222,7 +222,7 @@ def test_a_session_that_records_is_not_archived(store: Store, session: int) -> N
     assert row is not None
     row.state = "recording"
     with pytest.raises(ExportRequestError, match="Stop the recording"):
-        write_archive(store, ExportSelection(store, row, Wanted(format="archive")), io.BytesIO())
+        write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), io.BytesIO())
 
 
 def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(

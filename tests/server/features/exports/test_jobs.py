@@ -12,7 +12,7 @@ from httpx import AsyncClient
 
 from server.features.exports import export_process as child_module
 from server.features.exports.jobs import JOBS_MAX, KEPT_DAYS
-from server.features.exports.schemas import Job, Wanted
+from server.features.exports.schemas import ExportOptions, Job
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -88,7 +88,7 @@ def finished(settings: Settings, name: str, made: datetime) -> Job:
         id=name,
         session=1,
         session_name="dive",
-        wanted=Wanted(format="jsonl"),
+        wanted=ExportOptions(format="jsonl"),
         state="done",
         progress=1.0,
         made=made,

@@ -17,7 +17,7 @@ from robot_runtime.contract.packets import Motor
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, read_rows, row
 from server.features.exports.description import file_name
-from server.features.exports.schemas import Wanted
+from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
 from server.features.sessions.recorder import Recorder
@@ -53,7 +53,7 @@ def record(
 def make(store: Store, session: int, **wanted: Any) -> ExportSelection:
     row = find_row(store, session)
     assert row is not None
-    return ExportSelection(store, row, Wanted(**{"format": "csv", **wanted}))
+    return ExportSelection(store, row, ExportOptions(**{"format": "csv", **wanted}))
 
 
 def unpack(store: Store, source: ExportSelection) -> zipfile.ZipFile:

@@ -26,7 +26,7 @@ def play(settings: Settings, scenario: Callable[[Served], Awaitable[None]]) -> N
         async with serve(settings) as served:
             await served.heard("stream")
             served.runtime.publish(state_block(0))
-            await until(served.container.watch.state, "the state")
+            await until(served.container.monitor.state, "the state")
             await served.reached()
             whole: dict[str, Any] = {
                 "type": "number",

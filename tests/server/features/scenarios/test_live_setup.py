@@ -18,7 +18,7 @@ from robot_runtime.simulation.water.faults import SimulatedFault
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.requests import changes
 from robot_runtime.simulation.water.simulator import Simulator
-from server.features.scenarios.live_setup import Surroundings
+from server.features.scenarios.live_setup import LiveSetup
 from server.stream.bridge import Bridge
 from tests.stack import ROOT
 
@@ -137,11 +137,11 @@ def board() -> Iterator[EmulatorProcess]:
 
 
 @pytest.fixture
-def surroundings(bridge: DirectBridge, board: EmulatorProcess) -> Surroundings:
-    return Surroundings(cast(Bridge, bridge), board.socket)
+def surroundings(bridge: DirectBridge, board: EmulatorProcess) -> LiveSetup:
+    return LiveSetup(cast(Bridge, bridge), board.socket)
 
 
-def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge) -> None:
+def test_everything_is_set_up(surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge) -> None:
     async def work() -> None:
         await surroundings.prepare(SCENARIO, await surroundings.read(STATE), bridge.send)
 
@@ -168,7 +168,7 @@ def test_everything_is_set_up(surroundings: Surroundings, simulator: Simulator, 
 
 
 def test_everything_is_put_back(
-    surroundings: Surroundings, simulator: Simulator, bridge: DirectBridge, board: EmulatorProcess
+    surroundings: LiveSetup, simulator: Simulator, bridge: DirectBridge, board: EmulatorProcess
 ) -> None:
     async def work() -> list[str]:
         before = await surroundings.read(STATE)
@@ -204,7 +204,7 @@ def test_what_cannot_be_put_back_is_told_and_the_rest_done(
     simulator: Simulator, bridge: DirectBridge
 ) -> None:
     async def work() -> list[str]:
-        surroundings = Surroundings(cast(Bridge, bridge), Path("/nowhere/socket"))
+        surroundings = LiveSetup(cast(Bridge, bridge), Path("/nowhere/socket"))
         before = await surroundings.read(STATE)
         with pytest.raises(RefusedError, match="The emulated board: no emulated board answers"):
             await surroundings.prepare(SCENARIO, before, bridge.send)

@@ -12,7 +12,7 @@ from robot_runtime.clock import SteadyClock
 from server.cli import main
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import ScenarioState
-from server.features.scenarios.simulated_run import Simulated
+from server.features.scenarios.simulated_run import SimulatedExecutor
 from server.features.sessions.recording import Recording
 from server.features.sessions.session import find_row
 from server.platform.notices import Notices
@@ -46,7 +46,7 @@ def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]
     told: list[ScenarioState] = []
 
     async def whole() -> None:
-        simulated = Simulated(settings, store, Notices(SteadyClock(), lambda _: None))
+        simulated = SimulatedExecutor(settings, store, Notices(SteadyClock(), lambda _: None))
         runs = ScenarioRunner(
             simulated, simulated, lambda message: told.append(ScenarioState.model_validate(message))
         )

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 
 from robot_runtime.clock import SimulatedClock
-from server.features.sessions.auto_recording import REST_SECONDS, ArmingRecording
+from server.features.sessions.auto_recording import REST_SECONDS, AutoRecorder
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.session import new_row
 from server.platform.models import SessionRow
@@ -14,7 +14,7 @@ from server.platform.store import Store
 from tests.server.blocks import state_block
 
 
-class Watched:
+class _ProcessGroup:
     """A recorder, and what watches the robot's state for it."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
@@ -22,7 +22,7 @@ class Watched:
         self.settings = settings
         notices = Notices(self.clock, lambda _: None)
         self.recorder = Recorder(store, self.clock, notices, lambda: None)
-        self.arming = ArmingRecording(self.recorder, self.clock, notices, self.make_row)
+        self.arming = AutoRecorder(self.recorder, self.clock, notices, self.make_row)
 
     async def make_row(self, name: str, state: str) -> SessionRow:
         return new_row(self.settings, self.clock, name, "", state, origin="arming")
@@ -42,15 +42,15 @@ class Watched:
         return None if session is None else session.origin
 
 
-def play(store: Store, settings: Settings, scenario: Callable[[Watched], Awaitable[None]]) -> None:
+def play(store: Store, settings: Settings, scenario: Callable[[_ProcessGroup], Awaitable[None]]) -> None:
     async def run() -> None:
-        await scenario(Watched(store, settings))
+        await scenario(_ProcessGroup(store, settings))
 
     asyncio.run(run())
 
 
 def test_it_records_while_armed_and_until_the_fins_rest(store: Store, settings: Settings) -> None:
-    async def scenario(watched: Watched) -> None:
+    async def scenario(watched: _ProcessGroup) -> None:
         await watched.see(armed=False)
         await watched.wait(60)
         assert watched.recording is None
@@ -73,7 +73,7 @@ def test_it_records_while_armed_and_until_the_fins_rest(store: Store, settings: 
 
 
 def test_it_leaves_an_operator_s_session_alone(store: Store, settings: Settings) -> None:
-    async def scenario(watched: Watched) -> None:
+    async def scenario(watched: _ProcessGroup) -> None:
         row = new_row(settings, watched.clock, "mine", "", "null")
         await watched.recorder.start(row)
         await watched.see(armed=True)
@@ -85,7 +85,7 @@ def test_it_leaves_an_operator_s_session_alone(store: Store, settings: Settings)
 
 
 def test_one_that_an_earlier_server_began_is_ended_too(store: Store, settings: Settings) -> None:
-    async def scenario(watched: Watched) -> None:
+    async def scenario(watched: _ProcessGroup) -> None:
         await watched.recorder.start(await watched.make_row("resumed", "null"))
         await watched.see(armed=False)
         await watched.wait(REST_SECONDS)
@@ -95,7 +95,7 @@ def test_one_that_an_earlier_server_began_is_ended_too(store: Store, settings: S
 
 
 def test_an_operator_who_stops_it_is_obeyed(store: Store, settings: Settings) -> None:
-    async def scenario(watched: Watched) -> None:
+    async def scenario(watched: _ProcessGroup) -> None:
         await watched.see(armed=True)
         assert watched.recorder.session is not None
         await watched.recorder.stop(watched.recorder.session.id)

@@ -100,7 +100,7 @@ def test_marks_are_set_live_and_later(settings: Settings) -> None:
 def test_a_session_says_what_is_in_it(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         served.runtime.publish(state_block(0, set_point_default=0.7))
-        await until(lambda: served.container.watch.state() is not None, "the state")
+        await until(lambda: served.container.monitor.state() is not None, "the state")
         session = (await served.api.post("/sessions", json={"name": "whole"})).json()["id"]
         now, recorder = served.container.clock.now(), served.container.recorder
         small = [thumbnail_block(n, now + n, bytes([n])) for n in range(2)]

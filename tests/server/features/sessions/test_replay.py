@@ -21,7 +21,7 @@ from server.features.sessions.recording import Recording
 from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, TooMuchDataError, read_stretch
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Hole, read_timeline
-from server.platform.models import Marker
+from server.platform.models import BookmarkRow
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -288,7 +288,7 @@ def test_the_timeline_has_events_markers_and_holes(store: Store, settings: Setti
 
     def mark(connection: Connection) -> None:
         values = {"session_id": session, "time": 105.5, "text": "here", "made": 1e9}
-        connection.execute(insert(Marker).values(values))
+        connection.execute(insert(BookmarkRow).values(values))
 
     asyncio.run(store.write(mark))
     timeline = read_timeline(read(store, session))

@@ -17,7 +17,7 @@ from robot_runtime.config import SessionsConfig
 from robot_runtime.transport.blocks import Block
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder
-from server.features.sessions.retention import BIN_SECONDS, DAY, Tidying
+from server.features.sessions.retention import BIN_SECONDS, DAY, RetentionWorker
 from server.features.sessions.session import REMOVING, new_row
 from server.platform.models import Chunk, SessionRow
 from server.platform.notices import Notices
@@ -45,7 +45,7 @@ class Keeper:
         self.notices = Notices(self.clock, self._hear)
         self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
         self.catalogue = Catalogue(store, self.recorder)
-        self.tidying = Tidying(store, self.settings, self.notices, self.clock)
+        self.retention = RetentionWorker(store, self.settings, self.notices, self.clock)
 
     def _hear(self, block: Block) -> None:
         self.told += [document["text"] for document in json.loads(block.payload)]
@@ -94,10 +94,10 @@ def test_what_has_been_in_the_bin_for_long_is_removed(keep: Keep) -> None:
             await keeper.record(name, DAY)
         await keeper.catalogue.delete(2)
         await keeper.age_bin(7 * DAY - 1)
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert keeper.names(deleted=True) == ["goes"]
         await keeper.age_bin(7 * DAY)
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
         assert (keeper.count(SessionRow), keeper.count(Chunk)) == (1, 3)
 
@@ -115,14 +115,14 @@ def test_nothing_goes_by_its_age_for_a_day_after_the_clock_has_jumped(keep: Keep
         # As the steady clock goes on, so does the wall clock, but for the one jump.
         for passed, jumped in ((0.0, 0.0), (60.0, years), (DAY - 60.0, years)):
             keeper.clock.forward(passed)
-            await keeper.tidying.tidy(begun + keeper.clock.now() + jumped)
+            await keeper.retention.apply(begun + keeper.clock.now() + jumped)
             assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], ["goes"])
         # A server that is started after the jump sees it by the newest session.
-        another = Tidying(keeper.store, keeper.settings, keeper.notices, keeper.clock)
-        await another.tidy(begun + keeper.clock.now() + years)
+        another = RetentionWorker(keeper.store, keeper.settings, keeper.notices, keeper.clock)
+        await another.apply(begun + keeper.clock.now() + years)
         assert keeper.names(deleted=True) == ["goes"]
         keeper.clock.forward(60.0)
-        await keeper.tidying.tidy(begun + keeper.clock.now() + years)
+        await keeper.retention.apply(begun + keeper.clock.now() + years)
         assert (keeper.names(), keeper.names(deleted=True)) == (["stays"], [])
 
     keep(NO_RULES, scenario)
@@ -140,7 +140,7 @@ def test_recording_goes_on_while_a_session_is_removed_in_small_steps(
         await keeper.catalogue.purge(1)
         assert keeper.names(deleted=True) == []
         await keeper.record("records", 0, chunks=0, stop=False)
-        removal = asyncio.create_task(keeper.tidying.tidy(NOW))
+        removal = asyncio.create_task(keeper.retention.apply(NOW))
         left = []
         for number in range(10):
             keeper.recorder.add(depth_block(100 * number, 100))
@@ -167,7 +167,7 @@ def test_a_removal_that_was_cut_off_is_taken_up_again(keep: Keep) -> None:
         await keeper.store.write(
             lambda connection: connection.exec_driver_sql("DELETE FROM chunk WHERE id = 1")
         )
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert (keeper.count(SessionRow), keeper.count(Chunk)) == (0, 0)
 
     keep(NO_RULES, scenario)
@@ -186,7 +186,7 @@ def test_room_is_given_back_to_the_disk(keep: Keep, monkeypatch: pytest.MonkeyPa
         full, held = pages("page_count"), keeper.catalogue.find(1).bytes // pages("page_size")
         await keeper.catalogue.delete(1)
         await keeper.catalogue.purge(1)
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert pages("freelist_count") == 0
         assert pages("page_count") <= full - held
 
@@ -201,7 +201,7 @@ def test_old_sessions_go_but_never_what_is_kept_tagged_or_recording(keep: Keep) 
         await keeper.catalogue.change(2, kept=True)
         await keeper.catalogue.change(3, tags=["thesis"])
         await keeper.record("records", 40 * DAY, stop=False)
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert keeper.names() == ["records", "young", "tagged", "kept"]
         assert keeper.names(deleted=True) == ["old"]
         assert [text for text in keeper.told if text.startswith("Older")] == [
@@ -221,26 +221,26 @@ def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_go
         nonlocal free
         for place, name in enumerate(("oldest", "older", "newest")):
             await keeper.record(name, (9 - place) * DAY, chunks=60)
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert keeper.names(deleted=True) == []
         size = keeper.catalogue.find(1).bytes
         free = 10**9 - size - 16_384
-        await keeper.tidying.tidy(NOW)
+        await keeper.retention.apply(NOW)
         assert (keeper.names(), keeper.names(deleted=True)) == (["newest"], ["older", "oldest"])
         # Nothing more goes while these wait.
         keeper.clock.forward(BIN_SECONDS)
-        await keeper.tidying.tidy(NOW + BIN_SECONDS - 1)
+        await keeper.retention.apply(NOW + BIN_SECONDS - 1)
         assert len(keeper.names(deleted=True)) == 2
         await keeper.catalogue.restore(2)
         await keeper.catalogue.change(2, kept=True)
         free = 10**9 - size
-        await keeper.tidying.tidy(NOW + BIN_SECONDS)
+        await keeper.retention.apply(NOW + BIN_SECONDS)
         assert (keeper.names(), keeper.names(deleted=True)) == (["newest", "older"], [])
         free = 0
         await keeper.catalogue.change(3, tags=["mine"])
         keeper.clock.forward(BIN_SECONDS)
         for _ in range(2):
-            await keeper.tidying.tidy(NOW + 2 * BIN_SECONDS)
+            await keeper.retention.apply(NOW + 2 * BIN_SECONDS)
         assert len(keeper.names()) == 2
         assert len([text for text in keeper.told if "Room is short" in text]) == 1
 

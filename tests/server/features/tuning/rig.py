@@ -6,7 +6,7 @@ from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.packets import Motor
 from server.features.tuning.curve import Gathering
 from server.features.tuning.evaluation import measure_run
-from server.features.tuning.schemas import LimitCycleFound, RelayStart, StepStart
+from server.features.tuning.schemas import MeasuredLimitCycle, RelayStart, StepStart
 from tests.runtime.control.flight import Flight
 
 OVER = ("complete", "stopped", "failed")
@@ -39,7 +39,7 @@ class Rig:
         )
         return {name: figure["value"] for name, figure in self._run(wanted)["figures"].items()}
 
-    def relay(self, amplitude: float, cycles: int = 4) -> LimitCycleFound:
+    def relay(self, amplitude: float, cycles: int = 4) -> MeasuredLimitCycle:
         """The limit cycle of a relay about 0.6 m."""
         wanted = RelayStart(
             kind="relay",
@@ -51,7 +51,7 @@ class Rig:
             low=0.0,
             high=2.5,
         )
-        return LimitCycleFound(**self._run(wanted)["cycle"])
+        return MeasuredLimitCycle(**self._run(wanted)["cycle"])
 
     def use(self, controller: str, gains: dict[str, float]) -> None:
         """Steer the depth by this controller from now on."""

@@ -60,8 +60,11 @@ def get(stack: Stack, number: int) -> dict[str, Any]:
 def is_back(stack: Stack) -> bool:
     """The robot's firmware answers the runtime, and is disarmed."""
     answer = stack.api.get("/robot")
-    parts = {part["name"]: part["state"] for part in stack.api.get("/health").json()["parts"]}
-    if answer.status_code != 200 or not parts["runtime"] == parts["link"] == parts["board"] == "ok":
+    processes = {part["name"]: part["state"] for part in stack.api.get("/health").json()["parts"]}
+    if (
+        answer.status_code != 200
+        or not processes["runtime"] == processes["link"] == processes["board"] == "ok"
+    ):
         return False
     assert answer.json()["armed"] is False
     return answer.json()["connected"] is True
@@ -78,10 +81,10 @@ def test_a_server_killed_in_the_middle_brings_the_firmware_back_at_its_next_star
         assert (link["state"], "“on the robot”" in link["text"]) == ("absent", True)
         assert stack.api.post("/robot/commands/arm").status_code == 409
         assert stack.api.post("/sessions", json={}).status_code == 409
-        lab = stack.child("robot_runtime.experiments.comm_test")
+        comm_tests = stack.child("robot_runtime.experiments.comm_test")
         board = stack.child("build/board")
         stack.kill()
-        wait(lambda: not alive(lab.pid), "the test's process to end with its server")
+        wait(lambda: not alive(comm_tests.pid), "the test's process to end with its server")
         stack.wait_ready()
         assert alive(board.pid)
         wait(lambda: is_back(stack), "the robot")

@@ -93,7 +93,7 @@ def test_a_document_is_run_test_by_test_and_every_page_sees_it(settings: Setting
             assert (active["test"], active["tests"], active["cells"], active["done"]) == (0, 2, 2, 2)
             assert active["remaining"] > 0
             assert told[-1]["cell"]["run"] == first
-            await until(lambda: not served.container.lab.busy, "the end", 90)
+            await until(lambda: not served.container.comm_tests.busy, "the end", 90)
 
             second, one = [run for run in await get(served, "runs") if not run["sample"]]
             assert (one["id"], one["state"], one["cells"], one["cells_done"]) == (first, "complete", 2, 2)
@@ -129,7 +129,7 @@ def test_cancelled_in_the_middle_of_a_cell_it_keeps_the_others(settings: Setting
             number = await start(served, ENDLESS, QUICK)
             await news_until(socket, cell=0)
             assert (await served.api.post("/comm-tests/cancel")).status_code == 204
-            await until(lambda: not served.container.lab.busy, "the end", 30)
+            await until(lambda: not served.container.comm_tests.busy, "the end", 30)
             async with watching(served) as late:
                 assert (await next_text(late, "comm_test"))["active"] is None
             run, *others = [run for run in await get(served, "runs") if not run["sample"]]
@@ -150,21 +150,21 @@ def test_a_lab_that_is_killed_costs_the_run_and_nothing_else(settings: Settings)
         async with serve(settings) as served, watching(served) as socket:
             number = await start(served, ENDLESS)
             await news_until(socket, cell=0)
-            (lab,) = [
+            (comm_tests,) = [
                 child
                 for child in psutil.Process().children()
                 if "robot_runtime.experiments.comm_test" in " ".join(child.cmdline())
             ]
-            boards = lab.children(recursive=True)
-            lab.send_signal(signal.SIGKILL)
-            await until(lambda: not served.container.lab.busy, "the end", 30)
+            boards = comm_tests.children(recursive=True)
+            comm_tests.send_signal(signal.SIGKILL)
+            await until(lambda: not served.container.comm_tests.busy, "the end", 30)
             run = await get(served, f"runs/{number}")
             assert (run["state"], run["cells_done"]) == ("failed", 1)
             assert "was ended by signal SIGKILL" in run["problem"]
             assert boards
             await until(lambda: not any(board.is_running() for board in boards), "the boards' end")
             await start(served, QUICK)
-            await until(lambda: not served.container.lab.busy, "the next run's end", 60)
+            await until(lambda: not served.container.comm_tests.busy, "the next run's end", 60)
             assert (await get(served, "runs"))[0]["state"] == "complete"
 
     asyncio.run(scenario())
@@ -203,7 +203,7 @@ def test_what_a_broken_lab_says_is_told_and_bounded(
     async def scenario() -> None:
         async with serve(settings) as served:
             number = await start(served, QUICK)
-            await until(lambda: not served.container.lab.busy, "the end")
+            await until(lambda: not served.container.comm_tests.busy, "the end")
             run = await get(served, f"runs/{number}")
             assert run["state"] == "failed"
             assert words in run["problem"]

@@ -17,7 +17,7 @@ from robot_runtime.transport.blocks import Block
 from server.features.parameters.changes import Changes
 from server.features.tuning.curve import Gathering
 from server.features.tuning.figure_definitions import is_angle
-from server.features.tuning.runs import TuningRunner
+from server.features.tuning.runs import TuningStore
 from server.features.tuning.schemas import (
     ActiveTuning,
     Force,
@@ -44,7 +44,7 @@ OVER = ("complete", "stopped", "failed")
 @dataclass(slots=True)
 class _Active:
     run: int
-    wanted: StepStart | RelayStart
+    experiment: StepStart | RelayStart
     gathering: Gathering
     began: float
     since: float
@@ -64,23 +64,23 @@ class _Active:
         """As the pages are told."""
         return ActiveTuning(
             run=self.run,
-            kind=self.wanted.kind,
-            loop=self.wanted.loop,
+            kind=self.experiment.kind,
+            loop=self.experiment.loop,
             phase=self.phase,
             began=self.began,
             since=self.since,
             progress=round(self.progress, 3),
             cycles=self.cycles,
-            settings=self.wanted.model_dump(),
+            settings=self.experiment.model_dump(),
         )
 
 
-class TuningLab:
+class TuningRunner:
     """At most one run at a time; `tell` hears of all progress, `occupied` says why none may begin now."""
 
     def __init__(
         self,
-        runs: TuningRunner,
+        runs: TuningStore,
         bridge: Bridge,
         changes: Changes,
         clock: Clock,
@@ -106,18 +106,20 @@ class TuningLab:
         active = None if self._active is None else self._active.describe()
         return TuningState(active=active, last=self._last)
 
-    async def start(self, who: str, wanted: StepStart | RelayStart) -> int:
+    async def start(self, who: str, experiment: StepStart | RelayStart) -> int:
         """Begin a run; its number. Raises RefusedError, RuntimeSilentError, StoreError."""
         self._check()
         self._starting = True
         try:
             # What the server was told last may be older than the controller that was just chosen.
-            force, limits = _in_force(await self._bridge.query("state"), wanted.loop)
-            run = await self.runs.begin(wanted, _name(wanted, force), force, limits)
+            force, limits = _in_force(await self._bridge.query("state"), experiment.loop)
+            run = await self.runs.begin(experiment, _name(experiment, force), force, limits)
             now = self._clock.now()
-            self._active = _Active(run, wanted, Gathering(wanted.loop), began=now, since=now, heard=now)
+            self._active = _Active(
+                run, experiment, Gathering(experiment.loop), began=now, since=now, heard=now
+            )
             try:
-                await self._changes.command(who, wanted.command(run))
+                await self._changes.command(who, experiment.command(run))
             except BaseException:
                 self._active = None
                 await asyncio.shield(self.runs.forget(run))
@@ -150,8 +152,8 @@ class TuningLab:
         """Something came from the robot."""
         active = self._active
         if block.topic.name == "experiment":
-            for told in json.loads(block.payload):
-                self._hear(told)
+            for document in json.loads(block.payload):
+                self._hear(document)
         elif active is not None and not active.over:
             active.gathering.see(block)
 
@@ -190,20 +192,24 @@ class TuningLab:
         if (why := self._occupied()) is not None:
             raise RefusedError(why)
 
-    def _hear(self, told: dict[str, Any]) -> None:
+    def _hear(self, document: dict[str, Any]) -> None:
         active = self._active
-        if active is None or told["number"] != active.run:
+        if active is None or document["number"] != active.run:
             # Of a server that was killed, or of a start that this one did not hear the answer to.
-            self._stray = self._stray or told["phase"] not in OVER
+            self._stray = self._stray or document["phase"] not in OVER
             return
         if active.over:
             return
         active.heard = self._clock.now()
-        active.phase, active.since, active.progress = told["phase"], told["since"], told["progress"]
-        active.cycles, active.text = told["cycles"], told["text"]
+        active.phase, active.since, active.progress = (
+            document["phase"],
+            document["since"],
+            document["progress"],
+        )
+        active.cycles, active.text = document["cycles"], document["text"]
         active.starts.setdefault(active.phase, active.since)
         active.began = min(active.starts.values())
-        if told["phase"] in OVER:
+        if document["phase"] in OVER:
             self._end(active)
         self.announce()
 
@@ -218,7 +224,7 @@ class TuningLab:
             from server.features.tuning.evaluation import measure_run
 
             found, curve, problem = await asyncio.to_thread(
-                measure_run, active.wanted, active.gathering, active.starts, state, problem
+                measure_run, active.experiment, active.gathering, active.starts, state, problem
             )
             state = "failed" if problem and state == "complete" else state
             await self.runs.end(active.run, state, problem, found, curve)
@@ -235,10 +241,11 @@ class TuningLab:
             self.announce()
 
 
-def _name(wanted: StepStart | RelayStart, force: Force) -> str:
-    if wanted.kind == "step":
-        return f"{force.title}, {_place(wanted.start, wanted.loop)} to {_place(wanted.target, wanted.loop)}"
-    return f"Relay ±{100 * wanted.amplitude:g} % at {_place(wanted.set_point, wanted.loop)}"
+def _name(experiment: StepStart | RelayStart, force: Force) -> str:
+    if experiment.kind == "step":
+        start, target = (_place(value, experiment.loop) for value in (experiment.start, experiment.target))
+        return f"{force.title}, {start} to {target}"
+    return f"Relay ±{100 * experiment.amplitude:g} % at {_place(experiment.set_point, experiment.loop)}"
 
 
 def _place(value: float, loop: str) -> str:

@@ -30,7 +30,7 @@ from server.processes.process import PipedProcess, describe_status
 log = logging.getLogger(__name__)
 
 LINE_BYTES_MAX = 100_000
-WORDS_KEPT = 5
+WORDS_MOST = 5
 """Lines that are no JSON are the last words of a process that fails."""
 TEST_SECONDS_MAX = 86_400.0
 """s of the tests' own time, all cells together: a board that is lent is to come back within a day."""
@@ -38,12 +38,12 @@ CANCEL_SECONDS = 45.0
 """After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
 
 
-class LabError(Exception):
+class CommTestError(Exception):
     """The test cannot go on; the text says why."""
 
 
 Tell = Callable[[dict[str, Any]], None]
-Lend = Callable[[str], AbstractAsyncContextManager[list[str]]]
+Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
 """Called with the test's name; while it is entered the robot's board is the lab's, and its value are the
 lab's arguments for it. Raises RefusedError where the board cannot be had."""
 
@@ -65,7 +65,7 @@ class Progress:
     def describe(self, now: float) -> dict[str, Any]:
         """As the pages are told; `remaining` is for all tests of the document, null while unknown."""
         elapsed = now - self.began
-        left = sum(map(sum, self.weights)) - self.done_weight
+        remaining = sum(map(sum, self.weights)) - self.done_weight
         return {
             "run": self.run,
             "name": self.tests[self.test].name,
@@ -75,20 +75,22 @@ class Progress:
             "cells": len(self.weights[self.test]),
             "done": self.done,
             "elapsed": elapsed,
-            "remaining": elapsed * left / self.done_weight if self.done_weight else None,
+            "remaining": elapsed * remaining / self.done_weight if self.done_weight else None,
             "phase": {str(number): phase for number, phase in self.phases.items()},
         }
 
 
-class Lab:
+class CommTestRunner:
     """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
 
-    def __init__(self, settings: Settings, runs: CommTestStore, clock: Clock, tell: Tell, lend: Lend) -> None:
+    def __init__(
+        self, settings: Settings, runs: CommTestStore, clock: Clock, tell: Tell, reserve: Reserve
+    ) -> None:
         self.runs = runs
         self._settings = settings
         self._clock = clock
         self._tell = tell
-        self._lend = lend
+        self._reserve = reserve
         self._task: asyncio.Task[None] | None = None
         self._process: PipedProcess | None = None
         self._cancelled = False
@@ -134,21 +136,21 @@ class Lab:
         progress = Progress(tests, place, self._clock.now(), weights)
         try:
             if place == "robot":
-                async with self._lend(tests[0].name) as arguments:
+                async with self._reserve(tests[0].name) as arguments:
                     await self._perform(progress, text, arguments, began)
             else:
                 await self._perform(progress, text, [], began)
-        except (RefusedError, StoreError, LabError, OSError) as problem:
+        except (RefusedError, StoreError, CommTestError, OSError) as problem:
             log.warning("the communication test ended: %s", problem)
             if progress.run is not None:
                 # Where even that cannot be stored, the next start marks it as interrupted.
                 with suppress(StoreError):
                     await self.runs.end(progress.run, "failed", str(problem))
             if not began.done():
-                told = (
+                error = (
                     problem if isinstance(problem, RefusedError | StoreError) else RefusedError(str(problem))
                 )
-                began.set_exception(told)
+                began.set_exception(error)
         finally:
             self._tell({"op": "comm_test", "active": None, "cell": None})
             if not began.done():
@@ -181,13 +183,13 @@ class Lab:
             ending.cancel()
             self._process.close()
             self._process = None
-        said = " / ".join(output.words)
+        words = " / ".join(output.words)
         if progress.run is not None:
             state: End = "cancelled" if self._cancelled else "failed"
-            await self._end(progress, state, f"It broke off ({describe_status(status)}). {said}".strip())
+            await self._end(progress, state, f"It broke off ({describe_status(status)}). {words}".strip())
         elif not began.done():
-            why = "It was cancelled." if self._cancelled else said or f"It {describe_status(status)}."
-            raise LabError(f"The communication test could not begin. {why}")
+            why = "It was cancelled." if self._cancelled else words or f"It {describe_status(status)}."
+            raise CommTestError(f"The communication test could not begin. {why}")
 
     async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int:
         status = await process.wait()
@@ -204,7 +206,7 @@ class Lab:
         try:
             cell = await self._apply(progress, event, words, began)
         except (LookupError, TypeError, ValueError) as problem:
-            raise LabError(f"What the test told cannot be understood: {problem!r}") from problem
+            raise CommTestError(f"What the test told cannot be understood: {problem!r}") from problem
         active = progress.describe(self._clock.now()) if progress.run is not None else None
         shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
         self._tell({"op": "comm_test", "active": active, "cell": shown})
@@ -263,7 +265,7 @@ class _Lines:
     """Cuts what a process prints into lines; `words` are the last that are no events, for when it fails."""
 
     def __init__(self) -> None:
-        self.words: deque[str] = deque(maxlen=WORDS_KEPT)
+        self.words: deque[str] = deque(maxlen=WORDS_MOST)
         self._lines: asyncio.Queue[bytes | None] = asyncio.Queue()
         self._partial = b""
 
