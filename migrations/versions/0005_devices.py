@@ -1,4 +1,4 @@
-"""Who has signed in: browsers and programs, their roles, and hashes of what they prove it with."""
+"""Paired browsers and programs, their roles, and hashes of their secrets."""
 
 import sqlalchemy as sa
 from alembic import op

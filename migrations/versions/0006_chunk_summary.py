@@ -1,4 +1,4 @@
-"""What a session holds of each topic is read from an index alone: its chunks need not be looked at."""
+"""An index that holds a summary of a session's topics, so that chunks are not read for it."""
 
 from alembic import op
 

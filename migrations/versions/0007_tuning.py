@@ -1,4 +1,4 @@
-"""What people tune and arrange: parameters (profiles, changes), tuning runs, layouts of panels."""
+"""Parameters (profiles, changes), tuning runs, layouts of panels."""
 
 import sqlalchemy as sa
 from alembic import op

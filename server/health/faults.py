@@ -1,4 +1,4 @@
-"""Every fault of the processes around the robot that the server looks for."""
+"""Faults of the processes around the robot that the server detects."""
 
 from robot_runtime.control.alarms import FaultText
 

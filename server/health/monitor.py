@@ -1,4 +1,4 @@
-"""What works and what does not, told from processes that live and samples that keep coming."""
+"""Health of the parts, from living processes and arriving samples."""
 
 import json
 from typing import Any, Literal
@@ -47,7 +47,7 @@ class Health(BaseModel):
 
 
 class HealthMonitor:
-    """Remembers the newest of what arrives, and judges by it."""
+    """Keeps the newest block of each topic, and derives the health of each part."""
 
     def __init__(self, settings: Settings, clock: Clock, store: Store, parts: ProcessSupervisor) -> None:
         self._settings = settings
@@ -65,7 +65,7 @@ class HealthMonitor:
         """Why the board does not run the robot's firmware, and what to do; None where it does."""
 
     def see(self, block: Block) -> None:
-        """Take note of a block."""
+        """Note a block."""
         now = self._clock.now()
         self._newest[block.topic.name] = (now, block)
         if block.topic.sender in self.last_heard:
@@ -92,7 +92,7 @@ class HealthMonitor:
             raise RefusedError(f"{why} It is refused while the robot is armed: press STOP first.")
 
     def health(self) -> Health:
-        """How everything does now."""
+        """The health of every part now."""
         parts = [
             PartHealth(name="server", state="ok", text="It answers."),
             self._database(),
@@ -189,7 +189,7 @@ class HealthMonitor:
         if part.state == "failed":
             return PartHealth(name="scene", state="failed", text=_say_failed(part))
         if part.state == "running":
-            return PartHealth(name="scene", state="ok", text="It renders what somebody asks for.")
+            return PartHealth(name="scene", state="ok", text="It renders on demand.")
         return self._silent("scene", part, "")
 
     def _fresh(self, topic: str, seconds: float) -> bool:

@@ -1,4 +1,4 @@
-"""How everything does."""
+"""Route of the robot's health."""
 
 from fastapi import APIRouter
 

@@ -1,4 +1,4 @@
-"""Looks a few times a second for what is wrong around the robot, and keeps the server's alarms by it."""
+"""Checks the robot's processes and disk four times a second, and raises the server's alarms."""
 
 import asyncio
 import shutil
@@ -25,7 +25,7 @@ DOWN = {name: f"{name}_down" for name in ("runtime", "board", "simulator", "scen
 
 
 class Watchdog:
-    """Looks by `look`, and for ever by `run`."""
+    """Raises and clears alarms; ends a runtime that hangs."""
 
     def __init__(
         self,
@@ -47,13 +47,13 @@ class Watchdog:
         """s; for which this server, itself awake, has heard nothing of the runtime, beyond what is normal."""
 
     async def run(self) -> None:
-        """Look for ever."""
+        """Check every `PERIOD`, for ever."""
         while True:
             self.check_once()
             await asyncio.sleep(PERIOD)
 
     def check_once(self) -> None:
-        """Once, now."""
+        """Check once, now."""
         previous, self._checked = self._checked, self._clock.now()
         if self._checked - previous > SILENT_SECONDS / 2:
             # Whoever was held up has not listened either.

@@ -13,7 +13,7 @@ from server.platform.errors import ApiError
 
 
 def add_error_handlers(app: FastAPI) -> None:
-    """Let the application answer the server's errors, the runtime's, and requests that are not valid."""
+    """Add answers for the server's errors, the runtime's, and invalid requests."""
     app.add_exception_handler(ApiError, _answer_api_error)
     app.add_exception_handler(RefusedError, _answer_refusal)
     app.add_exception_handler(ConfigError, _answer_document_error)

@@ -1,4 +1,4 @@
-"""How errors look in the interface."""
+"""Schema of error answers."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from server.platform.errors import ApiError
 
 
 class Problem(BaseModel):
-    """What happened, why, and what to do."""
+    """An error: its cause, and the remedy."""
 
     detail: str
 

@@ -1,4 +1,4 @@
-"""How a request is refused before the application sees it."""
+"""Refusal of a request before the application sees it."""
 
 import json
 

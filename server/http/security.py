@@ -1,4 +1,4 @@
-"""Who may talk to the server at all: checks of Host and Origin, and headers that bind the page.
+"""Checks of Host and Origin, and headers that bind the page.
 
 Host guards against DNS rebinding, where a foreign name is made to point here; Origin against foreign pages
 in the operator's browser. Nothing is trusted by its address, and X-Forwarded-* are not looked at.

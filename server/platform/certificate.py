@@ -1,4 +1,4 @@
-"""TLS with a certificate of the robot's own, which nobody but this robot vouches for.
+"""TLS with a certificate of the robot's own, signed by itself.
 
 It is made by the program `openssl`, which every Linux has: the Python package that could do it is Rust and
 C, without wheels for the Raspberry Pi Zero's ARMv6.

@@ -13,7 +13,7 @@ from server.platform.settings import DataFolder
 
 Kind = Literal["backup", "before", "replaced"]
 """Made by hand, before an upgrade, and by a restore of what was there."""
-KEPT = 5
+COPIES_MOST = 5
 """Of each kind, in the data folder."""
 CHECKSUM = ".sha256"
 SUM_BYTES = 1 << 20
@@ -53,7 +53,7 @@ def place(folder: DataFolder, kind: Kind, revision: str = "") -> Path:
 def thin_out(folder: DataFolder, kind: Kind) -> None:
     """Remove the oldest copies of this kind. Raises OSError."""
     copies = sorted(folder.backups.glob(f"mucat-{kind}-*.db"), key=lambda path: path.stem[-19:])
-    for copy in copies[:-KEPT]:
+    for copy in copies[:-COPIES_MOST]:
         for part in folder.backups.glob(f"{copy.name}*"):
             part.unlink()
 

@@ -20,12 +20,12 @@ class ApiError(Exception):
 
     @property
     def detail(self) -> str:
-        """What the answer says."""
+        """The text of the answer."""
         return str(self)
 
     @property
     def headers(self) -> Mapping[str, str]:
-        """What the answer's header has beside the usual."""
+        """Additional headers of the answer."""
         return {}
 
 

@@ -61,7 +61,7 @@ class SessionTag(SQLModel, table=True):
 
 
 class BookmarkRow(SQLModel, table=True):
-    """A moment (s, steady clock) that somebody pointed out, and when it was made (UTC, s since 1970)."""
+    """A bookmark: a moment (s, steady clock) with a text, and when it was made (UTC, s since 1970)."""
 
     __tablename__ = "marker"
 
@@ -192,7 +192,7 @@ class DeviceRow(SQLModel, table=True):
 
 
 class ProfileRow(SQLModel, table=True):
-    """Parameters that somebody kept under a name; `parameters` as JSON. Time is UTC (s since 1970)."""
+    """Parameters stored under a name; `parameters` as JSON. Time is UTC (s since 1970)."""
 
     __tablename__ = "profile"
     __table_args__ = (UniqueConstraint("name", name="profile_name"),)
@@ -205,7 +205,7 @@ class ProfileRow(SQLModel, table=True):
 
 
 class ParameterChangeRow(SQLModel, table=True):
-    """Parameters that somebody changed together; `changed` as JSON. Time is UTC (s since 1970).
+    """Parameters that were changed together; `changed` as JSON. Time is UTC (s since 1970).
 
     `run` is the runtime's, `why` the profile that was restored, `undone` who took the change back.
     """

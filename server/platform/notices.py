@@ -1,4 +1,4 @@
-"""What the server itself has to tell: a topic like any other, shown on the page and kept in recordings."""
+"""The server's own messages: a topic like any other, shown on the page and recorded."""
 
 from collections.abc import Callable
 

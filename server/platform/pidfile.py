@@ -1,4 +1,4 @@
-"""Files that tell the next server which parts of a killed one still run."""
+"""PID files, by which the next server finds the processes of a killed one."""
 
 import json
 import os
@@ -71,7 +71,7 @@ def pid_file(run: Path, name: str) -> PidFile:
 
 
 def running_parts(run: Path) -> dict[str, Running]:
-    """What still runs, by the parts' names."""
+    """The processes that still run, by name."""
     found = {path.stem: PidFile(path).read() for path in run.glob("*.pid")}
     return {name: running for name, running in found.items() if running is not None}
 

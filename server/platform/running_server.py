@@ -23,7 +23,7 @@ def announce(settings: Settings) -> None:
 
 
 def server_runs(folder: DataFolder) -> bool:
-    """Whether a server works on this folder now."""
+    """True while a server uses this folder."""
     if not folder.path.is_dir():
         return False
     try:
@@ -40,7 +40,7 @@ def ask(
     body: Mapping[str, Any] | None = None,
     seconds: float = ASK_SECONDS,
 ) -> Any:
-    """What the server answers to a request below /api; None where it has nothing to say.
+    """The server's answer to a request below /api; None where it is empty.
 
     Raises SetupError where none runs, or it refuses, in its words.
     """
@@ -51,7 +51,7 @@ def ask(
 
 
 def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
-    """What it answers to a file that is posted to it. Raises SetupError as `ask`, OSError."""
+    """The server's answer to a posted file. Raises SetupError as `ask`, OSError."""
     with file.open("rb") as body:
         headers = {"content-type": "application/zip", "content-length": str(file.stat().st_size)}
         return _send(folder, "POST", path, body, headers, seconds)

@@ -38,7 +38,7 @@ def prepare(folder: DataFolder) -> None:
 
 
 def explain(problem: sqlite3.DatabaseError | OSError, folder: Path) -> str:
-    """What is wrong, and what to do."""
+    """A sentence for a person: the cause, and the remedy."""
     words = str(problem)
     if "disk is full" in words or (isinstance(problem, OSError) and problem.errno == errno.ENOSPC):
         return f"the disk that holds {folder} is full. Free some space, and try again."

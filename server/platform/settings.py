@@ -1,4 +1,4 @@
-"""What the server takes from `robot.toml`, the environment and its command line."""
+"""The server's settings from `robot.toml`, the environment and the command line."""
 
 import os
 import re
@@ -47,7 +47,7 @@ class DataFolder:
 
     @property
     def logs(self) -> Path:
-        """What the supervised processes print."""
+        """Output of the supervised processes."""
         return self.path / "logs"
 
     @property
@@ -82,7 +82,7 @@ class DataFolder:
 
     @property
     def token(self) -> Path:
-        """What the shell of this computer proves itself with to the running server; for its user alone."""
+        """The token of this computer's shell for the running server; readable by its user alone."""
         return self.path / "server.token"
 
     @property
@@ -137,13 +137,13 @@ class DataFolder:
 
     @property
     def board_eeprom(self) -> Path:
-        """What the emulated board remembers without power."""
+        """The emulated board's EEPROM."""
         return self.path / "board.eeprom"
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How this server is to run; `build` is the folder that holds the emulated board and the firmware."""
+    """The server's settings; `build` is the folder that holds the emulated board and the firmware."""
 
     data: DataFolder
     config: Path
@@ -162,12 +162,12 @@ class Settings:
 
     @property
     def scheme(self) -> str:
-        """What its addresses begin with."""
+        """The scheme of its addresses."""
         return "https" if self.tls else "http"
 
     @property
     def only_here(self) -> bool:
-        """Whether no other computer can reach the server."""
+        """True where no other computer can reach the server."""
         return is_loopback(self.host)
 
     def base_url(self, called: str = "") -> str:
@@ -181,12 +181,12 @@ class Settings:
 
     @property
     def emulated_board(self) -> bool:
-        """Whether the robot's board is an emulated one."""
+        """True where the robot's board is an emulated one."""
         return self.mode == "emulated" or (self.mode == "hil" and self.hil.board == "emulated")
 
     @property
     def in_the_loop(self) -> bool:
-        """Whether the board's sensors are a simulator's."""
+        """True where a simulator feeds the board's sensors."""
         return self.mode == "hil"
 
 
@@ -244,7 +244,7 @@ def _allowed_hosts(names: list[str], host: str) -> tuple[str, ...]:
 
 
 def _own_names() -> list[str]:
-    """How other computers may call this one: its address in the network that its packets leave by, and its
+    """This computer's address in the network that its packets leave by, and its
     names. No foreign page can make a browser take such an address for the page's own.
     """
     name = socket.gethostname().lower()
@@ -258,7 +258,7 @@ def _own_names() -> list[str]:
 
 
 def is_loopback(name: str) -> bool:
-    """Whether this address or name always means the computer that uses it."""
+    """True where this address or name always means the computer itself."""
     try:
         return ip_address(name.strip("[]")).is_loopback
     except ValueError:

@@ -50,7 +50,7 @@ class Reader:
             raise StoreError(_explain(problem)) from problem
 
     def close(self) -> None:
-        """Let go of the database. Call it once."""
+        """Close the database. Call it once."""
         self._reader.dispose()
 
 

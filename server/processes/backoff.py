@@ -1,4 +1,4 @@
-"""How long to wait before something that has died is started again."""
+"""Pauses before a process that has died is started again."""
 
 FIRST = 0.1
 """s after the second death; after the first there is nothing to wait for."""
@@ -17,7 +17,7 @@ class Backoff:
         self._next = 0.0
 
     def after(self, lived: float, *, killed: bool) -> float:
-        """s to wait after a life of `lived` s; `killed` tells whether it was ended by a signal."""
+        """s to wait after a life of `lived` s; `killed`: a signal ended it."""
         if lived >= STEADY_SECONDS:
             self._next = 0.0
         pause = min(self._next, KILLED_MAX) if killed else self._next

@@ -1,4 +1,4 @@
-"""What a supervised process prints: it writes to a file itself, so that it can do without the server."""
+"""Logs of supervised processes: each writes to its file itself, and needs no server for it."""
 
 import os
 from pathlib import Path

@@ -56,7 +56,7 @@ class Process:
         self._watched.signal(number)
 
     def close(self) -> None:
-        """End what still runs, and let go of everything."""
+        """End the group, and release all resources."""
         self._watched.close()
 
     def _reap(self) -> None:
@@ -78,7 +78,7 @@ class PipedProcess(Process):
         self._loop.add_reader(self._pipe, self._read)
 
     def close(self) -> None:
-        """End what still runs, and let go of everything."""
+        """End the group, and release all resources."""
         super().close()
         self._loop.remove_reader(self._pipe)
         assert self._popen.stdout is not None
@@ -113,7 +113,7 @@ class AdoptedProcess:
         self._watched = _ProcessGroup(pid, self._wait_killed)
 
     async def wait(self) -> None:
-        """Wait for its end. How it ended is known to nobody here."""
+        """Wait for its end. Its exit status is not available."""
         await self._watched.wait()
 
     def signal(self, number: Signals) -> None:
@@ -121,7 +121,7 @@ class AdoptedProcess:
         self._watched.signal(number)
 
     def close(self) -> None:
-        """End what still runs, and let go of everything."""
+        """End the group, and release all resources."""
         self._watched.close()
 
     def _wait_killed(self) -> None:
@@ -130,7 +130,7 @@ class AdoptedProcess:
 
 
 class _ProcessGroup:
-    """A running process that leads a group; `reap` is called, once, when it has ended."""
+    """A running process group, by its leader; `reap` is called once, when the leader has ended."""
 
     def __init__(self, pid: int, reap: Callable[[], None]) -> None:
         self._pid = pid
@@ -168,9 +168,9 @@ class _ProcessGroup:
 
 
 def describe_status(status: int | None) -> str:
-    """How a process ended, in words that go on after its name; None where nobody knows."""
+    """The end of a process, as words that follow its name; `status` is None where it is unknown."""
     if status is None:
-        return "has ended; how is not known, for an earlier server had started it"
+        return "has ended; its exit status is not known, because an earlier server had started it"
     if status >= 0:
         return f"has ended with exit status {status}"
     try:

@@ -1,4 +1,4 @@
-"""Keeps the other processes running: starts them in order, watches them, starts them again, ends them.
+"""Supervises the robot's processes: starts them in order, restarts them, ends them.
 
 A part runs in a session of its own, so that Ctrl-C reaches the server alone and nothing that the part has
 started outlives it. It writes its log itself and needs nothing of the server: where that is killed the robot
@@ -49,7 +49,7 @@ SeeDown = Callable[[str, str], None]
 
 @dataclass(frozen=True, slots=True)
 class ProcessCommand:
-    """How a part is started; `needs` are files that must be there first, `made_of` those that it reads.
+    """Command of a process; `needs` are files that must exist first, `made_of` those that it reads.
 
     A part that runs is taken over by the next server where these hold the same as when it was started.
     """
@@ -61,7 +61,7 @@ class ProcessCommand:
     made_of: tuple[Path, ...] = ()
 
     def fingerprint(self) -> str:
-        """Tells apart what is started by this command, as its files are now."""
+        """A hash of the command, its files and the version; equal hashes start the same process."""
         digest = hashlib.sha256(repr((self.arguments, VERSION, DEFINITIONS_HASH)).encode())
         for path in self.made_of:
             with suppress(OSError):
@@ -70,7 +70,7 @@ class ProcessCommand:
 
 
 class ManagedProcess:
-    """One supervised process; `run` is the folder that tells the next server of it."""
+    """One supervised process; its PID file in the folder `run` is for the next server."""
 
     def __init__(
         self, command: ProcessCommand, log: ProcessLog, run: Path, clock: Clock, see_down: SeeDown
@@ -206,7 +206,7 @@ class ManagedProcess:
 
 
 class ProcessSupervisor:
-    """All parts of this robot, by name."""
+    """The robot's processes, by name."""
 
     def __init__(
         self, commands: Sequence[ProcessCommand], folder: DataFolder, clock: Clock, see_down: SeeDown
@@ -259,7 +259,7 @@ class ProcessSupervisor:
 
 
 def plan(settings: Settings) -> list[ProcessCommand]:
-    """What must run for this robot, in the order in which one needs the other."""
+    """The commands of this robot's processes, each after those that it needs."""
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]

@@ -38,7 +38,7 @@ COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
 BACKLOG_SECONDS = 3.0
 BACKLOG_PAUSE = 0.1
-"""s. Whoever is heard can be asked, as soon as Zenoh has told of it."""
+"""s. A process that is heard can be asked after Zenoh's discovery."""
 CONTACT_SECONDS = 10.0
 """For which a server that starts waits for processes that a killed one has left."""
 
@@ -68,9 +68,9 @@ class Bridge:
     def __init__(self, settings: Settings, deliver: Callable[[list[Block]], None]) -> None:
         self.damaged = 0
         self.on_stop: Callable[[], None] | None = None
-        """Called when somebody says STOP."""
+        """Called at each STOP."""
         self.reserved_reason: str | None = None
-        """Why nobody commands the robot now, on purpose; None where it is as always."""
+        """Reason why commands are refused now; None where they are not."""
         self.stopped = False
         """The runtime was ended on purpose, the robot being disarmed: a STOP has nothing left to stop."""
         self._settings = settings
@@ -83,7 +83,7 @@ class Bridge:
         self._ready: list[Block] = []
         self._emptying = False
         self._resting = True
-        """Nothing is about to empty the queue: whoever puts something into it wakes the event loop."""
+        """Nothing is about to empty the queue: the next arrival wakes the event loop."""
         self._pictures: dict[str, Subscription] = {}
         # STOP has threads of its own: it must not wait behind commands that nobody answers.
         self._stops = ThreadPoolExecutor(2, "stop")
@@ -107,7 +107,7 @@ class Bridge:
         self._messages.subscribe_runs(STREAM, self._receive)
 
     async def catch_up(self, names: Iterable[str]) -> dict[str, BacklogReply]:
-        """What the running processes of these names have kept; those that do not answer are left out."""
+        """The backlogs of the running processes of these names; those that do not answer are left out."""
         named = [name for name in names if name in self._fillers]
         answers = await asyncio.gather(*map(self._contact, named))
         return {name: backlog for name, backlog in zip(named, answers, strict=True) if backlog is not None}
@@ -118,7 +118,7 @@ class Bridge:
             filler.begin_delivery(backlog.get(name))
 
     def beat(self) -> None:
-        """Let the runtime know that the server lives."""
+        """Send the runtime the server's heartbeat."""
         self._messages.publish(HEARTBEAT, b"")
 
     @property
@@ -127,7 +127,7 @@ class Bridge:
         return self._fillers["runtime"].run
 
     def drive(self, command: bytes) -> None:
-        """Send the runtime what the driver does; where nobody listens it is lost."""
+        """Send the runtime a driving command; it is lost where no runtime listens."""
         self._messages.publish(PILOT, command)
 
     async def send_lease(self, epoch: int) -> None:
@@ -163,20 +163,20 @@ class Bridge:
         await self._ask("command/stop", {}, stop=True)
 
     async def ask_simulator(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulator answers. Raises RefusedError, RuntimeSilentError."""
+        """The simulator's answer. Raises RefusedError, RuntimeSilentError."""
         return await self._ask(f"simulator/{name}", payload, stop=False)
 
     async def query(self, name: str, question: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
-        """What the runtime says to a question. Raises RefusedError, RuntimeSilentError."""
+        """The runtime's answer to a question. Raises RefusedError, RuntimeSilentError."""
         return await self._ask(f"query/{name}", question or {}, stop=False)
 
     async def scene(self, name: str, payload: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What the simulated scene answers. Raises RefusedError, RuntimeSilentError."""
+        """The simulated scene's answer. Raises RefusedError, RuntimeSilentError."""
         try:
             return await self._ask(f"scene/{name}", payload, stop=False)
         except RuntimeSilentError as problem:
             raise RuntimeSilentError(
-                "The simulated scene does not answer. The System page tells whether it runs.", problem.waited
+                "The simulated scene does not answer. The System page shows whether it runs.", problem.waited
             ) from problem
 
     async def close(self) -> None:
@@ -290,7 +290,7 @@ class Bridge:
 
 def _silence(name: str, waited: bool) -> str:
     if name.startswith("simulator/"):
-        return "The simulator does not answer. The System page tells more."
+        return "The simulator does not answer. See the System page."
     if waited:
-        return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. The System page tells more."
+        return f"The robot's runtime did not answer within {ANSWER_SECONDS:g} s. See the System page."
     return "The robot's runtime is not running. The server starts it again; try again in a few seconds."

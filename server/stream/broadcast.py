@@ -1,7 +1,7 @@
-"""What all sockets share: each message once, in memory, however many listen and however slow they are.
+"""Buffers that all sockets share: each message is stored once, for any number of clients.
 
-A lane is a bounded queue whose messages are numbered; every client has its own position. `TopicHistory` holds
-the last minutes of each topic for a page that connects.
+A buffer is a bounded queue of numbered messages; every client has its own position. `TopicHistory` holds the
+last minutes of each topic for a page that connects.
 """
 
 from collections import deque
@@ -31,7 +31,7 @@ class Message:
 
 
 class BroadcastBuffer:
-    """The newest messages; the oldest leave when they are too many or together too large."""
+    """The newest messages; the oldest are dropped when they are too many or together too large."""
 
     def __init__(self, messages_max: int, bytes_max: int) -> None:
         self.first = self.end = 0
@@ -65,7 +65,7 @@ class BroadcastBuffer:
         return self._messages[number - self.first]
 
     def lost(self, seen: Totals) -> list[tuple[Topic, int]]:
-        """Samples after the totals `seen` that have left the lane."""
+        """Samples after the totals `seen` that have left the buffer."""
         before = self._messages[0].before if self._messages else self.totals
         counts = ((topic, total - seen.get(topic, 0)) for topic, total in before.items())
         return [(BY_ID[topic], count) for topic, count in counts if count > 0]
@@ -81,7 +81,7 @@ class _Chunk:
 
 
 class _TopicBacklog:
-    """What is kept of one topic: the last blocks as they came, those before them gathered in chunks."""
+    """Backlog of one topic: the newest blocks as they came, older ones merged into chunks."""
 
     def __init__(self, topic: Topic) -> None:
         self.topic = topic

@@ -1,4 +1,4 @@
-"""What a process of the robot sends, made whole: what did not reach the server is asked for again.
+"""Fills gaps in what a process of the robot sends: missing samples are asked for again.
 
 Samples are numbered by topic, and whoever sends them keeps those of the last minutes
 (`robot_runtime.transport.replay_cache`).
@@ -36,11 +36,11 @@ class GapFiller:
         self._asking: asyncio.Task[None] | None = None
 
     def everything(self) -> dict[str, int]:
-        """The question for all that is kept."""
+        """The request for the whole backlog."""
         return {topic.name: 0 for topic in self.topics}
 
     def begin_delivery(self, backlog: BacklogReply | None) -> None:
-        """Pass on what the process has kept, where it has told, and then what arrives."""
+        """Pass on the process's backlog, if any, and then what arrives."""
         self._paused = False
         self._merge(backlog)
 

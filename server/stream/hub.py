@@ -1,7 +1,7 @@
 """Everything to every open page, without one page ever holding up another, the recorder or the robot.
 
-Rows go through one lane that all clients share: who falls behind loses the oldest and is told how many.
-Documents go through a second lane and are never skipped: who falls behind too far is sent away with a
+Rows go through one buffer that all clients share: who falls behind loses the oldest and is told how many.
+Documents go through a second buffer and are never skipped: who falls behind too far is sent away with a
 reason, and finds the rest in the recording. Of pictures there is only the newest. A send that hangs for
 `STALL_SECONDS` ends the connection; measured: the alternatives freeze everybody or fill the memory.
 """
@@ -41,7 +41,7 @@ _NO_PICTURE = (0, b"")
 
 
 class EvictedError(Exception):
-    """A client cannot be served any longer; the text is the reason that it is told, `code` WebSocket's."""
+    """A client cannot be served any longer; the text is the reason sent to it, `code` WebSocket's."""
 
     def __init__(self, reason: str, code: int = TRY_AGAIN_LATER) -> None:
         super().__init__(reason)
@@ -49,7 +49,7 @@ class EvictedError(Exception):
 
 
 class Client:
-    """One open socket: its places in the lanes, and what is for it alone."""
+    """One open socket: its positions in the buffers, and what is for it alone."""
 
     def __init__(self, hub: "Hub", send: Send, clock: Clock, device: int) -> None:
         self.device = device
@@ -81,7 +81,7 @@ class Client:
         self._wake.set()
 
     def wake(self) -> None:
-        """Something new is in a lane."""
+        """A buffer has a new message."""
         self._wake.set()
 
     async def run(self) -> None:
@@ -109,7 +109,7 @@ class Client:
 
     @property
     def _behind(self) -> bool:
-        """Whether there is anything to be sent."""
+        """True where something waits to be sent."""
         hub = self._hub
         if self._rows < hub.rows.end or self._documents < hub.documents.end:
             return True
@@ -179,7 +179,7 @@ class Hub:
 
     @property
     def clients(self) -> int:
-        """How many sockets are open."""
+        """The number of open sockets."""
         return len(self._clients)
 
     def add(self, blocks: list[Block]) -> None:
@@ -223,7 +223,7 @@ class Hub:
         client.wake()
 
     def dismiss(self, device: int, reason: str) -> None:
-        """End all connections of this device, and tell it why."""
+        """End all connections of this device, with a reason."""
         for client in self._clients:
             if client.device == device:
                 self._end(client, EvictedError(reason, POLICY_VIOLATION))

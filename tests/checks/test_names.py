@@ -11,13 +11,6 @@ def test_the_packages_keep_the_rules() -> None:
     assert find_bad_names(ROOT) == []
 
 
-@pytest.fixture(autouse=True)
-def nothing_pending(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    if "tmp_path" in request.fixturenames:
-        monkeypatch.setattr("tests.checks.names.PENDING_DOCSTRINGS", ())
-        monkeypatch.setattr("tests.checks.names.PENDING_DIALECT", ())
-
-
 def test_a_public_class_that_exists_twice_is_found(tmp_path: Path) -> None:
     write_module(tmp_path, "robot_runtime/one.py", "class Watch: ...\nclass _Private: ...")
     write_module(tmp_path, "server/two.py", "class Watch: ...\nclass _Private: ...")

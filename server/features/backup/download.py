@@ -1,4 +1,4 @@
-"""A copy of the database for somebody who asks for it over the network: one at a time, and nothing stays.
+"""Downloads of the database: one copy at a time, deleted afterwards.
 
 The copy has no name any more when its first byte is sent, so that it is gone however the sending ends.
 """

@@ -1,4 +1,4 @@
-"""Lends the robot's board to a communication test, and takes it back with the robot's firmware on it.
+"""Reserves the robot's board for a communication test, and restores the robot's firmware afterwards.
 
 While a board may hold anything but the robot's firmware, a file in the data folder says so: on the disk
 before the first upload, taken away after the firmware is back. So a server that was killed in between brings
@@ -33,7 +33,7 @@ LINES_SHOWN = 2
 
 
 class RobotBoard:
-    """The robot's board, whose port nobody else has open. `tell` hears what becomes of its firmware.
+    """The robot's board, whose port nobody else has open. `tell` reports the state of its firmware.
 
     `problem` says why the firmware could not be brought back, and what to do; None where it is there.
     """
@@ -50,7 +50,7 @@ class RobotBoard:
 
     @property
     def away(self) -> bool:
-        """Whether its firmware may be something else than the robot's."""
+        """True while the board may hold other firmware than the robot's."""
         return self._settings.data.firmware_away.exists()
 
     @asynccontextmanager
@@ -64,8 +64,8 @@ class RobotBoard:
             await asyncio.to_thread(_write_note, note, name)
         except OSError as problem:
             raise RefusedError(
-                f"{note} cannot be written: {problem.strerror}. Without it nobody would bring the robot's "
-                "firmware back after a power cut. Free some space, or check the disk."
+                f"{note} cannot be written: {problem.strerror}. After a power cut the server would not know "
+                "that it must restore the robot's firmware. Free some space, or check the disk."
             ) from problem
         try:
             yield list(self._arguments)
@@ -73,7 +73,7 @@ class RobotBoard:
             await self.restore()
 
     async def restore(self) -> None:
-        """Upload the robot's firmware, and tell how it went."""
+        """Upload the robot's firmware, and report the result."""
         problem = await self._upload()
         if problem:
             self.problem = (
@@ -88,7 +88,7 @@ class RobotBoard:
         self._tell("firmware", "info", "The robot's firmware is back on its board.")
 
     async def _upload(self) -> str:
-        """What went wrong, in words; empty where the firmware is there."""
+        """Upload the robot's firmware; the problem in words, empty on success."""
         output = ProcessLog(self._settings.data.logs / "restore.log")
         settings = self._settings
         firmware = firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
@@ -120,7 +120,7 @@ class RobotBoard:
 
 
 class BoardReservation:
-    """Of the board between the runtime and the lab; `occupied` says why it cannot be lent now, if so."""
+    """Hands the board from the runtime to a test; `occupied` gives the reason against it, if any."""
 
     def __init__(
         self,
@@ -140,16 +140,14 @@ class BoardReservation:
 
     @asynccontextmanager
     async def reserve(self, name: str) -> AsyncIterator[list[str]]:
-        """As `Board.lend`, but the robot is disarmed and its runtime ends before, and comes back afterwards.
+        """As `RobotBoard.reserve`; disarms the robot and ends its runtime before, restarts it afterwards.
 
         Raises RefusedError where that is not possible.
         """
         reason = self._bridge.reserved_reason or self._occupied()
         if reason:
             raise RefusedError(reason)
-        why = (
-            f"The robot's board is lent to the communication test “{name}”. To have it back, cancel the test."
-        )
+        why = f"The communication test “{name}” uses the robot's board. To free the board, cancel the test."
         with self._nobody_commands(why):
             await self._disarm()
             # A session may have been about to start when the board was asked for.
@@ -205,7 +203,7 @@ class BoardReservation:
             await asyncio.sleep(POLL_SECONDS)
 
     def _may_be_armed(self, since: float) -> bool:
-        """Whether the newest that the runtime has said is that it is armed, or is older than the STOP."""
+        """True unless a state newer than the STOP says that the robot is disarmed."""
         state = self._monitor.state() or {}
         time = state.get("time")
         return not isinstance(time, int | float) or time < since or state.get("armed") is not False

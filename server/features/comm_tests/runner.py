@@ -33,7 +33,7 @@ LINE_BYTES_MAX = 100_000
 WORDS_MOST = 5
 """Lines that are no JSON are the last words of a process that fails."""
 TEST_SECONDS_MAX = 86_400.0
-"""s of the tests' own time, all cells together: a board that is lent is to come back within a day."""
+"""s of the tests' own time, all cells together: a reserved board is free again within a day."""
 CANCEL_SECONDS = 45.0
 """After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
 
@@ -44,13 +44,13 @@ class CommTestError(Exception):
 
 Tell = Callable[[dict[str, Any]], None]
 Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
-"""Called with the test's name; while it is entered the robot's board is the lab's, and its value are the
-lab's arguments for it. Raises RefusedError where the board cannot be had."""
+"""Called with the test's name; while it is entered the robot's board is the test's; its value are the
+test process's arguments. Raises RefusedError where the board is not free."""
 
 
 @dataclass(slots=True)
 class Progress:
-    """What is being run; `weights` are the cells' test times in s, test by test."""
+    """Progress of the document that runs; `weights` are the cells' test times in s, test by test."""
 
     tests: list[CommTest]
     place: Place
@@ -63,7 +63,7 @@ class Progress:
     phases: dict[int, Phase] = field(default_factory=dict)
 
     def describe(self, now: float) -> dict[str, Any]:
-        """As the pages are told; `remaining` is for all tests of the document, null while unknown."""
+        """As sent to the pages; `remaining` is for all tests of the document, null while unknown."""
         elapsed = now - self.began
         remaining = sum(map(sum, self.weights)) - self.done_weight
         return {
@@ -81,7 +81,7 @@ class Progress:
 
 
 class CommTestRunner:
-    """At most one document runs at a time; `tell` hears of all progress, `lend` gives the board away."""
+    """Runs one document at a time; `tell` reports progress, `reserve` reserves the board."""
 
     def __init__(
         self, settings: Settings, runs: CommTestStore, clock: Clock, tell: Tell, reserve: Reserve
@@ -97,7 +97,7 @@ class CommTestRunner:
 
     @property
     def busy(self) -> bool:
-        """Whether a document is being run."""
+        """True while a document runs."""
         return self._task is not None and not self._task.done()
 
     async def start(self, text: str, place: Place) -> int:
@@ -119,7 +119,7 @@ class CommTestRunner:
             await asyncio.wait([self._task])
 
     def cancel(self) -> None:
-        """Let what runs come to its end soon, in order; the cells that are finished are kept."""
+        """End the running document soon and in order; finished cells are stored."""
         self._cancelled = True
         process = self._process
         if process is not None:
@@ -206,7 +206,9 @@ class CommTestRunner:
         try:
             cell = await self._apply(progress, event, words, began)
         except (LookupError, TypeError, ValueError) as problem:
-            raise CommTestError(f"What the test told cannot be understood: {problem!r}") from problem
+            raise CommTestError(
+                f"The test process sent a message that is not valid: {problem!r}"
+            ) from problem
         active = progress.describe(self._clock.now()) if progress.run is not None else None
         shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
         self._tell({"op": "comm_test", "active": active, "cell": shown})
@@ -270,7 +272,7 @@ class _Lines:
         self._partial = b""
 
     def feed(self, data: bytes) -> None:
-        """What it has printed."""
+        """Take the bytes that the process has printed."""
         *whole, self._partial = (self._partial + data).split(b"\n")
         self._partial = self._partial[-LINE_BYTES_MAX:]
         for line in whole:

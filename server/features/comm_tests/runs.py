@@ -21,7 +21,7 @@ End = Literal["complete", "cancelled", "failed"]
 
 
 class CommTestRuns:
-    """The runs of a database, to be looked at. All methods raise StoreError."""
+    """Read access to the runs of a database. All methods raise StoreError."""
 
     def __init__(self, store: Reader) -> None:
         self._reader = store
@@ -101,7 +101,7 @@ class CommTestStore(CommTestRuns):
         return await self._store.write(lambda connection: _insert_run(connection, values))
 
     async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
-        """One cell that has been run, as the lab tells of it. Raises ValueError where it is none."""
+        """Store a cell as the test process reports it. Raises ValueError where it is none."""
         cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
         row = cell.model_dump(exclude={"id"})
         await self._store.write(lambda connection: connection.execute(insert(CommTestCell).values(row)))

@@ -59,7 +59,7 @@ class CheckedTest(BaseModel):
 
 
 class Check(BaseModel):
-    """What is wrong with a document, field by field; or its tests."""
+    """A document's problems, field by field, or its tests."""
 
     problems: list[str]
     tests: list[CheckedTest]

@@ -54,7 +54,7 @@ def _conclude(done: Sequence[CommTestRun], expected: int, runs: CommTestStore) -
 
 
 class _Progress:
-    """Writes what the lab tells."""
+    """Prints the progress of the tests."""
 
     def __init__(self, tests: list[CommTest]) -> None:
         self._tests = tests

@@ -1,4 +1,4 @@
-"""What comes with the program: test documents, and runs of them as this version's authors measured them."""
+"""Test documents and measured runs that come with the program."""
 
 import json
 import logging

@@ -85,7 +85,7 @@ class Comparer:
         self._counted: ResultCache[dict[str, Figure]] = ResultCache()
 
     def signals(self, session: int) -> list[Signal]:
-        """What of a session can be drawn."""
+        """The signals of a session that can be drawn."""
         return list_signals(self._open(session))
 
     def compare(self, query: ComparisonQuery) -> Comparison:
@@ -125,10 +125,10 @@ class Comparer:
         # At once, since what is wanted of one topic is read together.
         found = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
         key = (recording.row.identifier,)
-        history = self._histories.recall(key)
+        history = self._histories.get(key)
         if history is None:
             history = read_history(recording, self._samples)
-            self._histories.keep(key, history, recording.row)
+            self._histories.put(key, history, recording.row)
         set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         markers = read_markers(self._store, recording)
@@ -165,15 +165,15 @@ class Comparer:
         if query.range is not None and one.offset is None:
             return complete({}, one.problem)
         key = (one.row.identifier, taken, band)
-        measured = self._measured.recall(key)
+        measured = self._measured.get(key)
         if measured is None:
             measured = measure(one.recording, self._samples, one.history, taken, band)
-            self._measured.keep(key, measured, one.row)
+            self._measured.put(key, measured, one.row)
         place = (one.row.identifier, taken.spans)
-        counted = self._counted.recall(place)
+        counted = self._counted.get(place)
         if counted is None:
             counted = count(self._store, one.recording, taken.spans)
-            self._counted.keep(place, counted, one.row)
+            self._counted.put(place, counted, one.row)
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
     def _draw(self, one: _AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:

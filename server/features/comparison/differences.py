@@ -1,4 +1,4 @@
-"""What was different about the sessions: configuration, gains in force, versions, scenario."""
+"""Differences between sessions: configuration, gains in force, versions, scenario."""
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -41,7 +41,7 @@ class Difference(BaseModel):
 
 
 def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> list[Difference]:
-    """What differs; for a single session everything but its files."""
+    """The rows in which sessions differ; for a single session every row but its files."""
     alone = len(sessions) == 1
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
@@ -111,7 +111,7 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
 
 
 def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
-    """Whether what is chosen at `time`, one of `times`, is in force at any time while armed."""
+    """True where the choice made at `time`, one of `times`, is in force at any time while armed."""
     if not armed:
         return time == times[0]
     in_force = Span(time, min((one for one in times if one > time), default=float("inf")))

@@ -144,7 +144,7 @@ def _ends(history: ControlHistory) -> Iterable[float]:
 
 
 def _value_at(set_point: Series, time: float) -> float:
-    """What is held from `time` on: the first tick at it or after it."""
+    """The set point from `time` on: of the first tick at or after it."""
     at = min(int(np.searchsorted(set_point.times, time, "left")), set_point.times.size - 1)
     return float(set_point.values[at])
 

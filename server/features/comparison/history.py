@@ -1,4 +1,4 @@
-"""What a session's state documents, events and markers tell: when it was armed, and what was in force."""
+"""Armed periods and settings in force of a session, from state documents, events and bookmarks."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -144,7 +144,7 @@ def _group(signals: Sequence[Signal]) -> list[tuple[str, list[Signal]]]:
 
 
 def _kinds(signals: Sequence[Signal]) -> str:
-    """How the lines of a chart with several signals are told apart."""
+    """A legend of the line styles, for a chart with several signals."""
     if len(signals) < 2:
         return ""
     kinds = (
@@ -171,7 +171,7 @@ def _trace(session: Compared, signal: Signal, colour: str, number: int, together
 
 
 def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
-    """What happened: a stroke for what was to be expected, a triangle for a caution or an alarm."""
+    """Events on the time axis: a stroke for information, a triangle for a caution or an alarm."""
     shown = [one for one in session.events if one.kind in SHOWN_KINDS or one.severity != "info"]
     happened = [(one, "line-ns" if one.severity == "info" else "triangle-down") for one in shown]
     happened += [(one, "diamond") for one in session.markers]

@@ -1,4 +1,4 @@
-"""Keeps what was found out about sessions that no longer change."""
+"""Cache of results about sessions that no longer change."""
 
 from collections import OrderedDict
 from threading import Lock
@@ -8,7 +8,7 @@ from server.platform.models import SessionRow
 
 T = TypeVar("T")
 
-RESULTS_KEPT = 64
+RESULTS_MOST = 64
 
 
 class ResultCache(Generic[T]):
@@ -18,18 +18,18 @@ class ResultCache(Generic[T]):
         self._results: OrderedDict[tuple[object, ...], T] = OrderedDict()
         self._lock = Lock()
 
-    def recall(self, key: tuple[object, ...]) -> T | None:
-        """What was kept under this key; None where it is not, or no more."""
+    def get(self, key: tuple[object, ...]) -> T | None:
+        """The result stored under this key; None where there is none or it was dropped."""
         with self._lock:
             if key in self._results:
                 self._results.move_to_end(key)
             return self._results.get(key)
 
-    def keep(self, key: tuple[object, ...], result: T, row: SessionRow) -> None:
-        """Keep it for a while, unless the session still records."""
+    def put(self, key: tuple[object, ...], result: T, row: SessionRow) -> None:
+        """Store a result."""
         if row.state == "recording":
             return
         with self._lock:
             self._results[key] = result
-            while len(self._results) > RESULTS_KEPT:
+            while len(self._results) > RESULTS_MOST:
                 self._results.popitem(last=False)

@@ -40,7 +40,7 @@ class ReportQuery(BaseModel):
     view_end: float | None = None
 
     def parse(self) -> ComparisonQuery:
-        """What is compared. Raises ValidationError."""
+        """The comparison asked for. Raises ValidationError."""
         return ComparisonQuery.model_validate(
             {
                 "sessions": self.sessions.split(","),
@@ -112,5 +112,5 @@ def compare(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Compar
     responses=UNKNOWN,
 )
 def lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
-    """What is fetched when somebody looks closer."""
+    """The lines of a shorter time range in full resolution."""
     return comparisons.comparer.lines(body)

@@ -1,4 +1,4 @@
-"""Reads signals, and keeps those of complete sessions for a while: whoever compares asks again and again."""
+"""Reads signals, with a cache for those of complete sessions."""
 
 from collections import OrderedDict
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ from server.features.comparison.signals import DOCUMENT_COLUMNS, split
 from server.features.metrics.series import Floats, Series
 from server.features.sessions.recording import Recording
 
-KEPT_BYTES = 32_000_000
+CACHE_BYTES = 32_000_000
 
 
 class Samples:
@@ -47,14 +47,14 @@ class Samples:
             return self._cache.get(key)
 
     def _keep(self, recording: Recording, name: str, series: Series) -> None:
-        if recording.row.state == "recording" or series.bytes > KEPT_BYTES:
+        if recording.row.state == "recording" or series.bytes > CACHE_BYTES:
             return
         with self._lock:
             self._bytes += series.bytes
             replaced = self._cache.pop((recording.row.identifier, name), None)
             self._bytes -= replaced.bytes if replaced else 0
             self._cache[recording.row.identifier, name] = series
-            while self._bytes > KEPT_BYTES:
+            while self._bytes > CACHE_BYTES:
                 _, oldest = self._cache.popitem(last=False)
                 self._bytes -= oldest.bytes
 
@@ -106,7 +106,7 @@ def _read_documents(recording: Recording, topic: str, columns: Iterable[str]) ->
 
 
 def _ordered(recording: Recording, times: Floats, values: Floats) -> Series:
-    """What was fetched again after a break may stand behind what is newer."""
+    """Samples in order of time; those refetched after a gap may be stored behind newer ones."""
     since = times - recording.row.started_steady
     if np.all(since[1:] >= since[:-1]):
         return Series(since, values)

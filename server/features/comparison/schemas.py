@@ -1,4 +1,4 @@
-"""What is asked, and what is answered, about sessions laid over each other."""
+"""Requests and answers of the comparison of sessions."""
 
 from typing import Annotated
 

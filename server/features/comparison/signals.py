@@ -1,4 +1,4 @@
-"""What of a session can be drawn over time: each column of its rows, and numbers of some documents."""
+"""Signals of a session over time: each column of its rows, and numbers of some documents."""
 
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass

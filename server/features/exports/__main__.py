@@ -1,6 +1,6 @@
 """`python -m server.features.exports`: one file, or the examination of one archive, beside the server.
 
-What it does it tells in lines of JSON on its output: {"progress": 0..1}, and last {"bytes", "sha256"}, or
+It reports progress as lines of JSON on its output: {"progress": 0..1}, and last {"bytes", "sha256"}, or
 {"archive": ...}, or {"problem": words}.
 """
 
@@ -28,7 +28,7 @@ TELL_SECONDS = 0.2
 
 
 def main() -> int:
-    """Exit status: 1 where there is a problem, which has been told."""
+    """Exit status: 1 after a problem, which was reported."""
     parser = argparse.ArgumentParser(prog="python -m server.features.exports", description=__doc__)
     actions = parser.add_subparsers(dest="action", required=True)
     write = actions.add_parser("write", help="write a session as a file")

@@ -127,7 +127,7 @@ class ArchivedGap(_Strict):
 
 
 class ArchivedDocument(_Strict):
-    """What `session.json` holds."""
+    """The content of `session.json`."""
 
     session: ArchivedSession
     tags: Annotated[list[Annotated[str, Field(min_length=1, max_length=1000)]], Field(max_length=10_000)]
@@ -167,7 +167,7 @@ class Archive:
         return self._topics
 
     def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
-        """The chunks of a topic, with plausible numbers; their data has not been looked at."""
+        """The chunks of a topic, with plausible numbers; their data is not checked yet."""
         number = -1
         with self._zipped.open(CHUNKS + topic) as file:
             while head := file.read(HEAD.size):
@@ -203,7 +203,7 @@ class Archive:
                     done += len(piece)
                     tell(0.5 * done / total)
             if self.sums.get(name) != checksum.hexdigest():
-                raise ArchiveError(f"{name} is damaged: its checksum is not the one that {CHECKSUMS} tells.")
+                raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
         for place, topic in enumerate(self.topics):
             for chunk in self.chunks(topic):
                 self._decode(chunk)

@@ -1,4 +1,4 @@
-"""Runs `python -m server.features.exports` and hears what it tells."""
+"""Runs `python -m server.features.exports` and reads its reports."""
 
 import json
 import sys
@@ -29,7 +29,7 @@ class ExportProcess:
         self._last: dict[str, Any] = {}
 
     async def run(self) -> dict[str, Any]:
-        """What it told last. Raises ExportProcessError, with its own words where it had any."""
+        """Run to the end; the last message of the process. Raises ExportProcessError with the reason."""
         try:
             self._process = PipedProcess(
                 [sys.executable, "-m", "server.features.exports", *self._arguments], self._hear

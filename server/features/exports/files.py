@@ -53,7 +53,7 @@ def put_in_place(part: Path, path: Path) -> None:
 
 
 def explain(problem: OSError, path: Path) -> str:
-    """What is wrong with writing to `path`, in words."""
+    """A sentence for a person about a failed write to `path`."""
     if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         return f"The disk that holds {path.parent} is full. Free some space, and try again."
     return f"{path.parent} cannot be written: {problem.strerror or problem}."

@@ -47,7 +47,7 @@ class Imports:
         self._busy = asyncio.Lock()
 
     async def recover(self) -> None:
-        """Let go of what a killed server has not finished. Raises StoreError."""
+        """Remove unfinished imports of a server that was killed. Raises StoreError."""
         if self._folder.is_dir():
             for file in self._folder.iterdir():
                 file.unlink(missing_ok=True)

@@ -27,7 +27,7 @@ from server.platform.store import Reader
 
 log = logging.getLogger(__name__)
 
-KEPT_DAYS = 7
+RETENTION_DAYS = 7
 JOBS_MAX = 200
 """Waiting, running and kept."""
 CLEAN_SECONDS = 3600.0
@@ -171,7 +171,7 @@ class Jobs:
             self._jobs[job.id] = job
 
     def _delete_old(self) -> None:
-        limit = datetime.now(UTC) - timedelta(days=KEPT_DAYS)
+        limit = datetime.now(UTC) - timedelta(days=RETENTION_DAYS)
         for job in [
             job for job in self._jobs.values() if job.made < limit and job.state in ("done", "failed")
         ]:

@@ -1,4 +1,4 @@
-"""Where the robot is and how it lies, put together from the topics that tell of it, for 3-D panels."""
+"""Position and attitude of the robot, from several topics, for 3-D panels."""
 
 import json
 from typing import Any

@@ -64,7 +64,7 @@ async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewEx
     responses=UNKNOWN,
 )
 async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
-    """How far it is; its size and checksum when it is there."""
+    """Progress of an export; its size and checksum when it is done."""
     return _find(jobs, export)
 
 

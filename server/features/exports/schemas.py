@@ -18,7 +18,7 @@ Seconds = Annotated[float, Field(ge=-SECONDS_MAX, le=SECONDS_MAX)]
 
 
 class ExportOptions(BaseModel):
-    """What of a session is to be in the file, and as what."""
+    """Choice of a session's topics, range and file format."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
     format: Format

@@ -1,4 +1,4 @@
-"""What all formats read: a session's chosen topics within a range, in batches, with progress."""
+"""A session's chosen topics within a range, read in batches with progress, for all formats."""
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
@@ -56,7 +56,7 @@ class ExportSelection(Recording):
 
     @property
     def is_whole(self) -> bool:
-        """Whether the range is the whole session."""
+        """True where the range is the whole session."""
         return self.start == -inf and self.end == inf
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:

@@ -31,7 +31,7 @@ class Field:
 
     @property
     def digits(self) -> str:
-        """How a value is formatted so that the very same number is read back."""
+        """The format of a value, from which the same number is read back."""
         return DIGITS.get(self.code, "%d" if self.scale == 1 else SCALED_DIGITS)
 
     @property

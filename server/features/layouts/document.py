@@ -17,7 +17,7 @@ Word = Annotated[str, Field(min_length=1, max_length=60)]
 
 
 class ShownChart(BaseModel):
-    """What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds."""
+    """A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s."""
 
     model_config = ConfigDict(extra="forbid")
     signals: Annotated[list[Word], Field(max_length=SIGNALS_MOST)]
@@ -37,7 +37,7 @@ class PlacedPanel(BaseModel):
     chart: ShownChart | None = None
 
     def overlaps(self, other: "PlacedPanel") -> bool:
-        """Whether both take some of the same room."""
+        """True where both cover a common cell."""
         return (
             self.x < other.x + other.width
             and other.x < self.x + self.width

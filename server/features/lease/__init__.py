@@ -1,1 +1,1 @@
-"""Who has the control of the robot, and what whoever has it may send to it."""
+"""Control of the robot: its holder, and the driving commands of that holder."""

@@ -48,7 +48,7 @@ async def require_client(connection: HTTPConnection) -> ControlClient:
 
 
 OwnClient = Annotated[ControlClient, Depends(require_client)]
-"""A route's parameter that is the control client of whoever asks."""
+"""A route's parameter that is the control client of the caller."""
 
 
 def _find_client(connection: HTTPConnection) -> ControlClient | None:

@@ -9,7 +9,7 @@ from server.platform.settings import DataFolder, SetupError
 
 @contextmanager
 def in_control(folder: DataFolder) -> Iterator[None]:
-    """Take control that is free. Raises SetupError if somebody has it."""
+    """Take control if it is free. Raises SetupError where it is not."""
     ask(folder, "POST", "/control/take")
     try:
         yield

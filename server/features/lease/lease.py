@@ -25,7 +25,7 @@ class Lease:
         self._changed = changed
 
     def take(self, client: int) -> None:
-        """Give control to this client, whoever has it."""
+        """Give control to this client, whatever client has it."""
         if client != self.holder:
             self._pass_to(client, "taken" if self.holder is None else "taken over")
 

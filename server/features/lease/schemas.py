@@ -22,7 +22,7 @@ class Driven(BaseModel):
 
 
 class ControlState(BaseModel):
-    """Who has control, as on the live socket."""
+    """The holder of control, as on the live socket."""
 
     epoch: int = Field(description="grows with every change of the holder")
     holder: Holder | None

@@ -29,7 +29,7 @@ class LeaseSync:
         self._set_target(self._target[0], epoch)
 
     async def run(self) -> None:
-        """Background task: tell each new epoch."""
+        """Background task: send each new epoch."""
         while True:
             await self._news.wait()
             self._news.clear()

@@ -46,7 +46,7 @@ class InvalidMessageError(ValueError):
 
 
 class _Conversation:
-    """What one page says, and what is done about it."""
+    """Reads one page's messages and acts on them."""
 
     def __init__(
         self, socket: WebSocket, owner: ControlClient, hub: Hub, arbiter: ControlArbiter, bridge: Bridge

@@ -6,7 +6,7 @@ from pydantic import BaseModel, Field
 
 
 class FigureMeaning(BaseModel):
-    """What a figure is."""
+    """Name, unit and definition of a figure."""
 
     name: str
     title: str

@@ -1,4 +1,4 @@
-"""How a measured value follows a step of its set point.
+"""Figures of a step response: rise time, settling time, overshoot.
 
 Definitions as in Åström and Murray, Feedback Systems, 2nd edition, 2021 (step response), and Åström and
 Hägglund, Advanced PID Control, 2006, with the set point as the final value: what is judged is whether the

@@ -1,4 +1,4 @@
-"""How often the fins moved."""
+"""Counts of fin strokes."""
 
 from typing import Any
 

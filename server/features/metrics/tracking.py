@@ -1,4 +1,4 @@
-"""How well a value follows its set point over a time, and what that costs."""
+"""Tracking error of a value against its set point, and the effort spent."""
 
 import numpy as np
 
@@ -21,5 +21,5 @@ def effort(outputs: Floats) -> float:
 
 
 def travel(outputs: Floats) -> float:
-    """How far the command went, there and back, in shares of the most."""
+    """Sum of the command's changes, as a share of full command."""
     return float(np.abs(np.diff(outputs)).sum())

@@ -1,4 +1,4 @@
-"""The serial line: the last frames each way, for whoever looks for what has gone wrong."""
+"""The serial line: the last frames each way, for diagnosis."""
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field

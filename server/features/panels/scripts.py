@@ -24,7 +24,7 @@ class OwnPanel(BaseModel):
 
 
 class OwnPanelScript(BaseModel):
-    """What a panel's file holds: an ES module."""
+    """A panel's file: an ES module."""
 
     name: str
     script: str

@@ -1,4 +1,4 @@
-"""Who changed which parameters, and the way back, one change after the other.
+"""History of parameter changes, with undo one change at a time.
 
 The runtime says with its answer to a command what the command changed. That is stored; what was changed
 before the runtime's last start cannot be undone, for a start brings the defaults back.

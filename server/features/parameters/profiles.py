@@ -32,7 +32,7 @@ class ProfileError(InvalidError):
 
 
 class ProfileFile(BaseModel):
-    """What a profile's file holds; `version` is that of the software that wrote it."""
+    """Content of a profile's file; `version` is that of the software that wrote it."""
 
     model_config = ConfigDict(extra="ignore")
     name: ProfileName
@@ -107,7 +107,7 @@ def write_file(profile: Profile) -> str:
 
 
 def file_name(profile: Profile) -> str:
-    """What the file is called, in characters that every file system takes."""
+    """A file name for the profile, with characters that every file system takes."""
     words = re.sub(r"[^A-Za-z0-9]+", "-", profile.name).strip("-")[:50].strip("-")
     return f"profile-{words or profile.id}.json"
 

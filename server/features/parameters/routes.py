@@ -54,7 +54,7 @@ async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
     summary="Everything that may be tuned",
     operation_id="getParameters",
     openapi_extra=needs(Need.VIEWER),
-    responses={**answers(_409="The robot is lent to a communication test"), **SILENT},
+    responses={**answers(_409="A communication test uses the robot's board"), **SILENT},
     response_model=Parameters,
 )
 async def get_parameters(bridge: Provided[Bridge]) -> object:

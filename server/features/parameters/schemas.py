@@ -25,7 +25,7 @@ class ChangedValue(BaseModel):
 
 
 class Change(BaseModel):
-    """Parameters that somebody changed together."""
+    """Parameters that were changed together."""
 
     id: int
     time: datetime = Field(description="UTC")
@@ -69,7 +69,7 @@ class LeftOut(BaseModel):
 
 
 class Restored(BaseModel):
-    """What a profile's restoring did."""
+    """Result of restoring a profile."""
 
     changed: list[ChangedValue]
     left_out: list[LeftOut]

@@ -72,7 +72,7 @@ def revoke(settings: Settings, device: int) -> None:
 @click.option("--role", type=ROLE, default="viewer")
 @with_settings
 def token(settings: Settings, name: str, role: str) -> None:
-    """Let a program in under this name, and print its token."""
+    """Make a token for a program of this name, and print it."""
     made = ask(settings.data, "POST", "/access/tokens", {"name": name, "role": role})
     device = made["device"]
     # Apart from the token, which another program may read.

@@ -1,4 +1,4 @@
-"""Who is there, and who may be: pairing, roles, tokens, revocation."""
+"""Routes of signing in: pairing, roles, tokens, revocation."""
 
 import time
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""What the interface says about who is there."""
+"""Schemas of people and programs that sign in."""
 
 from typing import Annotated
 
@@ -20,7 +20,7 @@ Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(_check_n
 
 
 class Me(BaseModel):
-    """Who asks, as far as the server knows; `pairing_open` says whether some code is valid now."""
+    """The signed-in caller; `pairing_open` says that some pairing code is valid now."""
 
     signed_in: bool
     robot: str
@@ -67,7 +67,7 @@ class DeviceDetails(BaseModel):
 
 
 class DeviceChanges(BaseModel):
-    """What is left out stays as it is."""
+    """Changes of a device; null leaves a field unchanged."""
 
     model_config = ConfigDict(extra="forbid")
     name: Name | None = None

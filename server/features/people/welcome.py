@@ -1,4 +1,4 @@
-"""What the server says when it has started: where the page is, who can reach it, and how to get in."""
+"""The text that the server prints at its start: address, reachability, pairing code."""
 
 from typing import TextIO
 from urllib.parse import urlsplit
@@ -40,7 +40,7 @@ def invitation(link: str, *, picture: bool) -> list[str]:
 
 
 def shows_pictures(stream: TextIO) -> bool:
-    """Whether what it is read with knows the signs of which a QR code is drawn."""
+    """True where the stream's encoding has the characters of a QR code."""
     return stream.encoding.lower().startswith("utf")
 
 

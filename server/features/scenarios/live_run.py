@@ -226,5 +226,5 @@ class LiveExecutor:
 
 
 async def _whole(step: Any) -> None:
-    """Let it come to its end even where the server is ending."""
+    """Finish a step even while the server is ending."""
     await asyncio.shield(asyncio.create_task(step))

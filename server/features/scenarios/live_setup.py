@@ -34,7 +34,7 @@ DIRECTIONS = ("to_board", "from_board")
 
 @dataclass(frozen=True, slots=True)
 class SavedState:
-    """How everything was: the runtime's `state`, the simulator's `surroundings`, the scene's `contents`.
+    """The runtime's `state`, the water's `surroundings` and the scene's `contents` before a scenario.
 
     `sight` is None where no scene is rendered.
     """
@@ -56,7 +56,7 @@ class LiveSetup:
         self._board_socket = board_socket
 
     async def read(self, robot: Question) -> SavedState:
-        """How everything is now; `robot` is the newest `state`."""
+        """The present state; `robot` is the newest `state`."""
         water = await self._bridge.ask_simulator("surroundings", {})
         try:
             return SavedState(robot, water, await self._bridge.scene("contents", {}))
@@ -95,7 +95,7 @@ class LiveSetup:
             await send(event.command)
 
     async def disarm(self) -> None:
-        """Let the fins rest."""
+        """Stop the fins."""
         await self._bridge.disarm()
 
     async def put_back(self, before: SavedState, send: Send) -> list[str]:

@@ -67,7 +67,7 @@ def check(document: ScenarioDocument) -> ScenarioCheck:
 
 @router.get("/state", summary="What runs", operation_id="getScenarioState", openapi_extra=needs(Need.VIEWER))
 async def get_state(scenarios: Provided[ScenarioRuns]) -> ScenarioState:
-    """What runs, what waits, and what ended last, as on the live socket."""
+    """The active run, the queue and the last run, as on the live socket."""
     return scenarios.state()
 
 
@@ -97,5 +97,5 @@ async def start(
     openapi_extra=needs(Need.OPERATOR),
 )
 async def cancel(scenarios: Provided[ScenarioRuns]) -> None:
-    """What was recorded is kept; what waits is forgotten. Its end is told on the live socket."""
+    """End the active run and clear the queue; recordings stay. The end is reported on the live socket."""
     scenarios.cancel()

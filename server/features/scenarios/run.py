@@ -46,7 +46,7 @@ class RunRecord:
     _why: str = ""
 
     def cancel(self, why: str) -> None:
-        """Let it end soon, in order; the first reason counts."""
+        """End the run soon and in order; the first reason counts."""
         if not self._cancelled.is_set():
             self._why = why
             self._cancelled.set()
@@ -61,7 +61,7 @@ class RunRecord:
         await self._cancelled.wait()
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass. Raises RunCancelledError."""
+        """Wait. Raises RunCancelledError."""
         try:
             async with asyncio.timeout(max(seconds, 0.0)):
                 await self._cancelled.wait()
@@ -70,7 +70,7 @@ class RunRecord:
         self.check()
 
     def describe(self) -> ActiveRun:
-        """As the pages are told."""
+        """As sent to the pages."""
         coming = (one for one in self.scenario.events if one.at > self.elapsed or self.phase == "preparing")
         following = next(coming, None)
         return ActiveRun(
@@ -88,7 +88,7 @@ class RunRecord:
         )
 
     def end(self, state: End, problem: str) -> EndedRun:
-        """As the pages are told afterwards."""
+        """The end of the run, as sent to the pages."""
         return EndedRun(
             run=self.number,
             name=self.scenario.name,

@@ -35,7 +35,7 @@ class ScenarioExecutor(Protocol):
 
 
 class ScenarioRunner:
-    """At most one scenario runs at a time; `tell` hears of all progress."""
+    """At most one scenario runs at a time; `tell` reports progress."""
 
     def __init__(
         self, live: ScenarioExecutor, simulated: ScenarioExecutor, tell: Callable[[dict[str, Any]], None]
@@ -54,7 +54,7 @@ class ScenarioRunner:
         return self._active
 
     def state(self) -> ScenarioState:
-        """What runs, what waits, and what ended last."""
+        """The active run, the queue and the last run."""
         return ScenarioState(
             active=None if self._active is None else self._active.describe(),
             queued=[

@@ -1,4 +1,4 @@
-"""What the interface says about scenarios."""
+"""Schemas of scenarios."""
 
 from typing import Annotated, Literal
 
@@ -40,7 +40,7 @@ class ScenarioEvent(BaseModel):
 
 
 class ScenarioSummary(BaseModel):
-    """What a scenario says, in short."""
+    """A scenario in short."""
 
     name: str
     title: str
@@ -53,7 +53,7 @@ class ScenarioSummary(BaseModel):
 
 
 class ScenarioCheck(BaseModel):
-    """What is wrong with a scenario, field by field; else what it says."""
+    """A scenario's problems, field by field, or its summary."""
 
     problems: list[str]
     summary: ScenarioSummary | None
@@ -78,7 +78,7 @@ class ScenarioStarted(BaseModel):
 
 
 class NextEvent(BaseModel):
-    """What happens next."""
+    """The next event of the run."""
 
     at: float = Field(description="s")
     words: str
@@ -122,7 +122,7 @@ class EndedRun(BaseModel):
 
 
 class ScenarioState(BaseModel):
-    """What runs, what waits, and what ended last."""
+    """The active run, the queue and the last run."""
 
     active: ActiveRun | None
     queued: list[QueuedRun]

@@ -36,7 +36,7 @@ def run_scenario(start: ScenarioStart, settings: Settings) -> int:
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
-    """Whether the data folder could be had; where not, a server works on it, or will say what is wrong."""
+    """True where the data folder was claimed; false where a server uses it or it is not usable."""
     try:
         claimed.enter_context(claim)
     except SetupError:
@@ -104,7 +104,7 @@ class _Progress:
         self._printed = 0
 
     def tell(self, state: ScenarioState) -> None:
-        """What is new in it."""
+        """Print the events that are new in this state."""
         active, last = state.active, state.last
         if last is not None and last.run == self._run and last.state == "complete":
             # A fast run may be over before its last events were told.

@@ -33,7 +33,7 @@ HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
 MESSAGE_BYTES_MAX = 16_000_000
 FLUSH_BYTES = 2_000_000
-WORDS_KEPT = 5
+WORDS_MOST = 5
 NICENESS = "10"
 END_SECONDS = 10.0
 """After which a process that was asked to end is killed."""
@@ -81,7 +81,7 @@ class SimulatedExecutor:
 
 
 class _Playback:
-    """Takes in what the process tells."""
+    """Stores the events and samples of the process."""
 
     def __init__(
         self, run: RunRecord, settings: Settings, store: Store, recorder: Recorder, clock: ScenarioClock
@@ -107,7 +107,7 @@ class _Playback:
         except (ValueError, LayoutError, KeyError, TypeError, asyncio.IncompleteReadError) as problem:
             if not isinstance(problem, asyncio.IncompleteReadError):
                 raise RunFailedError(
-                    f"What the simulation told cannot be understood: {problem!r}"
+                    f"The simulation sent a message that is not valid: {problem!r}"
                 ) from problem
         if self._ended and self._ended.get("problem"):
             self._run.remarks.append(str(self._ended["problem"]))
@@ -160,7 +160,7 @@ async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Pr
         limit=MESSAGE_BYTES_MAX,
         env={**os.environ, "MUCAT_BUILD": str(settings.build)},
     )
-    words: deque[str] = deque(maxlen=WORDS_KEPT)
+    words: deque[str] = deque(maxlen=WORDS_MOST)
     tasks = [
         asyncio.create_task(_give(process, run.text)),
         asyncio.create_task(_listen(process, words)),

@@ -1,4 +1,4 @@
-"""How everything was before a live scenario: on the disk until it is put back, perhaps by the next server."""
+"""A file with the state before a live scenario, on the disk until that state is restored."""
 
 import json
 from dataclasses import asdict
@@ -19,7 +19,7 @@ class ScenarioSnapshot:
         write_whole(self._path, json.dumps(asdict(before)).encode())
 
     def read(self) -> SavedState | None:
-        """What a server that was killed has left; None where nothing is left, or it cannot be read."""
+        """The state saved by a server that was killed; None where there is none or it is not readable."""
         try:
             return SavedState(**json.loads(self._path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):

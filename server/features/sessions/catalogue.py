@@ -28,7 +28,7 @@ from server.platform.store import Reader, Store
 
 
 class Listing:
-    """Every session of a database, to be looked at.
+    """Read access to every session of a database.
 
     Every method raises StoreError, and UnknownSessionError where a session or a marker is not there.
     """
@@ -81,7 +81,7 @@ class Listing:
             return from_row(row, tags, database.exec(markers).one())
 
     def row(self, session: int) -> SessionRow:
-        """The row of a session, for whoever reads its samples."""
+        """The row of a session."""
         row = find_row(self._reader, session)
         if row is None:
             raise UnknownSessionError(session)
@@ -191,7 +191,7 @@ class Catalogue(Listing):
         await self._store.write(write)
 
     def tell(self, session: int) -> Session:
-        """Let everybody know what a session looks like now, if it is the one that records."""
+        """Report a session's new state to the pages, if it is being recorded."""
         found = self.find(session)
         if self._recorder is not None:
             self._recorder.amend(found)

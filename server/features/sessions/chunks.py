@@ -1,4 +1,4 @@
-"""How samples lie in the database: one chunk holds consecutive samples of one topic.
+"""Encoding of samples in the database: one chunk holds consecutive samples of one topic.
 
 "shuffle-zlib": rows of equal size (the sample's time, then its record, as `robot_runtime.contract.topics`
 says), with all first bytes of the rows first, then all second bytes, and so on; then zlib. Slowly changing
@@ -34,7 +34,7 @@ SCALED_DIGITS = "%.12g"
 
 @dataclass(frozen=True, slots=True)
 class RowLayout:
-    """How a row's bytes become text: unpack, multiply by `scales` (1 for whole numbers), format by `line`."""
+    """Conversion of a row to text: unpack, multiply by `scales` (1 for whole numbers), format by `line`."""
 
     row: Struct
     scales: tuple[float, ...]
@@ -48,7 +48,7 @@ def shuffle(rows: bytes, size: int) -> bytes:
 
 
 def unshuffle(shuffled: bytes, size: int) -> bytes:
-    """What `shuffle` was given. Raises ValueError where the bytes are not whole rows."""
+    """The inverse of `shuffle`. Raises ValueError where the bytes are not whole rows."""
     count, left = divmod(len(shuffled), size)
     if left:
         raise ValueError(f"{len(shuffled)} bytes are not whole rows of {size}")
@@ -59,7 +59,7 @@ def unshuffle(shuffled: bytes, size: int) -> bytes:
 
 
 def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
-    """How these payloads of a topic's blocks are encoded, their chunk, and its first and last sample's times.
+    """The encoding of these payloads of a topic, their chunk, and its first and last sample's times.
 
     Raises ValueError, RecursionError or zlib.error where they are not what the topic says.
     """
@@ -140,7 +140,7 @@ def decode_pictures(data: bytes) -> Iterator[tuple[float, bytes]]:
 
 
 def describe_topics() -> dict[str, Any]:
-    """What the recorded topics' samples consist of, for a reader who has nothing but the database."""
+    """A description of the recorded topics' samples, for a reader who has only the database."""
     return {topic.name: _describe(topic) for topic in RECORDED}
 
 

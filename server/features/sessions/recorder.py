@@ -63,7 +63,7 @@ class _Span:
 
 @dataclass(slots=True)
 class _Batch:
-    """What is to be committed together: spans are encoded into chunks on the way."""
+    """Spans and rows of one transaction; spans are encoded into chunks on the way."""
 
     spans: list[_Span] = field(default_factory=list)
     chunks: list[dict[str, Any]] = field(default_factory=list)
@@ -110,8 +110,8 @@ class Recorder:
         Raises StoreError.
         """
         interrupted = await asyncio.to_thread(find_interrupted, self._store)
-        kept = -1 if interrupted is None else interrupted.row.id
-        for name, duration in await self._store.write(lambda found: _mark_interrupted(found, kept)):
+        resumed = -1 if interrupted is None else interrupted.row.id
+        for name, duration in await self._store.write(lambda found: _mark_interrupted(found, resumed)):
             self._notices.tell(
                 "recording",
                 "caution",
@@ -165,7 +165,7 @@ class Recorder:
         self._changed()
 
     def caught_up(self) -> None:
-        """What was missing has been added: all that comes now is new, also low numbers of a new sender."""
+        """Accept every block from now on, also low numbers of a new sender: the backlog is stored."""
         self._skip.clear()
 
     async def start(self, row: SessionRow) -> Session:
@@ -241,12 +241,12 @@ class Recorder:
         self._expected[topic.id] = block.following
 
     def _is_stored(self, block: Block) -> bool:
-        """Whether an earlier server has stored it, or it is older than the session."""
+        """True where an earlier server has stored the block, or it is older than the session."""
         first = self._skip.get(block.topic.id)
         return first is not None and not block.after(first)
 
     async def run(self) -> None:
-        """Commit every period, for ever; tell when it fails, and when it works again."""
+        """Commit every period, for ever; report failures, and recovery."""
         idle = 0
         while True:
             await asyncio.sleep(PERIOD)
@@ -359,7 +359,7 @@ def _drop_oldest(batch: _Batch, now: float) -> None:
 
 
 async def _whole(step: Coroutine[Any, Any, T]) -> T:
-    """Let a step finish even where its caller is cancelled, so that memory and database stay in agreement."""
+    """Finish a step even where its caller is cancelled, so that memory and database agree."""
     return await asyncio.shield(asyncio.create_task(step))
 
 

@@ -72,7 +72,7 @@ class Recording:
             return {name: int(count) for name, count in database.exec(query.group_by(Chunk.topic))}
 
     def has(self, topic: str) -> bool:
-        """Whether there is any sample of a topic."""
+        """True where the session has any sample of the topic."""
         query = select(Chunk.id).where(Chunk.session_id == self.row.id, Chunk.topic == topic).limit(1)
         with self._store.read() as database:
             return database.exec(query).first() is not None
@@ -231,7 +231,7 @@ class Recording:
         start: float,
         end: float,
     ) -> Iterator[Any]:
-        """What `query` selects of the chunks that may have samples in this range; `limit` at a time."""
+        """Rows that `query` selects from chunks that may have samples in this range, `limit` at a time."""
         with self._store.read() as database:
             first, last = self.numbers(database, topic, start, end)
         query = query.where(Chunk.session_id == self.row.id, Chunk.topic == topic)

@@ -1,4 +1,4 @@
-"""What a replay asks for: a stretch of a session, as the live socket would have carried it.
+"""Samples of a stretch of a session, in the format of the live socket.
 
 A seek takes one answer: before the stretch itself lies what was in force at its start, and what the page's
 charts and lists show of the time before.
@@ -61,7 +61,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """What is needed of a chunk."""
+    """Fields of a chunk that a replay needs."""
 
     first_time: float
     last_time: float
@@ -271,7 +271,7 @@ class _Reader:
 
 
 def _count_before(samples: _Samples, piece: _Piece, time: float) -> int:
-    """How many of the chunk's samples, from its first on, are earlier."""
+    """The number of the chunk's samples, from its first on, before `time`."""
     if piece.last_time < time:
         return piece.count
     if piece.first_time >= time:

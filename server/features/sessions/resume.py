@@ -41,7 +41,7 @@ class InterruptedSession:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """What a sender has that is not stored: the first such number of each topic, by the topics' numbers.
+    """Samples of a sender that are not stored: the first number of each topic, by the topics' numbers.
 
     `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all that
     is missing. `sent`: how many samples of each topic (by name) it has sent since what is stored; empty if it

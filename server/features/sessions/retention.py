@@ -1,4 +1,4 @@
-"""Removes what was deleted and what the retention rule lets go, little by little: recording goes on.
+"""Deletes removed and expired sessions in small transactions, while recording goes on.
 
 A session goes into the bin first. Out of it, it is marked, and to everybody gone; then its chunks go, a few
 in each transaction of the one writer, between which a recorder's commits pass. At last the pages that have
@@ -27,7 +27,7 @@ from server.platform.store import Store, StoreError
 log = logging.getLogger(__name__)
 
 PERIOD = 60.0
-"""s between two looks."""
+"""s between two runs."""
 CHUNKS_AT_ONCE = 32
 PAGES_AT_ONCE = 64
 PAUSE = 0.02
@@ -37,7 +37,7 @@ BIN_SECONDS = 3600.0
 DAY = 86_400.0
 JUMP_SECONDS = 60.0
 """By which the wall clock may move on beside the steady clock; a robot without a battery for its clock knows
-the time only once somebody has told it."""
+the time only after somebody has set it."""
 NAMES_SHOWN = 3
 
 
@@ -52,7 +52,7 @@ class _Candidate(NamedTuple):
 
 
 class RetentionWorker:
-    """The only one that removes sessions. `wake` makes it look at once.
+    """The only remover of sessions. `wake` makes it run at once.
 
     For a day after the wall clock has jumped nothing goes by its age, which nobody knows.
     """
@@ -69,11 +69,11 @@ class RetentionWorker:
         self._out_of_candidates = False
 
     def wake(self) -> None:
-        """Look soon."""
+        """Run soon."""
         self._requested.set()
 
     async def run(self) -> None:
-        """Tidy up every minute, for ever."""
+        """Apply the rules every minute, for ever."""
         while True:
             self._requested.clear()
             try:
@@ -86,7 +86,7 @@ class RetentionWorker:
                 continue
 
     async def apply(self, now: float) -> None:
-        """Once, at this time (UTC, s since 1970). Raises StoreError."""
+        """Apply the rules once, at this time (UTC, s since 1970). Raises StoreError."""
         rules = self._settings.sessions
         ages_known = await self._ages_known(now)
         if ages_known:
@@ -162,7 +162,7 @@ class RetentionWorker:
     def _tell(self, rows: list[_Candidate], why: str) -> None:
         names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_SHOWN])
         more = f" and {len(rows) - NAMES_SHOWN} more" if len(rows) > NAMES_SHOWN else ""
-        text = f"{why}: {names}{more} went into the bin. Restore and keep what is to stay."
+        text = f"{why}: {names}{more} went into the bin. To keep one, restore it and mark it as kept."
         self._notices.tell("storage", "caution", text)
 
     async def _unprotected(self) -> list[_Candidate]:

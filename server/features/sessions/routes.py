@@ -84,7 +84,7 @@ async def start_session(
     recorder: Provided[Recorder],
     body: NewSession,
 ) -> Session:
-    """Record everything from now on; refused while another records, or the board is lent to a test."""
+    """Record everything from now on; refused while another session records or a test uses the board."""
     if bridge.reserved_reason is not None:
         raise RecordingRefusedError(bridge.reserved_reason)
     state = json.dumps(watch.state())
@@ -250,7 +250,7 @@ async def remove_mark(
     responses=UNKNOWN,
 )
 def get_timeline(recording: OpenRecording) -> Timeline:
-    """What happened when in a session, and where nothing was recorded."""
+    """A session's events, bookmarks and gaps."""
     return read_timeline(recording)
 
 

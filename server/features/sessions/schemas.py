@@ -46,7 +46,7 @@ class Session(BaseModel):
 
 
 class Bookmark(BaseModel):
-    """A moment that somebody pointed out."""
+    """A moment of a session with a text."""
 
     id: int
     time: float = Field(description="s since the session's start")
@@ -72,7 +72,7 @@ class RecordedColumn(BaseModel):
 
 
 class RecordedTopic(BaseModel):
-    """What a session holds of one topic; times are of the first and the last sample, s since its start."""
+    """A recorded topic; times are of the first and the last sample, s since the session's start."""
 
     name: str
     meaning: str
@@ -96,7 +96,7 @@ class SessionDetail(Session):
 
 
 class SessionChanges(BaseModel):
-    """What people say about a session; what is left out stays as it is."""
+    """Changes of a session's texts; null leaves a field unchanged."""
 
     model_config = ConfigDict(extra="forbid")
     name: Annotated[Name, Field(min_length=1)] | None = None
@@ -126,7 +126,7 @@ class NewBookmark(BaseModel):
 
 
 class BookmarkChanges(BaseModel):
-    """What is to be different; what is left out stays as it is."""
+    """Changes of a bookmark; null leaves a field unchanged."""
 
     model_config = ConfigDict(extra="forbid")
     time: Moment | None = None

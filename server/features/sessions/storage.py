@@ -1,4 +1,4 @@
-"""How much the recordings take, and how much room there is."""
+"""Sizes of the recordings and free space of the disk."""
 
 import shutil
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a session's seek bar shows: events, markers, and where nothing was recorded."""
+"""Content of a session's seek bar: events, bookmarks and gaps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from server.platform.models import BookmarkRow, Chunk
 
 EVENTS_MAX = 2000
 HOLE_SECONDS = 3.0
-"""The robot's state is told once a second at least; this long without it, nothing of the robot came."""
+"""The robot's state is sent at least once a second; this long without it, nothing of the robot came."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Hole(BaseModel):
 
 
 class Timeline(BaseModel):
-    """A session as a whole, for whoever moves about in it."""
+    """A session as a whole, for its seek bar."""
 
     name: str
     state: State

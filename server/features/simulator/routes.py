@@ -17,7 +17,7 @@ router = APIRouter(prefix="/api")
 
 
 class Place(BaseModel):
-    """Whether the simulator runs on this computer."""
+    """Place of the simulator; `here` is true for this computer."""
 
     model_config = ConfigDict(extra="forbid")
     here: bool

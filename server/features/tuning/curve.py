@@ -1,4 +1,4 @@
-"""What was measured during an experiment: gathered from blocks, kept as bytes."""
+"""Measured curve of an experiment: gathered from blocks, stored as bytes."""
 
 import json
 import zlib
@@ -46,7 +46,7 @@ class Curve:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "Curve":
-        """What was kept; empty where nothing was."""
+        """The stored curve; empty where none was stored."""
         return cls(*json.loads(zlib.decompress(data))) if data else cls()
 
     def _columns(self) -> tuple[list[float], list[float], list[float], list[float]]:

@@ -1,4 +1,4 @@
-"""What comes of a run that has ended."""
+"""Results of a run that has ended."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ def measure_run(
     state: RunState,
     problem: str,
 ) -> tuple[dict[str, Any], Curve, str]:
-    """What was found, the curve, and why nothing was found.
+    """The results, the curve, and the reason where there are no results.
 
     `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
     """

@@ -1,4 +1,4 @@
-"""What the figures of a step response are, without the means to compute them."""
+"""Definitions of a step response's figures, without the code that computes them."""
 
 from server.features.metrics.figure import FigureMeaning
 
@@ -8,7 +8,7 @@ NEAR_DEGREES = 2.0
 
 
 def is_angle(loop: str) -> bool:
-    """Whether the loop's unit is rad, shown in degrees; else it is m."""
+    """True where the loop's unit is rad, shown in degrees; else it is m."""
     return loop != "depth"
 
 

@@ -61,7 +61,7 @@ class _Active:
         return self.phase in OVER
 
     def describe(self) -> ActiveTuning:
-        """As the pages are told."""
+        """As sent to the pages."""
         return ActiveTuning(
             run=self.run,
             kind=self.experiment.kind,
@@ -76,7 +76,7 @@ class _Active:
 
 
 class TuningRunner:
-    """At most one run at a time; `tell` hears of all progress, `occupied` says why none may begin now."""
+    """At most one run at a time; `tell` reports progress, `occupied` gives a reason against a start."""
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class TuningRunner:
         self._ending: asyncio.Task[None] | None = None
 
     def state(self) -> TuningState:
-        """What runs, and what ended last."""
+        """The active run and the last one."""
         active = None if self._active is None else self._active.describe()
         return TuningState(active=active, last=self._last)
 

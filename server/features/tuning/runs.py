@@ -35,7 +35,7 @@ class UnknownTuningRunError(NotFoundError):
 
 
 class TuningStore:
-    """All runs, kept until somebody deletes them. Methods raise StoreError, and UnknownRun."""
+    """All runs, stored until they are deleted. Methods raise StoreError, and UnknownRun."""
 
     def __init__(self, store: Store) -> None:
         self._store = store

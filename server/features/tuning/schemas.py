@@ -28,7 +28,7 @@ Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle 
 
 
 class Limits(BaseModel):
-    """What the value must stay within from when it has come there; beyond, the experiment ends at once."""
+    """Limits of the value from its first entry on; outside them the experiment ends at once."""
 
     model_config = ConfigDict(extra="forbid")
     low: Value
@@ -88,7 +88,7 @@ class Force(BaseModel):
 
 
 class MeasuredLimitCycle(BaseModel):
-    """What a relay experiment measured; medians over its cycles, values in the loop's unit."""
+    """Result of a relay experiment; medians over its cycles, values in the loop's unit."""
 
     cycles: int
     period: float = Field(description="ultimate period, s")
@@ -157,7 +157,7 @@ class TuningStarted(BaseModel):
 
 
 class TuningName(BaseModel):
-    """What a run is to be called."""
+    """A run's new name."""
 
     model_config = ConfigDict(extra="forbid")
     name: RunName
@@ -178,7 +178,7 @@ class ActiveTuning(BaseModel):
 
 
 class TuningState(BaseModel):
-    """What runs, and what ended last since the server started."""
+    """The active run, and the last one since the server's start."""
 
     active: ActiveTuning | None
     last: TuningRun | None

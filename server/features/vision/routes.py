@@ -67,5 +67,5 @@ async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
     responses=answers(_422="There are no settings in it that can be used"),
 )
 def read(document: VisionText) -> VisionSettings:
-    """What its table [vision] says. It changes nothing."""
+    """The settings of the document's table [vision]. Changes nothing."""
     return parse(VisionSettings, read_document(document.text))

@@ -1,4 +1,4 @@
-"""What the interface says about the vision node's settings."""
+"""Schemas of the vision node's settings."""
 
 from typing import Annotated
 
@@ -17,7 +17,7 @@ class VisionSetup(BaseModel):
 
 
 class PickPlace(BaseModel):
-    """Where somebody points in the picture."""
+    """A point of the picture that was clicked."""
 
     model_config = ConfigDict(extra="forbid")
     x: Annotated[Share, Field(description="share of the picture's width")]

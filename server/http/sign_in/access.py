@@ -1,4 +1,4 @@
-"""Who may come in: pairing, signing in by cookie or token, roles, and the end of all that."""
+"""Access to the server: pairing, signing in by cookie or token, roles, revocation."""
 
 from collections.abc import Callable
 from hmac import compare_digest
@@ -53,7 +53,7 @@ class Access:
         write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
     def identify(self, connection: HTTPConnection) -> Identity | None:
-        """Who asks. What is said to be a token must be one: a cookie beside it is not looked at."""
+        """The caller's identity. An authorization header counts alone: a cookie beside it is ignored."""
         header = connection.headers.get("authorization")
         if header is not None:
             if not header.lower().startswith(BEARER):
@@ -62,11 +62,11 @@ class Access:
         return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
 
     def still(self, identity: Identity) -> bool:
-        """Whether this is who it was when it asked."""
+        """True while this identity is valid and unchanged."""
         return identity == SHELL or any(device.identity == identity for device in self.devices.all())
 
     async def pair(self, code: str, name: str, known: Identity | None) -> tuple[Identity, str | None]:
-        """Let a browser in, and what its cookie is to hold; None where it has one, being `known`.
+        """Sign a browser in; its identity and its new cookie, None where it has one, being `known`.
 
         Such a one keeps its name, and its role where the code's is not a higher one.
         Raises WrongCodeError, TooManyTriesError, RefusedError, StoreError.
@@ -115,7 +115,7 @@ class Access:
         await self.devices.rename(number, name)
 
     async def revoke(self, number: int, by: Identity) -> None:
-        """It is nobody from now on, also on live sockets.
+        """Revoke a device, also on its live sockets.
 
         Raises UnknownDeviceError, RefusedError, StoreError.
         """

@@ -1,4 +1,4 @@
-"""Who has been paired, and in which role: looked up in memory, kept in the database."""
+"""Paired browsers and programs with their roles: looked up in memory, stored in the database."""
 
 import asyncio
 import logging
@@ -44,7 +44,7 @@ class Device:
 
     @property
     def identity(self) -> Identity:
-        """Who that is when it asks."""
+        """The identity of this device as a caller."""
         return Identity(self.id, self.name, self.role, self.kind)
 
 
@@ -82,11 +82,11 @@ class Devices:
 
     @property
     def operators(self) -> list[Device]:
-        """People who can let others in; a program lets nobody in by itself."""
+        """Operators that are browsers; only they can admit others."""
         return [one for one in self._devices.values() if (one.kind, one.role) == ("browser", "operator")]
 
     async def add(self, name: str, role: Role, kind: Kind) -> tuple[Device, str]:
-        """A new device, and the secret that proves it, which nobody can be told again.
+        """A new device, and its secret, which is not stored.
 
         Raises RefusedError where there are too many, StoreError.
         """

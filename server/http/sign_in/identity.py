@@ -15,7 +15,7 @@ IDENTITY = "identity"
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """Who asks. `device` is the number of the browser or program that was paired; 0 is the shell."""
+    """A caller. `device` is the number of the browser or program that was paired; 0 is the shell."""
 
     device: int
     name: str

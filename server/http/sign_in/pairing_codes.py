@@ -64,7 +64,7 @@ class Codes:
 
     @property
     def any_valid(self) -> bool:
-        """Whether somebody could pair now."""
+        """True while a code is valid."""
         self._forget_old()
         return bool(self._codes)
 
@@ -84,7 +84,7 @@ class Codes:
         return code
 
     def use(self, typed: str) -> Role:
-        """What a code stands for; it is void afterwards.
+        """The role of a code, which is then void.
 
         Raises WrongCodeError, which counts, and TooManyTriesError.
         """

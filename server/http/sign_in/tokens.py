@@ -1,4 +1,4 @@
-"""What proves who somebody is: random, given away once, and kept only as SHA-256."""
+"""Random secrets of devices: shown once, and stored only as SHA-256."""
 
 import secrets
 from hashlib import sha256

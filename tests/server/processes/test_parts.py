@@ -264,7 +264,10 @@ def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
         (tmp_path / "never").touch()
         left.process.kill()
         await until(lambda: crew.told, "the news")
-        assert "has ended; how is not known, for an earlier server had started it" in crew.told[0][1]
+        assert (
+            "has ended; its exit status is not known, because an earlier server had started it"
+            in crew.told[0][1]
+        )
         await until(lambda: crew.part("engine").pid not in (None, left.process.pid), "the next")
 
     run(crew, scenario)

@@ -212,11 +212,11 @@ def test_the_newest_backups_are_kept(settings: Settings, monkeypatch: pytest.Mon
     fill(settings, "one")
     moments = iter(f"2026-01-0{day}_00-00-00" for day in range(1, 9))
     monkeypatch.setattr(time, "strftime", lambda *_: next(moments))
-    for _ in range(database_copies.KEPT + 2):
+    for _ in range(database_copies.COPIES_MOST + 2):
         backup_command.back_up(settings.data, None)
     kept = sorted(path.name for path in settings.data.backups.glob("*.db"))
     assert kept == [f"mucat-backup-2026-01-0{day}_00-00-00.db" for day in range(3, 8)]
-    assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.KEPT
+    assert len(list(settings.data.backups.iterdir())) == 2 * database_copies.COPIES_MOST
 
 
 def test_a_second_writer_is_refused(settings: Settings) -> None:

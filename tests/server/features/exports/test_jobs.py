@@ -11,7 +11,7 @@ import pytest
 from httpx import AsyncClient
 
 from server.features.exports import export_process as child_module
-from server.features.exports.jobs import JOBS_MAX, KEPT_DAYS
+from server.features.exports.jobs import JOBS_MAX, RETENTION_DAYS
 from server.features.exports.schemas import ExportOptions, Job
 from server.platform.schema import prepare
 from server.platform.settings import Settings
@@ -121,7 +121,7 @@ def test_files_outlive_the_server_and_what_it_left_is_cleared_away(settings: Set
 
 
 def test_old_files_go(settings: Settings) -> None:
-    limit = datetime.now(UTC) - timedelta(days=KEPT_DAYS)
+    limit = datetime.now(UTC) - timedelta(days=RETENTION_DAYS)
     finished(settings, "a" * 16, limit - timedelta(minutes=1))
     young = finished(settings, "b" * 16, limit + timedelta(minutes=10))
 

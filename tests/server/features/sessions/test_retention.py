@@ -205,7 +205,7 @@ def test_old_sessions_go_but_never_what_is_kept_tagged_or_recording(keep: Keep) 
         assert keeper.names() == ["records", "young", "tagged", "kept"]
         assert keeper.names(deleted=True) == ["old"]
         assert [text for text in keeper.told if text.startswith("Older")] == [
-            "Older than 30 days: “old” went into the bin. Restore and keep what is to stay."
+            "Older than 30 days: “old” went into the bin. To keep one, restore it and mark it as kept."
         ]
 
     keep(SessionsConfig(keep_days=30.0, keep_free=0.0), scenario)
