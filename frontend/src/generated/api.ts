@@ -363,7 +363,7 @@ export interface paths {
         put?: never;
         /**
          * Lines for a part of the time
-         * @description What is fetched when somebody looks closer.
+         * @description The lines of a shorter time range in full resolution.
          */
         post: operations["compareLines"];
         delete?: never;
@@ -488,7 +488,7 @@ export interface paths {
         };
         /**
          * One export
-         * @description How far it is; its size and checksum when it is there.
+         * @description Progress of an export; its size and checksum when it is done.
          */
         get: operations["getExport"];
         put?: never;
@@ -1130,7 +1130,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel what runs
-         * @description What was recorded is kept; what waits is forgotten. Its end is told on the live socket.
+         * @description End the active run and clear the queue; recordings stay. The end is reported on the live socket.
          */
         post: operations["cancelScenario"];
         delete?: never;
@@ -1188,7 +1188,7 @@ export interface paths {
         };
         /**
          * What runs
-         * @description What runs, what waits, and what ended last, as on the live socket.
+         * @description The active run, the queue and the last run, as on the live socket.
          */
         get: operations["getScenarioState"];
         put?: never;
@@ -1234,7 +1234,7 @@ export interface paths {
         put?: never;
         /**
          * Start recording
-         * @description Record everything from now on; refused while another records, or the board is lent to a test.
+         * @description Record everything from now on; refused while another session records or a test uses the board.
          */
         post: operations["startSession"];
         delete?: never;
@@ -1448,7 +1448,7 @@ export interface paths {
         };
         /**
          * Events and markers
-         * @description What happened when in a session, and where nothing was recorded.
+         * @description A session's events, bookmarks and gaps.
          */
         get: operations["getTimeline"];
         put?: never;
@@ -1642,7 +1642,7 @@ export interface paths {
         put?: never;
         /**
          * Read the settings in a robot.toml
-         * @description What its table [vision] says. It changes nothing.
+         * @description The settings of the document's table [vision]. Changes nothing.
          */
         post: operations["readVision"];
         delete?: never;
@@ -1827,7 +1827,7 @@ export interface components {
         };
         /**
          * Bookmark
-         * @description A moment that somebody pointed out.
+         * @description A moment of a session with a text.
          */
         Bookmark: {
             /** Id */
@@ -1848,7 +1848,7 @@ export interface components {
         };
         /**
          * BookmarkChanges
-         * @description What is to be different; what is left out stays as it is.
+         * @description Changes of a bookmark; null leaves a field unchanged.
          */
         BookmarkChanges: {
             /** Text */
@@ -1916,7 +1916,7 @@ export interface components {
         };
         /**
          * Change
-         * @description Parameters that somebody changed together.
+         * @description Parameters that were changed together.
          */
         Change: {
             /** Id */
@@ -1961,7 +1961,7 @@ export interface components {
         };
         /**
          * Check
-         * @description What is wrong with a document, field by field; or its tests.
+         * @description A document's problems, field by field, or its tests.
          */
         Check: {
             /** Problems */
@@ -2275,7 +2275,7 @@ export interface components {
         };
         /**
          * ControlState
-         * @description Who has control, as on the live socket.
+         * @description The holder of control, as on the live socket.
          */
         ControlState: {
             /**
@@ -2299,7 +2299,7 @@ export interface components {
         };
         /**
          * DeviceChanges
-         * @description What is left out stays as it is.
+         * @description Changes of a device; null leaves a field unchanged.
          */
         DeviceChanges: {
             /** Name */
@@ -2491,7 +2491,7 @@ export interface components {
         };
         /**
          * ExportOptions
-         * @description What of a session is to be in the file, and as what.
+         * @description Choice of a session's topics, range and file format.
          */
         ExportOptions: {
             /**
@@ -2560,7 +2560,7 @@ export interface components {
         };
         /**
          * FigureMeaning
-         * @description What a figure is.
+         * @description Name, unit and definition of a figure.
          */
         FigureMeaning: {
             /**
@@ -2657,7 +2657,7 @@ export interface components {
         };
         /**
          * Identity
-         * @description Who asks. `device` is the number of the browser or program that was paired; 0 is the shell.
+         * @description A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
          */
         Identity: {
             /** Device */
@@ -2921,7 +2921,7 @@ export interface components {
         };
         /**
          * Me
-         * @description Who asks, as far as the server knows; `pairing_open` says whether some code is valid now.
+         * @description The signed-in caller; `pairing_open` says that some pairing code is valid now.
          */
         Me: {
             identity: components["schemas"]["Identity"] | null;
@@ -2939,7 +2939,7 @@ export interface components {
         };
         /**
          * MeasuredLimitCycle
-         * @description What a relay experiment measured; medians over its cycles, values in the loop's unit.
+         * @description Result of a relay experiment; medians over its cycles, values in the loop's unit.
          */
         MeasuredLimitCycle: {
             /**
@@ -3127,7 +3127,7 @@ export interface components {
         };
         /**
          * NextEvent
-         * @description What happens next.
+         * @description The next event of the run.
          */
         NextEvent: {
             /**
@@ -3153,7 +3153,7 @@ export interface components {
         };
         /**
          * OwnPanelScript
-         * @description What a panel's file holds: an ES module.
+         * @description A panel's file: an ES module.
          */
         OwnPanelScript: {
             /** Name */
@@ -3239,7 +3239,7 @@ export interface components {
         };
         /**
          * PickPlace
-         * @description Where somebody points in the picture.
+         * @description A point of the picture that was clicked.
          */
         PickPlace: {
             /**
@@ -3270,7 +3270,7 @@ export interface components {
         };
         /**
          * Place
-         * @description Whether the simulator runs on this computer.
+         * @description Place of the simulator; `here` is true for this computer.
          */
         Place: {
             /** Here */
@@ -3297,7 +3297,7 @@ export interface components {
         };
         /**
          * Problem
-         * @description What happened, why, and what to do.
+         * @description An error: its cause, and the remedy.
          */
         Problem: {
             /** Detail */
@@ -3382,7 +3382,7 @@ export interface components {
         };
         /**
          * RecordedTopic
-         * @description What a session holds of one topic; times are of the first and the last sample, s since its start.
+         * @description A recorded topic; times are of the first and the last sample, s since the session's start.
          */
         RecordedTopic: {
             /** Columns */
@@ -3457,7 +3457,7 @@ export interface components {
         };
         /**
          * Restored
-         * @description What a profile's restoring did.
+         * @description Result of restoring a profile.
          */
         Restored: {
             /** Changed */
@@ -3538,7 +3538,7 @@ export interface components {
         };
         /**
          * ScenarioCheck
-         * @description What is wrong with a scenario, field by field; else what it says.
+         * @description A scenario's problems, field by field, or its summary.
          */
         ScenarioCheck: {
             /** Problems */
@@ -3605,7 +3605,7 @@ export interface components {
         };
         /**
          * ScenarioState
-         * @description What runs, what waits, and what ended last.
+         * @description The active run, the queue and the last run.
          */
         ScenarioState: {
             active: components["schemas"]["ActiveRun"] | null;
@@ -3615,7 +3615,7 @@ export interface components {
         };
         /**
          * ScenarioSummary
-         * @description What a scenario says, in short.
+         * @description A scenario in short.
          */
         ScenarioSummary: {
             /**
@@ -3763,7 +3763,7 @@ export interface components {
         };
         /**
          * SessionChanges
-         * @description What people say about a session; what is left out stays as it is.
+         * @description Changes of a session's texts; null leaves a field unchanged.
          */
         SessionChanges: {
             /** Kept */
@@ -3926,7 +3926,7 @@ export interface components {
         };
         /**
          * ShownChart
-         * @description What a chart shows, by the names that recordings have (`motor.angle_2`), and how many seconds.
+         * @description A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s.
          */
         ShownChart: {
             /** Seconds */
@@ -4221,7 +4221,7 @@ export interface components {
         };
         /**
          * Timeline
-         * @description A session as a whole, for whoever moves about in it.
+         * @description A session as a whole, for its seek bar.
          */
         Timeline: {
             /**
@@ -4312,7 +4312,7 @@ export interface components {
         };
         /**
          * TuningName
-         * @description What a run is to be called.
+         * @description A run's new name.
          */
         TuningName: {
             /** Name */
@@ -4448,7 +4448,7 @@ export interface components {
         };
         /**
          * TuningState
-         * @description What runs, and what ended last since the server started.
+         * @description The active run, and the last one since the server's start.
          */
         TuningState: {
             active: components["schemas"]["ActiveTuning"] | null;
@@ -6345,7 +6345,7 @@ export interface operations {
                     "application/json": components["schemas"]["Parameters"];
                 };
             };
-            /** @description The robot is lent to a communication test */
+            /** @description A communication test uses the robot's board */
             409: {
                 headers: {
                     [name: string]: unknown;
