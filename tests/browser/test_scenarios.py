@@ -32,12 +32,12 @@ def open_scenarios(page: Page) -> None:
 
 def hold_to_run(page: Page) -> None:
     """Run it on the running robot, as a person does."""
-    page.get_by_role("radio", name="Live, on the running robot").check()
+    page.get_by_role("radio", name="On the robot, live").check()
     hold = page.get_by_role("button", name="Hold to run live")
     expect(hold).to_be_enabled()
     hold.hover()
     page.mouse.down()
-    expect(page.get_by_role("region", name="Running now")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_role("region", name="Running")).to_be_visible(timeout=STEP_MS)
     page.mouse.up()
 
 
@@ -50,9 +50,9 @@ def robot_at_rest(stack: Stack) -> None:
 def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
     open_scenarios(any_page)
     expect(any_page.get_by_role("radio")).to_have_count(7)
-    expect(any_page.get_by_role("radio", name="In simulated time")).to_be_checked()
+    expect(any_page.get_by_role("radio", name="In simulation")).to_be_checked()
     expect(any_page.get_by_role("radio", name=re.compile("Figure 14"))).to_be_checked()
-    happens = any_page.get_by_role("list", name="What happens").get_by_role("listitem")
+    happens = any_page.get_by_role("list", name="Events").get_by_role("listitem")
     expect(happens).to_have_count(5)
     any_page.get_by_role("radio", name=re.compile("The link is lost")).check()
     expect(happens).to_have_count(12)
@@ -65,23 +65,23 @@ def test_the_shipped_ones_are_shown_with_what_happens(any_page: Page) -> None:
 def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
-    text = page.get_by_role("textbox", name="The scenario as TOML")
+    text = page.get_by_role("textbox", name="Scenario as TOML")
     text.fill(TEXT.replace("depth = 3.0", "deep = 3.0"))
     expect(page.get_by_text("scene: depth is missing")).to_be_visible(timeout=STEP_MS)
     expect(page.get_by_role("button", name="Run in simulation")).to_be_disabled()
     text.fill(TEXT)
-    expect(page.get_by_text("Nothing is wrong with it.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("The scenario is valid.")).to_be_visible(timeout=STEP_MS)
     hold_to_run(page)
 
-    running = page.get_by_role("region", name="Running now")
+    running = page.get_by_role("region", name="Running")
     expect(running.get_by_role("heading", name="From the page")).to_be_visible(timeout=STEP_MS)
     expect(running.get_by_role("progressbar")).to_have_attribute("aria-valuemax", "3")
     expect(running.get_by_text("Yellow card")).to_be_visible(timeout=STEP_MS)
-    ended = page.get_by_role("region", name="Ended last")
+    ended = page.get_by_role("region", name="Last run")
     expect(ended.get_by_text("complete", exact=True)).to_be_visible(timeout=STEP_MS)
     session = stack.api.get("/sessions").json()[0]
     assert session["name"] == "From the page"
-    expect(ended.get_by_role("link", name="Its session")).to_have_attribute(
+    expect(ended.get_by_role("link", name="Session")).to_have_attribute(
         "href", f"#/sessions/{session['id']}"
     )
 
@@ -90,14 +90,14 @@ def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> 
 def test_stop_on_the_page_ends_it(page: Page) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
-    text = page.get_by_role("textbox", name="The scenario as TOML")
+    text = page.get_by_role("textbox", name="Scenario as TOML")
     text.fill(TEXT.replace("duration = 3", "duration = 300"))
-    expect(page.get_by_text("Nothing is wrong with it.")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("The scenario is valid.")).to_be_visible(timeout=STEP_MS)
     hold_to_run(page)
     armed = page.get_by_role("banner").get_by_text(re.compile("^ARMED"))
     expect(armed).to_be_visible(timeout=STEP_MS)
     page.keyboard.press("Escape")
-    ended = page.get_by_role("region", name="Ended last")
+    ended = page.get_by_role("region", name="Last run")
     expect(ended.get_by_text("Somebody pressed STOP.")).to_be_visible(timeout=STEP_MS)
     expect(ended.get_by_text("cancelled", exact=True)).to_be_visible()
 
@@ -105,10 +105,10 @@ def test_stop_on_the_page_ends_it(page: Page) -> None:
 @pytest.mark.usefixtures("robot_at_rest")
 def test_one_click_does_not_run_it_live(page: Page) -> None:
     open_scenarios(page)
-    page.get_by_role("radio", name="Live, on the running robot").check()
+    page.get_by_role("radio", name="On the robot, live").check()
     hold = page.get_by_role("button", name="Hold to run live")
     hold.click()
     expect(hold).to_be_visible()
-    expect(page.get_by_role("region", name="Running now")).to_have_count(0)
+    expect(page.get_by_role("region", name="Running")).to_have_count(0)
     hold.press("Enter")
     expect(page.get_by_role("button", name="Press again to run live")).to_be_visible()

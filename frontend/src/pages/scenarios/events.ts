@@ -1,4 +1,5 @@
 import type { ScenarioEvent } from '../../api';
+import { scenarios as texts } from '../../texts/scenarios';
 
 /** Whose doing an event is; each has a shape and a colour of its own. */
 export type Sort = 'operator' | 'water' | 'fault' | 'marker';
@@ -14,10 +15,10 @@ const SORTS: Readonly<Record<string, Sort>> = {
 };
 
 export const LEGEND: readonly { readonly sort: Sort; readonly words: string }[] = [
-  { sort: 'operator', words: 'operator' },
-  { sort: 'water', words: 'water' },
-  { sort: 'fault', words: 'fault' },
-  { sort: 'marker', words: 'marker' },
+  { sort: 'operator', words: texts.legend.operator },
+  { sort: 'water', words: texts.legend.water },
+  { sort: 'fault', words: texts.legend.fault },
+  { sort: 'marker', words: texts.legend.bookmark },
 ];
 
 export const sortOf = (event: ScenarioEvent): Sort => SORTS[event.do] ?? 'operator';
