@@ -29,18 +29,18 @@ const said = (facts: ReturnType<typeof linkFacts>) => Object.fromEntries(facts.m
 it('shows every figure of the line', () => {
   expect(said(linkFacts(LINE, ROW))).toMatchObject({
     'Round trip': '48.2 ± 22.6',
-    'Repeats after': '100.0',
+    'Retransmit timeout': '100.0',
     Received: '99 frames, 5.0 kB',
     Sent: '80 frames, 1.2 kB',
     Delivered: '0.48 kB/s (50 %)',
     'Frames missed': '1 (1.00 %)',
     'Frames invalid': '2',
-    'Frames repeated': '3',
-    'Frames doubled': '4',
+    'Frames retransmitted': '3',
+    'Duplicate frames': '4',
     'Messages discarded': '5',
-    "Board's room": '255',
-    "Board's clock, uncertain by": '0.12',
-    "Board's clock, slow by": '20',
+    'Receive buffer': '255',
+    'Clock uncertainty': '0.12',
+    'Clock drift': '20',
   });
 });
 

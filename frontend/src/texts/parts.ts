@@ -5,5 +5,8 @@ export const parts = {
   starting: 'Starting…',
   saving: 'Saving…',
   cancel: 'Cancel',
+  copy: 'Copy',
+  save: 'Save',
   replay: 'Replay',
+  tryAgain: 'Try again',
 } as const;

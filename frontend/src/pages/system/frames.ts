@@ -1,5 +1,8 @@
 import type { LinkFrame } from '../../api';
 import { fixed } from '../../format';
+import { system } from '../../texts/system';
+
+const texts = system.frames;
 
 export type Way = 'both' | 'sent' | 'received';
 
@@ -7,21 +10,8 @@ export type Way = 'both' | 'sent' | 'received';
 export const ANY = '';
 export const INVALID = 'invalid';
 
-/** Names of the packets, as people call what they carry. */
-const WORDS: Record<string, string> = {
-  Stop: 'stop',
-  Start: 'start',
-  Navigation: 'navigation',
-  Imu: 'attitude',
-  Depth: 'depth',
-  Beacon: 'beacon',
-  Motor: 'fins',
-  Debug: 'debug text',
-  Hello: 'greeting',
-  Status: 'status',
-  Heartbeat: 'heartbeat',
-  Acknowledge: 'acknowledgement',
-};
+/** Names of the packets by their content. */
+const WORDS: Readonly<Record<string, string>> = texts.kinds;
 
 export const kindWord = (kind: string): string => WORDS[kind] ?? kind;
 
@@ -29,8 +19,8 @@ export const kindWord = (kind: string): string => WORDS[kind] ?? kind;
 export function messageWords(frame: LinkFrame): string {
   const counts = new Map<string, number>();
   for (const kind of frame.kinds) counts.set(kind, (counts.get(kind) ?? 0) + 1);
-  const words = [...counts].map(([kind, count]) => (count === 1 ? kindWord(kind) : `${count} × ${kindWord(kind)}`));
-  return words.length > 0 ? words.join(', ') : 'unreadable';
+  const words = [...counts].map(([kind, count]) => (count === 1 ? kindWord(kind) : texts.several(count, kindWord(kind))));
+  return words.length > 0 ? words.join(', ') : texts.unreadable;
 }
 
 /** Bytes on the line, with the closing zero. */
@@ -42,7 +32,7 @@ export const spacedBytes = (frame: LinkFrame): string => frame.bytes.replace(/..
 /** The number that a frame bears: of a reliable one it is marked, since those count by themselves. */
 export function numberWords(frame: LinkFrame): string {
   if (frame.number === null) return '';
-  if (frame.open) return 'open';
+  if (frame.open) return texts.open;
   return frame.reliable ? `R ${frame.number}` : String(frame.number);
 }
 
@@ -68,12 +58,12 @@ export function asText(title: string, frames: readonly LinkFrame[], newest: numb
   const lines = frames.map((frame) =>
     [
       `${(frame.time - newest).toFixed(3)} s`,
-      frame.sent ? 'to board' : 'from board',
+      frame.sent ? texts.file.toBoard : texts.file.fromBoard,
       messageWords(frame),
-      numberWords(frame) === '' ? '-' : `number ${numberWords(frame)}`,
-      frame.acknowledged === null ? '-' : `awaits ${frame.acknowledged}`,
+      numberWords(frame) === '' ? '-' : texts.file.number(numberWords(frame)),
+      frame.acknowledged === null ? '-' : texts.file.awaits(frame.acknowledged),
       `${sizeOf(frame)} B`,
-      frame.problem === '' ? 'valid' : `INVALID: ${frame.problem}`,
+      frame.problem === '' ? texts.file.valid : texts.file.invalid(frame.problem),
       frame.bytes,
     ].join('\t'),
   );

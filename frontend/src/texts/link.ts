@@ -1,0 +1,20 @@
+/** Names of the serial link's figures, each with its meaning. */
+export const link = {
+  connection: 'Connection',
+  port: 'Port',
+  baud: { name: 'Speed', meaning: 'Set in robot.toml (link.baud) and compiled into the firmware' },
+  roundTrip: { name: 'Round trip', meaning: 'From a reliable frame to its acknowledgement: smoothed mean ± mean deviation' },
+  timeout: { name: 'Retransmit timeout', meaning: 'A reliable frame is sent again if no acknowledgement comes within this time' },
+  received: { name: 'Received', meaning: 'Valid frames and all bytes since the port was opened' },
+  sent: { name: 'Sent', meaning: 'Frames and bytes since the port was opened' },
+  framesAndBytes: (frames: string, bytes: string) => `${frames} frames, ${bytes}`,
+  delivered: { name: 'Delivered', meaning: 'Content of the messages received in the last second, and its share of the line’s capacity' },
+  missed: { name: 'Frames missed', meaning: 'Gaps in the numbers of the board’s telemetry: lost on the line, or dropped because a buffer was full' },
+  invalid: { name: 'Frames invalid', meaning: 'Rejected: noise, wrong checksum or wrong length' },
+  retransmitted: { name: 'Frames retransmitted', meaning: 'Reliable frames sent again because no acknowledgement came' },
+  duplicate: { name: 'Duplicate frames', meaning: 'Received a second time and ignored' },
+  discarded: { name: 'Messages discarded', meaning: 'Not yet acknowledged when the board restarted, and not sent again' },
+  buffer: { name: 'Receive buffer', meaning: 'Credit: bytes that the board can receive at once' },
+  clockError: { name: 'Clock uncertainty', meaning: 'Standard deviation of the board’s time on this computer’s clock' },
+  clockDrift: { name: 'Clock drift', meaning: 'By how much the board’s clock runs slower than this computer’s, in millionths' },
+} as const;
