@@ -52,7 +52,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
 
     # At the beginning the robot was disarmed; at the marker it dived.
     expect(page.get_by_text("Disarmed", exact=True).first).to_be_visible()
-    page.get_by_role("button", name="Next marker").click()
+    page.get_by_role("button", name="Next bookmark").click()
     wait_for_depth(page, there - 0.0051, there + 0.0051)
     expect(page.get_by_text("The fins may move")).to_have_count(0)
     expect(page.get_by_text(re.compile("^ARMED"))).to_be_visible()
@@ -69,9 +69,9 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
 
     page.keyboard.press("Shift+ArrowLeft")
     page.get_by_role("button", name="Mark", exact=True).click()
-    page.get_by_label(re.compile("^Mark 00:00")).fill("the beginning")
+    page.get_by_label(re.compile("^Bookmark at 00:00")).fill("the beginning")
     page.keyboard.press("Enter")
-    expect(page.get_by_role("button", name="Marker the beginning")).to_be_attached()
+    expect(page.get_by_role("button", name="Bookmark the beginning")).to_be_attached()
     marks = stack.api.get(f"/sessions/{session}/timeline").json()["markers"]
     assert [one["text"] for one in marks] == ["the beginning", "on the way down"]
     assert commands == []
@@ -83,7 +83,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     expect(page.locator(".now")).to_contain_text("disarmed")
     assert all(one.endswith("/robot/stop") for one in commands)
     # What is shown is the recording still, and not what the robot did meanwhile.
-    page.get_by_role("button", name="Next marker").click()
+    page.get_by_role("button", name="Next bookmark").click()
     wait_for_depth(page, there - 0.0051, there + 0.0051)
 
 
