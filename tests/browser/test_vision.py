@@ -59,14 +59,14 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
     page = any_page
     page.goto(f"{stack.url}/#/tune/vision")
     expect(seen(page)).to_have_text("blue")
-    expect(page.get_by_text("nothing is done about it")).to_be_visible()
+    expect(page.get_by_text("no set point of its own")).to_be_visible()
 
     pick_the_middle(page)
-    picked = page.get_by_role("region", name="The colour that was picked")
-    expect(picked).to_contain_text("Nothing is changed yet")
+    picked = page.get_by_role("region", name="Picked colour")
+    expect(picked).to_contain_text("Not saved yet")
     assert stack.api.get("/vision").json()["settings"] == settings
     picked.get_by_label("Name of the new colour").fill("buoy")
-    picked.get_by_role("button", name="Use and look for it").click()
+    picked.get_by_role("button", name="Save and detect it").click()
 
     mask = page.get_by_role("region", name="Mask of buoy").locator("img")
     page.wait_for_function(
@@ -79,14 +79,14 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
     expect(page.get_by_text("set point 0.80 m", exact=True)).to_be_visible()
     page.wait_for_function("async () => (await (await fetch('/api/robot')).json()).set_point === 0.8")
 
-    # What is kept of it outlasts the page.
+    # The stored settings outlast the page.
     page.reload()
-    expect(page.get_by_role("radio", name="Look for buoy")).to_be_checked()
-    page.get_by_role("button", name="As in robot.toml").click()
+    expect(page.get_by_role("radio", name="Target buoy")).to_be_checked()
+    page.get_by_role("button", name="Restore robot.toml").click()
     expect(page.get_by_role("region", name="Mask of yellow")).to_be_visible()
     page.wait_for_function("async () => (await (await fetch('/api/robot')).json()).set_point === 0.5")
     page.get_by_role("button", name="Undo").click()
-    expect(page.get_by_role("radio", name="Look for buoy")).to_be_checked()
+    expect(page.get_by_role("radio", name="Target buoy")).to_be_checked()
 
 
 @pytest.mark.parametrize("card", ["marker 7"], indirect=True)

@@ -1,4 +1,5 @@
 import type { ColourRange, VisionSettings } from '../../../api';
+import { vision as texts } from '../../../texts/vision';
 
 /** OpenCV halves the colour circle's degrees. */
 export const HUES = 180;
@@ -28,15 +29,15 @@ export function middle(range: ColourRange): string {
 /** A name that no colour has yet. */
 export function freeName(colours: VisionSettings['colours']): string {
   let number = 1;
-  while (`colour ${number}` in colours) number += 1;
-  return `colour ${number}`;
+  while (texts.colours.newName(number) in colours) number += 1;
+  return texts.colours.newName(number);
 }
 
 /** Why a colour cannot be named so, in words; empty where it can. */
 export function nameProblem(name: string, colours: VisionSettings['colours'], own = ''): string {
-  if (!/^\p{L}[\p{L}\p{N}_ .-]{0,31}$/u.test(name)) return 'A name is a letter and up to 31 letters, digits, blanks and . _ -';
-  if (/^marker \d+$/.test(name)) return 'That names a marker.';
-  if (name !== own && name in colours) return 'There is a colour of that name.';
+  if (!/^\p{L}[\p{L}\p{N}_ .-]{0,31}$/u.test(name)) return texts.colours.invalidName;
+  if (/^marker \d+$/.test(name)) return texts.colours.markerName;
+  if (name !== own && name in colours) return texts.colours.nameTaken;
   return '';
 }
 
