@@ -75,4 +75,6 @@ def show(page: Page, stack: Stack, view: View) -> None:
 
 def settle(page: Page) -> None:
     """Wait until nothing says that it is on its way."""
-    expect(page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))).to_have_count(0)
+    expect(
+        page.get_by_text(re.compile("being (fetched|read|compared|checked)|(Loading|Checking)…"))
+    ).to_have_count(0)

@@ -81,9 +81,7 @@ def test_one_is_written_run_and_found_as_a_session(page: Page, stack: Stack) -> 
     expect(ended.get_by_text("complete", exact=True)).to_be_visible(timeout=STEP_MS)
     session = stack.api.get("/sessions").json()[0]
     assert session["name"] == "From the page"
-    expect(ended.get_by_role("link", name="Session")).to_have_attribute(
-        "href", f"#/sessions/{session['id']}"
-    )
+    expect(ended.get_by_role("link", name="Session")).to_have_attribute("href", f"#/sessions/{session['id']}")
 
 
 @pytest.mark.usefixtures("robot_at_rest")
