@@ -1,6 +1,7 @@
-/** Rules of the page's house: which room may import which, and that a component's name is there once. */
+/** Rules of the page's house: which room may import which, that a component's name is there once, and that texts stand apart. */
 import { existsSync, readdirSync } from 'node:fs';
 import path from 'node:path';
+import { textsApart } from './texts.js';
 
 const SOURCES = path.resolve(import.meta.dirname, '../src');
 
@@ -96,4 +97,4 @@ const componentOnce = {
   },
 };
 
-export const house = { rules: { rooms, 'component-once': componentOnce } };
+export const house = { rules: { rooms, 'component-once': componentOnce, 'texts-apart': textsApart } };

@@ -53,7 +53,7 @@ def test_a_viewer_stops_and_does_not_arm(page: Page, browser: Browser, stack: St
 
 def test_an_operator_lets_in_promotes_and_revokes(page: Page, browser: Browser, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/people")
-    page.get_by_role("region", name="Let somebody in").get_by_role("button", name="Make a link").click()
+    page.get_by_role("region", name="Invite").get_by_role("button", name="Create link").click()
     expect(page.get_by_alt_text("QR code of the link")).to_have_js_property("complete", True)
     assert page.get_by_alt_text("QR code of the link").evaluate("picture => picture.naturalWidth") > 0
     link = page.get_by_label("Link", exact=True).input_value()
@@ -84,7 +84,7 @@ def test_a_token_is_shown_once(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/people")
     tokens = page.get_by_role("region", name="Token for a program")
     tokens.get_by_label("Name of the program").fill("depth logger")
-    tokens.get_by_role("button", name="Make a token").click()
+    tokens.get_by_role("button", name="Create token").click()
     expect(tokens.get_by_label("Token", exact=True)).to_have_value(re.compile("^mucat_"))
     tokens.get_by_role("button", name="Done").click()
     expect(tokens.get_by_label("Token", exact=True)).to_be_hidden()

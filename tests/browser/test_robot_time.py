@@ -31,9 +31,9 @@ def test_an_invitation_lasts_as_long_as_the_robot_says(page: Page, stack: Stack)
     page.clock.install(time=AHEAD)
     page.goto(f"{stack.url}/#/people")
     page.reload()
-    people = page.get_by_role("region", name="Let somebody in")
-    people.get_by_role("button", name="Make a link").click()
-    expect(people.get_by_text(re.compile(r"good for (10:00|09:\d\d)"))).to_be_visible()
+    people = page.get_by_role("region", name="Invite")
+    people.get_by_role("button", name="Create link").click()
+    expect(people.get_by_text(re.compile(r"valid for (10:00|09:\d\d)"))).to_be_visible()
 
 
 def test_the_clock_shows_the_robots_time(page: Page) -> None:

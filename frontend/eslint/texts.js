@@ -1,0 +1,65 @@
+/** Texts that a person reads or hears stand in src/texts, one module per page, not in the markup. */
+import path from 'node:path';
+
+const SOURCES = path.resolve(import.meta.dirname, '../src');
+/** The folders and components below src whose texts have moved there; it grows until it is `['']`, everything. */
+const CONVERTED = ['pages/people/'];
+
+/** Attributes and properties of components that a person reads or hears. */
+const READ = new Set([
+  'about', 'alt', 'aria-description', 'aria-label', 'aria-roledescription', 'aria-valuetext', 'caption', 'data-label', 'heading', 'hint', 'label',
+  'legend', 'meaning', 'placeholder', 'problem', 'text', 'title', 'words', 'zero',
+]);
+
+const WORD = /\p{L}{2}/u;
+
+/** The literal texts that an expression may show: its own, and those of its branches and its template. */
+function literals(expression) {
+  switch (expression.type) {
+    case 'Literal':
+      return typeof expression.value === 'string' ? [expression] : [];
+    case 'TemplateLiteral':
+      return [...expression.quasis, ...expression.expressions.flatMap(literals)];
+    case 'ConditionalExpression':
+      return [expression.consequent, expression.alternate].flatMap(literals);
+    case 'LogicalExpression':
+    case 'BinaryExpression':
+      return expression.operator === '+' || expression.type === 'LogicalExpression' ? [expression.left, expression.right].flatMap(literals) : [];
+    default:
+      return [];
+  }
+}
+
+const words = (node) => (node.type === 'TemplateElement' ? node.value.cooked : String(node.value));
+
+/** Whether what stands directly in this node is code, for machines: an element of styles, of a script or of code. */
+function isCode(node) {
+  return ['SvelteStyleElement', 'SvelteScriptElement'].includes(node.type) || (node.type === 'SvelteElement' && node.name.name === 'code');
+}
+
+export const textsApart = {
+  meta: { type: 'problem', messages: { literal: '“{{ words }}” is read by people: it belongs in src/texts.' }, schema: [] },
+  create(context) {
+    const file = path.relative(SOURCES, context.filename);
+    if (!file.endsWith('.svelte') || !CONVERTED.some((place) => file.startsWith(place))) return {};
+    function check(node) {
+      const text = words(node).trim();
+      if (WORD.test(text)) context.report({ node, messageId: 'literal', data: { words: text } });
+    }
+    function checkAttribute(node) {
+      if (!READ.has(node.key.name)) return;
+      for (const value of node.value) {
+        if (value.type === 'SvelteLiteral') check(value);
+        else literals(value.expression).forEach(check);
+      }
+    }
+    function checkExpression(node) {
+      if (node.parent.type !== 'SvelteAttribute') literals(node.expression).forEach(check);
+    }
+    return {
+      SvelteText: (node) => isCode(node.parent) || check(node),
+      SvelteAttribute: checkAttribute,
+      SvelteMustacheTag: checkExpression,
+    };
+  },
+};

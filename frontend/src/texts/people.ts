@@ -1,0 +1,65 @@
+/** Texts of the page People. */
+
+const ROLES = { viewer: 'viewer', operator: 'operator' } as const;
+type Role = keyof typeof ROLES;
+
+export const people = {
+  title: 'People',
+  about: 'Browsers and programs that can use this robot.',
+  back: '← System',
+  roles: ROLES,
+  roleChoice: {
+    legend: 'Role',
+    about: { viewer: 'can watch and press STOP', operator: 'can also control the robot and invite others' },
+  },
+  you: {
+    title: 'You',
+    can: {
+      viewer: 'You can watch everything, open recordings, and press STOP at any time.',
+      operator: 'You can control and arm the robot, drive, change settings, record, and invite others.',
+    },
+    cannot: {
+      viewer: 'You cannot control the robot, change settings, record, or invite others. An operator can change your role.',
+      operator: '',
+    },
+    signOut: 'Sign out',
+  },
+  devices: {
+    title: 'Browsers and programs',
+    role: 'Role',
+    lastSeen: 'Last seen',
+    actions: 'Change or revoke',
+    thisOne: 'this browser',
+    since: (kind: string, time: string) => `${kind}, since ${time}`,
+    revokeSelf: 'You will be signed out here.',
+    revokeOther: 'Signs it out at once. It needs a new code to sign in again.',
+    revoke: 'Revoke',
+    revokeAsk: 'Revoke…',
+    revokeNamed: (name: string) => `Revoke ${name}`,
+    make: (role: Role) => `Make ${ROLES[role]}`,
+    makeNamed: (role: Role, name: string) => `Make ${ROLES[role]}: ${name}`,
+  },
+  invite: {
+    title: 'Invite',
+    qrCode: 'QR code of the link',
+    signsInAs: 'This link signs one browser in as',
+    once: 'It works once.',
+    link: 'Link',
+    code: 'Code',
+    validFor: 'valid for',
+    create: 'Create link',
+    expired: 'The link has expired. Create another one.',
+  },
+  tokens: {
+    title: 'Token for a program',
+    tokenOf: 'Token of',
+    copyNow: 'Copy it now. It is not shown again.',
+    token: 'Token',
+    sendAs: 'The program sends it as',
+    programName: 'Name of the program',
+    programExample: 'depth logger',
+    create: 'Create token',
+  },
+  copy: 'Copy',
+  copied: 'Copied',
+} as const;
