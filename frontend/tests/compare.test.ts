@@ -44,8 +44,8 @@ describe('charts', () => {
     expect(charts.map(({ title }) => title)).toEqual([
       'Depth',
       'Depth error',
-      'Command downwards',
-      'Colour detected, share of the picture',
+      'Heave command',
+      'Detected colour, share of the picture',
     ]);
     expect(charts[0]?.signals.map(({ wanted }) => wanted)).toEqual([false, true]);
     expect(charts.map(({ downwards }) => downwards)).toEqual([true, false, false, false]);

@@ -60,7 +60,7 @@ describe('words and addresses', () => {
   it('says what is missing', () => {
     const gap = { topic: 'imu', kind: 'missed', time: 1, missed: 1 } as const;
     expect(gapWords(gap)).toBe('1 sample of imu never arrived');
-    expect(gapWords({ ...gap, kind: 'not stored', missed: 2 })).toContain('2 samples of imu could not be stored');
+    expect(gapWords({ ...gap, kind: 'not stored', missed: 2 })).toContain('2 samples of imu not stored');
   });
 
   it('links to a moment', () => {

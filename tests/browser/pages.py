@@ -33,7 +33,7 @@ PAGES = (
     View("comm-test", "comm-tests/runs/{run}", "Every cell"),
     View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Side by side"),
     View("sessions", "sessions", "Recorded"),
-    View("session", "sessions/{first}", "Take it home"),
+    View("session", "sessions/{first}", "Export"),
     View("sessions-compare", "sessions/compare/{first},{second}", "Over time"),
     View("replay", "replay/{first}/{moment}", "of Dive to half"),
     View("system", "system", "Parts"),

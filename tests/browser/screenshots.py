@@ -118,7 +118,7 @@ def take(browser: Browser, stack: Stack, folder: Path) -> None:
 def draw(page: Page) -> None:
     """Wait until pictures and charts are there."""
     settle(page)
-    expect(page.get_by_text(re.compile("being drawn"))).to_have_count(0)
+    expect(page.get_by_text(re.compile("being drawn|Loading charts"))).to_have_count(0)
     page.wait_for_function(SHOWN)
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 

@@ -35,7 +35,7 @@ def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack
 
     page.get_by_role("button", name="Figures 14 to 16").click()
     expect(page.locator(".ytick").first).to_be_visible()
-    expect(page.get_by_text("Command downwards")).to_be_visible(timeout=STEP_MS)
+    expect(page.get_by_text("Heave command")).to_be_visible(timeout=STEP_MS)
     figures = page.get_by_role("region", name="Figures of the sessions")
     strokes = figures.get_by_role("row", name=re.compile("^Fin strokes"))
     expect(strokes.get_by_role("button").nth(1)).to_have_text(re.compile(r"^\d+$"))
@@ -54,7 +54,7 @@ def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack
     page.get_by_label("From", exact=True).fill("0.5")
     page.get_by_label("From", exact=True).press("Enter")
     expect(page.get_by_role("button", name="Whole time")).to_be_enabled()
-    page.get_by_role("button", name="What is shown").click()
+    page.get_by_role("button", name="Visible range").click()
     expect(page.get_by_role("button", name=re.compile(r"^0\.5 to "))).to_be_visible()
 
     check_files(page, tmp_path)
@@ -97,7 +97,7 @@ def check_report(page: Page, browser: Browser, path: Path) -> None:
 
 def test_an_address_that_names_nothing_says_what_to_do(any_page: Page, stack: Stack) -> None:
     any_page.goto(f"{stack.url}/#/sessions/compare/")
-    expect(any_page.get_by_text("No session is chosen")).to_be_visible()
+    expect(any_page.get_by_text("No session selected")).to_be_visible()
     any_page.goto(f"{stack.url}/#/sessions/compare/999999")
     expect(
         any_page.get_by_text("There is no session 999999; the list of sessions has those that there are.")

@@ -91,7 +91,7 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     page.get_by_role("button", name="Stop recording").click()
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="figure 14", exact=True).click()
-    page.get_by_role("button", name="Make the file").click()
+    page.get_by_role("button", name="Create file").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Download").click()
     path = tmp_path / "session.zip"

@@ -1,6 +1,7 @@
 /** Which signals share a chart, and how they are drawn in it. */
 import type { Signal } from '../../../api';
 import type { ChoiceGroup } from '../../../parts/choices';
+import { compare as texts } from '../../../texts/compare';
 
 export interface ChartSignal {
   readonly signal: Signal;
@@ -26,20 +27,17 @@ export const DEPTH = 'depth.depth';
 export const SET_POINT = 'control.set_point';
 
 export const PRESETS: readonly Preset[] = [
-  { name: 'Depth', hint: 'depth and set point', signals: [DEPTH, SET_POINT] },
+  { ...texts.presets.depth, signals: [DEPTH, SET_POINT] },
   {
-    name: 'Figures 14 to 16',
-    hint: 'as in the thesis: depth and set point, their difference, the command, what the camera detects',
+    ...texts.presets.thesis,
     signals: [DEPTH, SET_POINT, 'control.error', 'navigation.z', 'detection.area'],
   },
   {
-    name: 'Fins',
-    hint: 'wanted and measured angle of each fin',
+    ...texts.presets.fins,
     signals: [0, 1, 2, 3].flatMap((fin) => [`motor.angle_${fin}`, `motor.wanted_${fin}`]),
   },
 ];
 
-const FINS = ['front right', 'back right', 'back left', 'front left'];
 const DEPTHS = new Set([
   DEPTH,
   SET_POINT,
@@ -50,12 +48,12 @@ const DEPTHS = new Set([
   'truth.position_2',
 ]);
 const TITLES: Readonly<Record<string, string>> = {
-  'control.error': 'Depth error',
-  'control.output': 'Command downwards',
-  'navigation.z': 'Command downwards',
-  'detection.area': 'Colour detected, share of the picture',
-  'detection.seen': 'Colour detected',
-  'status.battery': 'Battery',
+  'control.error': texts.charts.depthError,
+  'control.output': texts.charts.command,
+  'navigation.z': texts.charts.command,
+  'detection.area': texts.charts.colourArea,
+  'detection.seen': texts.charts.colour,
+  'status.battery': texts.charts.battery,
 };
 
 /** The charts of these signals, from top to bottom in the order in which they were chosen. */
@@ -82,7 +80,7 @@ export function gather(lists: readonly (readonly Signal[])[]): ChoiceGroup[] {
       .filter((signal) => signal.topic === topic)
       .map(({ name, column, unit, meaning }) => {
         const having = lists.filter((list) => list.some((signal) => signal.name === name)).length;
-        const note = having < lists.length ? { note: `in ${having} of ${lists.length} sessions` } : {};
+        const note = having < lists.length ? { note: texts.signals.inSessions(having, lists.length) } : {};
         return { name, label: columnWords(column), unit, meaning, ...note };
       }),
   }));
@@ -94,9 +92,9 @@ export function columnWords(column: string): string {
 }
 
 function titleOf({ name, topic, column, meaning }: Signal): string {
-  if (DEPTHS.has(name)) return 'Depth';
+  if (DEPTHS.has(name)) return texts.charts.depth;
   const fin = /^(angle|wanted|drive)_([0-3])$/.exec(column);
-  if (topic === 'motor' && fin) return `${fin[1] === 'drive' ? 'Drive' : 'Fin'}, ${FINS[Number(fin[2])] ?? ''}`;
+  if (topic === 'motor' && fin) return texts.charts[fin[1] === 'drive' ? 'drive' : 'fin'](texts.charts.fins[Number(fin[2])] ?? '');
   return TITLES[name] ?? `${capital(columnWords(column))}, ${topic}${meaning ? `: ${meaning}` : ''}`;
 }
 

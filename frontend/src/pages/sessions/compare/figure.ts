@@ -3,6 +3,7 @@ import type { Compared, Comparison, ComparisonLine } from '../../../api';
 import type { Pointed } from '../../../parts/figures';
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { chartsOf, columnWords, type Chart } from './charts';
+import { compare as texts } from '../../../texts/compare';
 
 export interface Look {
   readonly text: string;
@@ -125,10 +126,10 @@ function frameOf(comparison: Comparison, view: View, look: Look, charts: number)
 }
 
 export function axisTitle({ align }: Comparison): string {
-  if (align.by === 'armed') return 's since arming';
-  if (align.by === 'set_point') return `s since step ${align.number} of the set point`;
-  if (align.by === 'marker') return `s since “${align.marker}”`;
-  return 's since the start of the recording';
+  if (align.by === 'armed') return texts.charts.since.armed;
+  if (align.by === 'set_point') return texts.charts.since.step(align.number);
+  if (align.by === 'marker') return texts.charts.since.bookmark(align.marker);
+  return texts.charts.since.start;
 }
 
 function suffix(place: number): string {
@@ -236,7 +237,7 @@ function eventTrace(session: Compared, row: number, axis: number, colour: string
 
 function heading(chart: Chart, top: number, look: Look, narrow: boolean) {
   const several = chart.signals.length > 1 && !narrow;
-  const kinds = chart.signals.map(({ signal, wanted }) => `${wanted ? 'dashed' : 'solid'}: ${columnWords(signal.column)}`);
+  const kinds = chart.signals.map(({ signal, wanted }) => texts.charts[wanted ? 'dashed' : 'solid'](columnWords(signal.column)));
   return {
     // Without tags: Plotly makes style attributes of them, which the content security policy refuses.
     text: several ? `${chart.title}  ·  ${[...new Set(kinds)].join(', ')}` : chart.title,
@@ -274,7 +275,7 @@ function moments(sessions: readonly Compared[], comparison: Comparison, look: Lo
 
 function pointedShape({ session, mark }: Pointed, sessions: readonly Compared[], charts: readonly Chart[], look: Look) {
   const offset = sessions.find(({ id }) => id === session)?.offset ?? 0;
-  const place = Math.max(0, charts.findIndex(({ title }) => title === 'Depth'));
+  const place = Math.max(0, charts.findIndex(({ title }) => title === texts.charts.depth));
   const bounded = mark.low !== null && mark.low !== undefined;
   return {
     type: 'rect',

@@ -3,6 +3,7 @@ import type { Comparison } from '../../../api';
 import { loadPlotly } from '../../../charts/plotly';
 import { saveAs } from '../../../files';
 import { drawPicture, type Finer, type Look, type View } from './figure';
+import { compare as texts } from '../../../texts/compare';
 
 /** on white, told apart by colour-blind eyes */
 const PRINTED = ['#0072b2', '#c25200', '#a3427d', '#00664c', '#6e5d00', '#5b3fa0', '#4a5a66'] as const;
@@ -28,7 +29,7 @@ export async function saveCharts(comparison: Comparison, finer: Finer, view: Vie
   const { data, layout, height } = drawPicture(comparison, finer, view, WIDTH, look);
   const above = 14 + KEY * comparison.sessions.length;
   const key = comparison.sessions.map(({ name, problem }, place) => ({
-    text: `━ ${name}${problem ? ' (cannot be aligned)' : ''}`,
+    text: `━ ${problem ? texts.save.notAligned(name) : name}`,
     xref: 'paper',
     yref: 'paper',
     x: 0,
