@@ -20,7 +20,7 @@ FOR_SUNLIGHT = f"{{ exclude: {PALE} }}, {{ runOnly: ['color-contrast-enhanced'] 
 
 Colours are all that differs in that theme.
 """
-WIDTHS = (390, 768, 1024, 1280, 1440, 1920)
+WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
 CROWDED = """() => {
     const said = '[aria-label=Pages] a, .foot .opener, .top .name, .top .states > *, .top .row > *, .stop';
     const all = document.querySelectorAll(said);
