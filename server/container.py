@@ -71,7 +71,7 @@ class Container:
         self.notices = Notices(self.clock, lambda block: self._deliver([block]))
         self.bridge = Bridge(settings, self._deliver)
         self.hub = Hub(self.clock, self.bridge.watch_pictures)
-        self.access = Access(settings, self.store, self.clock, self.notices.tell, self._dismiss, token)
+        self.access = Access(settings, self.store, self.clock, self.notices.notify, self._dismiss, token)
         self.changes = Changes(self.store, self.bridge)
         self.profiles = Profiles(self.store)
         self._add_lease()
@@ -87,13 +87,13 @@ class Container:
         self.lease_sync = LeaseSync(self.bridge.send_lease)
         self.arbiter = ControlArbiter(
             self.clock,
-            self._tell_control,
+            self._notify_control,
             self.bridge.drive,
-            lambda text: self.notices.tell("control", "info", text),
+            lambda text: self.notices.notify("control", "info", text),
         )
 
     def _add_health(self, commands: Sequence[ProcessCommand]) -> None:
-        self.alarms = Alarms(self.clock, FAULTS, self.notices.tell_event, changed=self._tell_alarms)
+        self.alarms = Alarms(self.clock, FAULTS, self.notices.add_event, changed=self._notify_alarms)
         self.processes = ProcessSupervisor(commands, self.settings.data, self.clock, self._see_down)
         self.monitor = HealthMonitor(self.settings, self.clock, self.store, self.processes)
         self.watchdog = Watchdog(
@@ -101,7 +101,7 @@ class Container:
         )
 
     def _add_sessions(self) -> None:
-        self.recorder = Recorder(self.store, self.clock, self.notices, self._tell_session)
+        self.recorder = Recorder(self.store, self.clock, self.notices, self._notify_session)
         self.catalogue = Catalogue(self.store, self.recorder)
         self.markers = Bookmarks(self.store, self.clock, self.recorder)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
@@ -111,7 +111,7 @@ class Container:
         self.comparisons = Comparisons(self.store)
 
     def _add_comm_tests(self) -> None:
-        board = RobotBoard(self.settings, self.notices.tell)
+        board = RobotBoard(self.settings, self.notices.notify)
         self.board_reservation = BoardReservation(
             board, self.bridge, self.monitor, self.processes, self.clock, self._board_occupied
         )
@@ -119,7 +119,7 @@ class Container:
             self.settings,
             CommTestStore(self.store),
             self.clock,
-            self.hub.tell,
+            self.hub.notify,
             self.board_reservation.reserve,
         )
 
@@ -133,10 +133,10 @@ class Container:
             self.monitor,
             self.processes,
             self.clock,
-            self.notices.tell,
+            self.notices.notify,
         )
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
-        self.scenarios = ScenarioRuns(self._live, simulated, self.hub.tell)
+        self.scenarios = ScenarioRuns(self._live, simulated, self.hub.notify)
         self.bridge.on_stop = self.scenarios.see_stop
 
     def _add_tuning(self) -> None:
@@ -145,8 +145,8 @@ class Container:
             self.bridge,
             self.changes,
             self.clock,
-            self.hub.tell,
-            self.notices.tell,
+            self.hub.notify,
+            self.notices.notify,
             self._scenario_on,
         )
 
@@ -172,8 +172,8 @@ class Container:
             tasks.append(asyncio.create_task(self._beat()))
             await self.processes.end_others()
             await self._catch_up(interrupted)
-            self._tell_session()
-            self._tell_alarms()
+            self._notify_session()
+            self._notify_alarms()
             if self._ended:
                 self.alarms.begin("server_restarted", f"{self._ended} It was started again.")
             if self.settings.hil.simulator == "elsewhere":
@@ -194,7 +194,7 @@ class Container:
                     self.lease_sync.run(),
                     self.watchdog.run(),
                     self.tuning.run(),
-                    self._tell_health(),
+                    self._notify_health(),
                 )
             ]
             yield
@@ -253,20 +253,20 @@ class Container:
     async def _armed_row(self, name: str, state: str) -> SessionRow:
         return await asyncio.to_thread(new_row, self.settings, self.clock, name, "", state, origin="arming")
 
-    def _tell_session(self) -> None:
+    def _notify_session(self) -> None:
         session = self.recorder.session
-        self.hub.tell({"op": "session", "recording": session and json.loads(session.model_dump_json())})
+        self.hub.notify({"op": "session", "recording": session and json.loads(session.model_dump_json())})
 
     def _dismiss(self, device: int, reason: str) -> None:
         self.arbiter.dismiss(device)
         self.hub.dismiss(device, reason)
 
-    def _tell_control(self, message: dict[str, Any]) -> None:
+    def _notify_control(self, message: dict[str, Any]) -> None:
         self.lease_sync.see_epoch(message["epoch"])
-        self.hub.tell(message)
+        self.hub.notify(message)
 
-    def _tell_alarms(self) -> None:
-        self.hub.tell({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.listed()]})
+    def _notify_alarms(self) -> None:
+        self.hub.notify({"op": "alarms", "alarms": [asdict(alarm) for alarm in self.alarms.listed()]})
 
     def _see_down(self, part: str, text: str) -> None:
         self.alarms.begin(DOWN[part], text)
@@ -278,11 +278,11 @@ class Container:
         with suppress(RefusedError, RuntimeSilentError):
             await self.bridge.disarm()
 
-    async def _tell_health(self) -> None:
+    async def _notify_health(self) -> None:
         while True:
             self.arming.tick()
             health = self.monitor.health()
-            self.hub.tell({"op": "health", "parts": [part.model_dump() for part in health.parts]})
+            self.hub.notify({"op": "health", "parts": [part.model_dump() for part in health.parts]})
             await asyncio.sleep(HEALTH_SECONDS)
 
     async def _beat(self) -> None:

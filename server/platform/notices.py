@@ -20,11 +20,11 @@ class Notices:
         """Number on from here, where an earlier server's notices end."""
         self._sent = number
 
-    def tell(self, kind: str, severity: documents.Severity, text: str) -> None:
+    def notify(self, kind: str, severity: documents.Severity, text: str) -> None:
         """Say something in words for a person; `kind` is one word for programs."""
-        self.tell_event(documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
+        self.add_event(documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
 
-    def tell_event(self, event: documents.Event) -> None:
+    def add_event(self, event: documents.Event) -> None:
         """Say what an event says."""
         block = Block.of(BY_NAME["notice"], 1, self._sent, pack_documents([event]))
         self._sent += 1

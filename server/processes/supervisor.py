@@ -42,7 +42,7 @@ SIMULATION = ("simulator", "scene")
 SIMULATION_ELSEWHERE = "It is left to another computer: mucat simulator --connect ENDPOINT."
 
 State = Literal["waiting", "running", "failed", "ended", "paused"]
-Tell = Callable[[str, Severity, str], None]
+Notify = Callable[[str, Severity, str], None]
 SeeDown = Callable[[str, str], None]
 """Told a part's name, and in a sentence how it has ended unexpectedly."""
 

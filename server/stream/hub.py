@@ -75,7 +75,7 @@ class Client:
         self._answers.append(json.dumps(message))
         self._wake.set()
 
-    def tell(self, kind: str, text: str) -> None:
+    def notify(self, kind: str, text: str) -> None:
         """Send this soon; of each kind only the newest."""
         self._newest[kind] = text
         self._wake.set()
@@ -207,14 +207,14 @@ class Hub:
         for client in self._clients:
             client.wake()
 
-    def tell(self, message: dict[str, Any]) -> None:
+    def notify(self, message: dict[str, Any]) -> None:
         """Tell everybody, now and on connecting; of each `op` only the newest."""
         kind, text = message["op"], json.dumps(message, ensure_ascii=False)
         if self._newest.get(kind) == text:
             return
         self._newest[kind] = text
         for client in self._clients:
-            client.tell(kind, text)
+            client.notify(kind, text)
 
     def show(self, client: Client, topics: frozenset[str]) -> None:
         """Give this client pictures of these topics and of no other."""
@@ -239,7 +239,7 @@ class Hub:
         client = Client(self, send, self._clock, device)
         client.answer(greeting)
         for kind, text in self._newest.items():
-            client.tell(kind, text)
+            client.notify(kind, text)
         sender = asyncio.create_task(client.run())
         receiver = asyncio.ensure_future(receive(client))
         self._clients[client] = sender

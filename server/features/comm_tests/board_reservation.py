@@ -19,7 +19,7 @@ from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.processes.logs import ProcessLog
 from server.processes.process import Process
-from server.processes.supervisor import ProcessSupervisor, Tell
+from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 DISARM_SECONDS = 3.0
@@ -33,15 +33,15 @@ LINES_SHOWN = 2
 
 
 class RobotBoard:
-    """The robot's board, whose port nobody else has open. `tell` reports the state of its firmware.
+    """The robot's board, whose port nobody else has open. `notify` reports the state of its firmware.
 
     `problem` says why the firmware could not be brought back, and what to do; None where it is there.
     """
 
-    def __init__(self, settings: Settings, tell: Tell) -> None:
+    def __init__(self, settings: Settings, notify: Notify) -> None:
         self.problem: str | None = None
         self._settings = settings
-        self._tell = tell
+        self._notify = notify
         link, folder = settings.link, settings.data
         self._port, reset = link.port, link.reset
         if settings.emulated_board:
@@ -81,11 +81,11 @@ class RobotBoard:
                 "its reset line connected, then start the server again, or another test on the robot's "
                 "board; both bring it back."
             )
-            self._tell("firmware", "alarm", self.problem)
+            self._notify("firmware", "alarm", self.problem)
             return
         await asyncio.to_thread(_remove_note, self._settings.data.firmware_away)
         self.problem = None
-        self._tell("firmware", "info", "The robot's firmware is back on its board.")
+        self._notify("firmware", "info", "The robot's firmware is back on its board.")
 
     async def _upload(self) -> str:
         """Upload the robot's firmware; the problem in words, empty on success."""

@@ -42,7 +42,7 @@ class CommTestError(Exception):
     """The test cannot go on; the text says why."""
 
 
-Tell = Callable[[dict[str, Any]], None]
+Notify = Callable[[dict[str, Any]], None]
 Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
 """Called with the test's name; while it is entered the robot's board is the test's; its value are the
 test process's arguments. Raises RefusedError where the board is not free."""
@@ -81,15 +81,15 @@ class Progress:
 
 
 class CommTestRunner:
-    """Runs one document at a time; `tell` reports progress, `reserve` reserves the board."""
+    """Runs one document at a time; `notify` reports progress, `reserve` reserves the board."""
 
     def __init__(
-        self, settings: Settings, runs: CommTestStore, clock: Clock, tell: Tell, reserve: Reserve
+        self, settings: Settings, runs: CommTestStore, clock: Clock, notify: Notify, reserve: Reserve
     ) -> None:
         self.runs = runs
         self._settings = settings
         self._clock = clock
-        self._tell = tell
+        self._notify = notify
         self._reserve = reserve
         self._task: asyncio.Task[None] | None = None
         self._process: PipedProcess | None = None
@@ -152,7 +152,7 @@ class CommTestRunner:
                 )
                 began.set_exception(error)
         finally:
-            self._tell({"op": "comm_test", "active": None, "cell": None})
+            self._notify({"op": "comm_test", "active": None, "cell": None})
             if not began.done():
                 began.set_exception(RefusedError("The communication test ended before it began."))
 
@@ -211,7 +211,7 @@ class CommTestRunner:
             ) from problem
         active = progress.describe(self._clock.now()) if progress.run is not None else None
         shown = None if cell is None else {"run": progress.run, **cell.model_dump()}
-        self._tell({"op": "comm_test", "active": active, "cell": shown})
+        self._notify({"op": "comm_test", "active": active, "cell": shown})
 
     async def _apply(
         self, progress: Progress, event: dict[str, Any], words: deque[str], began: asyncio.Future[int]

@@ -33,7 +33,7 @@ async def _perform(
     await runs.mark_interrupted()
     progress = _Progress(tests)
     board = RobotBoard(settings, lambda _kind, _severity, words: print(words, file=sys.stderr))  # noqa: T201
-    comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.tell, board.reserve)
+    comm_tests = CommTestRunner(settings, runs, SteadyClock(), progress.notify, board.reserve)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, comm_tests.cancel)
@@ -60,7 +60,7 @@ class _Progress:
         self._tests = tests
         self._run: int | None = None
 
-    def tell(self, message: dict[str, Any]) -> None:
+    def notify(self, message: dict[str, Any]) -> None:
         active, cell = message["active"], message["cell"]
         if active and active["run"] != self._run:
             self._run = active["run"]

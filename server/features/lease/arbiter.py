@@ -39,14 +39,16 @@ class Departure:
 
 
 class ControlArbiter:
-    """`tell` gets `{op: "control", ...}` at each change, `publish` the bytes of a stick command, and `note` a
+    """Grants control to one client at a time, and passes its driving commands on.
+
+    `notify` gets `{op: "control", ...}` at each change, `publish` the bytes of a stick command, `note` a
     sentence about each change for the record.
     """
 
     def __init__(
         self,
         clock: Clock,
-        tell: Callable[[dict[str, Any]], None],
+        notify: Callable[[dict[str, Any]], None],
         publish: Callable[[bytes], None],
         note: Callable[[str], None],
     ) -> None:
@@ -56,7 +58,7 @@ class ControlArbiter:
         self.lease = Lease(int(clock.now() * 1000), self._note)
         self.driving = Driving(clock, publish)
         self._clock = clock
-        self._tell = tell
+        self._notify = notify
         self._write = note
         self._departure: Departure | None = None
         self._wake = asyncio.Event()
@@ -137,7 +139,7 @@ class ControlArbiter:
 
     def announce(self) -> None:
         """Tell all pages who has control."""
-        self._tell({"op": "control", **self.state().model_dump()})
+        self._notify({"op": "control", **self.state().model_dump()})
         self._wake.set()
 
     async def run(self) -> None:

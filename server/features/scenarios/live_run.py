@@ -19,7 +19,7 @@ from server.features.sessions.recorder import Recorder
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.processes.supervisor import ProcessSupervisor, Tell
+from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 LOOK_SECONDS = 0.1
@@ -41,7 +41,7 @@ class LiveExecutor:
         monitor: HealthMonitor,
         processes: ProcessSupervisor,
         clock: Clock,
-        tell: Tell,
+        notify: Notify,
     ) -> None:
         self._settings = settings
         self._store = store
@@ -51,7 +51,7 @@ class LiveExecutor:
         self._monitor = monitor
         self._processes = processes
         self._clock = clock
-        self._tell = tell
+        self._notify = notify
         self._snapshot = ScenarioSnapshot(settings.data.scenario_before)
         self._recovering = False
         self._surroundings = LiveSetup(
@@ -102,7 +102,7 @@ class LiveExecutor:
         words = (
             "The server was killed in the middle of a scenario. The robot is disarmed, and as it was before."
         )
-        self._tell("scenario", "caution", words)
+        self._notify("scenario", "caution", words)
 
     async def _record(self, run: RunRecord, send: Send) -> None:
         row = describe_session(self._settings, self._clock, run, json.dumps(self._monitor.state()))
@@ -159,14 +159,16 @@ class LiveExecutor:
             await self._surroundings.disarm()
             await asyncio.sleep(SETTLE_SECONDS)
         except (RefusedError, RuntimeSilentError) as problem:
-            self._tell("scenario", "alarm", f"The robot could not be disarmed after the scenario: {problem}")
+            self._notify(
+                "scenario", "alarm", f"The robot could not be disarmed after the scenario: {problem}"
+            )
         if self._recorder.session is not None and self._recorder.session.id == session:
             await self._recorder.stop(session)
 
     async def _put_back(self, before: SavedState, send: Send) -> None:
         if problems := await self._surroundings.put_back(before, send):
             text = " ".join(problems)
-            self._tell("scenario", "caution", f"Not everything is as before the scenario. {text}")
+            self._notify("scenario", "caution", f"Not everything is as before the scenario. {text}")
         await asyncio.to_thread(self._snapshot.forget)
 
     def _occupied(self) -> list[str]:

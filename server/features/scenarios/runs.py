@@ -35,13 +35,13 @@ class ScenarioExecutor(Protocol):
 
 
 class ScenarioRunner:
-    """At most one scenario runs at a time; `tell` reports progress."""
+    """At most one scenario runs at a time; `notify` reports progress."""
 
     def __init__(
-        self, live: ScenarioExecutor, simulated: ScenarioExecutor, tell: Callable[[dict[str, Any]], None]
+        self, live: ScenarioExecutor, simulated: ScenarioExecutor, notify: Callable[[dict[str, Any]], None]
     ) -> None:
         self._stages: dict[Place, ScenarioExecutor] = {"live": live, "simulated": simulated}
-        self._tell = tell
+        self._notify = notify
         self._number = 0
         self._active: RunRecord | None = None
         self._queue: deque[RunRecord] = deque()
@@ -108,17 +108,17 @@ class ScenarioRunner:
 
     def announce(self) -> None:
         """Tell the state."""
-        self._tell({"op": "scenario", **self.state().model_dump()})
+        self._notify({"op": "scenario", **self.state().model_dump()})
 
     async def _work(self) -> None:
         while self._active is not None:
-            telling = asyncio.create_task(self._announce_regularly())
+            announcing = asyncio.create_task(self._announce_regularly())
             try:
                 self._last = await self._perform(self._active)
             finally:
-                telling.cancel()
+                announcing.cancel()
                 with suppress(asyncio.CancelledError):
-                    await telling
+                    await announcing
                 self._active = self._queue.popleft() if self._queue else None
                 self.announce()
 

@@ -53,7 +53,7 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
     progress = _Progress()
     simulated = SimulatedExecutor(settings, store, Notices(SteadyClock(), lambda _: None))
     runs = ScenarioRunner(
-        simulated, simulated, lambda message: progress.tell(ScenarioState.model_validate(message))
+        simulated, simulated, lambda message: progress.notify(ScenarioState.model_validate(message))
     )
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, runs.cancel)
@@ -80,7 +80,7 @@ def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedR
         while True:
             keep()
             state = ScenarioState.model_validate(ask(folder, "GET", "/scenarios/state"))
-            progress.tell(state)
+            progress.notify(state)
             if state.last is not None and state.last.run >= number:
                 return state.last
             sleep(LOOK_SECONDS)
@@ -103,20 +103,20 @@ class _Progress:
         self._events: list[ScenarioEvent] = []
         self._printed = 0
 
-    def tell(self, state: ScenarioState) -> None:
+    def notify(self, state: ScenarioState) -> None:
         """Print the events that are new in this state."""
         active, last = state.active, state.last
         if last is not None and last.run == self._run and last.state == "complete":
             # A fast run may be over before its last events were told.
-            self._tell_until(math.inf)
+            self._print_until(math.inf)
         if active is None or active.phase not in ("running", "ending"):
             return
         if active.run != self._run:
             self._run, self._events, self._printed = active.run, active.events, 0
             click.echo(f"run {active.run}: {active.title}, {active.place}, {active.duration:g} s")
-        self._tell_until(active.elapsed)
+        self._print_until(active.elapsed)
 
-    def _tell_until(self, time: float) -> None:
+    def _print_until(self, time: float) -> None:
         past = [event for event in self._events if event.at <= time]
         for event in past[self._printed :]:
             click.echo(f"{event.at:8.1f} s  {event.words}")

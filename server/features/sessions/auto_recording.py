@@ -83,7 +83,7 @@ class AutoRecorder:
         except RecordingRefusedError as problem:
             log.info("not recorded at arming: %s", problem)
         except (StoreError, OSError) as problem:
-            self._notices.tell("recording", "caution", f"Armed, but not recorded: {problem}.")
+            self._notices.notify("recording", "caution", f"Armed, but not recorded: {problem}.")
 
     async def _end(self, session: int) -> None:
         try:

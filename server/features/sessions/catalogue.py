@@ -150,7 +150,7 @@ class Catalogue(Listing):
                     connection.execute(insert(SessionTag), rows)
 
         await self._store.write(write)
-        return self.tell(session)
+        return self.notify(session)
 
     async def delete(self, session: int) -> Session:
         """Put a session into the bin. Raises SessionStateError for one that records."""
@@ -190,7 +190,7 @@ class Catalogue(Listing):
 
         await self._store.write(write)
 
-    def tell(self, session: int) -> Session:
+    def notify(self, session: int) -> Session:
         """Report a session's new state to the pages, if it is being recorded."""
         found = self.find(session)
         if self._recorder is not None:

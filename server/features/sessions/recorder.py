@@ -112,7 +112,7 @@ class Recorder:
         interrupted = await asyncio.to_thread(find_interrupted, self._store)
         resumed = -1 if interrupted is None else interrupted.row.id
         for name, duration in await self._store.write(lambda found: _mark_interrupted(found, resumed)):
-            self._notices.tell(
+            self._notices.notify(
                 "recording",
                 "caution",
                 f"“{name}” was cut off after {duration:.1f} s. What was stored is kept; at most the last "
@@ -137,7 +137,7 @@ class Recorder:
             ]
             await self._store.write(lambda connection: _interrupt(connection, gaps))
             lost = sum(sent.values())
-            self._notices.tell(
+            self._notices.notify(
                 "recording",
                 "caution",
                 f"The server was killed while “{row.name}” was recorded. What was stored is kept; "
@@ -157,7 +157,7 @@ class Recorder:
         self.session = from_row(row)
         self._accepts = True
         away = self._clock.now() - row.started_steady - row.duration
-        self._notices.tell(
+        self._notices.notify(
             "recording",
             "caution",
             f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
@@ -185,7 +185,7 @@ class Recorder:
             if self._standing is not None:
                 # They are told at each change and else rarely: the session begins with what is in force.
                 self.add(_as_of(self._standing, self._clock.now()))
-        self._notices.tell("recording", "info", f"Recording of “{row.name}” has begun.")
+        self._notices.notify("recording", "info", f"Recording of “{row.name}” has begun.")
         self._changed()
         return self.session
 
@@ -208,7 +208,7 @@ class Recorder:
                 self._accepts = True
                 raise
             self.session = None
-        self._notices.tell("recording", "info", f"Recording of “{done.name}” has ended.")
+        self._notices.notify("recording", "info", f"Recording of “{done.name}” has ended.")
         self._changed()
         return done
 
@@ -260,10 +260,10 @@ class Recorder:
                     await self._store.probe()
             except StoreError as problem:
                 if failed_before is None:
-                    self._notices.tell("database", "alarm", f"Nothing can be stored: {problem}.")
+                    self._notices.notify("database", "alarm", f"Nothing can be stored: {problem}.")
                 continue
             if failed_before is not None and self._store.failing is None:
-                self._notices.tell("database", "info", "Storing works again.")
+                self._notices.notify("database", "info", "Storing works again.")
 
     async def flush(self) -> None:
         """Commit what has been gathered. Raises StoreError; then it is kept for the next time."""

@@ -130,7 +130,7 @@ class RetentionWorker:
         if rows:
             days = self._settings.sessions.keep_days
             await self._change(rows, deleted=now)
-            self._tell(rows, f"Older than {days:g} days")
+            self._notify(rows, f"Older than {days:g} days")
 
     async def _make_room(self, now: float, settled_before: float) -> None:
         storage = await asyncio.to_thread(measure, self._store, self._settings)
@@ -149,21 +149,21 @@ class RetentionWorker:
         rows = _first(await self._unprotected(), needed)
         if rows:
             await self._change(rows, deleted=now)
-            self._tell(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
+            self._notify(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
         elif not self._out_of_candidates:
             self._out_of_candidates = True
             text = (
                 "Room is short, and every session is kept, tagged or in the bin already. Delete some, or free"
             )
-            self._notices.tell(
+            self._notices.notify(
                 "storage", "caution", f"{text} room on the computer that holds the data folder."
             )
 
-    def _tell(self, rows: list[_Candidate], why: str) -> None:
+    def _notify(self, rows: list[_Candidate], why: str) -> None:
         names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_SHOWN])
         more = f" and {len(rows) - NAMES_SHOWN} more" if len(rows) > NAMES_SHOWN else ""
         text = f"{why}: {names}{more} went into the bin. To keep one, restore it and mark it as kept."
-        self._notices.tell("storage", "caution", text)
+        self._notices.notify("storage", "caution", text)
 
     async def _unprotected(self) -> list[_Candidate]:
         """Sessions that a rule may take, oldest first."""

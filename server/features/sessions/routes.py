@@ -208,7 +208,7 @@ async def add_mark(
 ) -> Bookmark:
     """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
     mark = await markers.add(session, body.time, body.text)
-    catalogue.tell(session)
+    catalogue.notify(session)
     return mark
 
 
@@ -239,7 +239,7 @@ async def remove_mark(
 ) -> None:
     """Take it away for good."""
     await markers.remove(session, mark)
-    catalogue.tell(session)
+    catalogue.notify(session)
 
 
 @router.get(

@@ -28,7 +28,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.platform.store import StoreError
-from server.processes.supervisor import Tell
+from server.processes.supervisor import Notify
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
@@ -76,7 +76,7 @@ class _Active:
 
 
 class TuningRunner:
-    """At most one run at a time; `tell` reports progress, `occupied` gives a reason against a start."""
+    """At most one run at a time; `notify` reports progress, `occupied` gives a reason against a start."""
 
     def __init__(
         self,
@@ -84,15 +84,15 @@ class TuningRunner:
         bridge: Bridge,
         changes: Changes,
         clock: Clock,
-        tell: Callable[[dict[str, Any]], None],
-        notice: Tell,
+        notify: Callable[[dict[str, Any]], None],
+        notice: Notify,
         occupied: Callable[[], str | None],
     ) -> None:
         self.runs = runs
         self._bridge = bridge
         self._changes = changes
         self._clock = clock
-        self._tell = tell
+        self._notify = notify
         self._notice = notice
         self._occupied = occupied
         self._active: _Active | None = None
@@ -159,7 +159,7 @@ class TuningRunner:
 
     def announce(self) -> None:
         """Tell the state."""
-        self._tell({"op": "tuning", **json.loads(self.state().model_dump_json())})
+        self._notify({"op": "tuning", **json.loads(self.state().model_dump_json())})
 
     async def run(self) -> None:
         """Look after the run that is on, for ever."""

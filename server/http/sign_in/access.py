@@ -16,7 +16,7 @@ from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
 from server.platform.store import Store
 
-Tell = Callable[[str, documents.Severity, str], None]
+Notify = Callable[[str, documents.Severity, str], None]
 CloseSockets = Callable[[int, str], None]
 """Ends the live sockets of a device, with this reason."""
 
@@ -24,7 +24,7 @@ BEARER = "bearer "
 
 
 class Access:
-    """One for the server; `tell` writes notices, which also get into what is being recorded, and `token` is
+    """One for the server; `notify` writes notices, which also get into what is being recorded, and `token` is
     what the shell of this computer is given to prove itself with.
     """
 
@@ -33,7 +33,7 @@ class Access:
         settings: Settings,
         store: Store,
         clock: Clock,
-        tell: Tell,
+        notify: Notify,
         close_sockets: CloseSockets,
         token: str,
     ) -> None:
@@ -43,7 +43,7 @@ class Access:
         self.devices = Devices(store)
         self._token_file = settings.data.token
         self._token = token
-        self._tell = tell
+        self._notify = notify
         self._close_sockets = close_sockets
         self._limit_reported = False
 
@@ -75,7 +75,7 @@ class Access:
             role = self.codes.use(code)
         except TooManyTriesError as problem:
             if not self._limit_reported:
-                self._tell("access", "caution", f"Somebody tries pairing codes. {problem}")
+                self._notify("access", "caution", f"Somebody tries pairing codes. {problem}")
             self._limit_reported = True
             raise
         self._limit_reported = False
@@ -84,13 +84,13 @@ class Access:
                 await self.set_role(known.device, role, by=known)
             return self.devices.get(known.device).identity, None
         device, secret = await self.devices.add(name, role, "browser")
-        self._tell("access", "info", f"“{name}” was paired as {role}.")
+        self._notify("access", "info", f"“{name}” was paired as {role}.")
         return device.identity, secret
 
     async def make_program(self, name: str, role: Role, by: Identity) -> tuple[Device, str]:
         """A program's place, and its token. Raises RefusedError, StoreError."""
         device, token = await self.devices.add(name, role, "program")
-        self._tell("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
+        self._notify("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
         return device, token
 
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
@@ -108,7 +108,7 @@ class Access:
             await self.devices.set_role(number, role)
         finally:
             self._close_sockets(number, f"The role is now {device.role}.")
-        self._tell("access", "info", f"“{by.name}” made “{device.name}” {_with_article(role)}.")
+        self._notify("access", "info", f"“{by.name}” made “{device.name}” {_with_article(role)}.")
 
     async def rename(self, number: int, name: str) -> None:
         """Raises UnknownDeviceError, StoreError."""
@@ -122,7 +122,7 @@ class Access:
         device = self.devices.get(number)
         self._keep_an_operator(device, by)
         await self._remove(device, "Access was revoked by an operator.")
-        self._tell("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
+        self._notify("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
 
     async def sign_out(self, identity: Identity) -> None:
         """Its own end, which even the last operator may choose.
@@ -132,7 +132,7 @@ class Access:
         if identity == SHELL:
             raise RefusedError("The shell of this computer is not signed in, and needs not sign out.")
         await self._remove(self.devices.get(identity.device), "Signed out.")
-        self._tell("access", "info", f"“{identity.name}” signed out.")
+        self._notify("access", "info", f"“{identity.name}” signed out.")
 
     async def close(self) -> None:
         """Nothing is asked any more."""

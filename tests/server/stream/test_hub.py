@@ -63,7 +63,7 @@ def with_hub(scenario: Callable[[Hub, SimulatedClock], Awaitable[None]]) -> None
 
 def test_a_page_is_greeted_first_then_gets_the_past_then_the_present() -> None:
     async def scenario(hub: Hub, _: SimulatedClock) -> None:
-        hub.tell({"op": "health", "parts": []})
+        hub.notify({"op": "health", "parts": []})
         hub.add([depth_block(0, 3), debug_block(0, "before")])
         page = Page(hub)
         await until(lambda: page.numbers("debug") == [0], "the past")
@@ -237,7 +237,7 @@ def test_news_of_one_kind_replace_each_other() -> None:
         await until(lambda: page.texts, "the greeting")
         page.reading.clear()
         for number in range(100):
-            hub.tell({"op": "health", "parts": [number]})
+            hub.notify({"op": "health", "parts": [number]})
         page.reading.set()
         await until(lambda: page.texts[-1].get("parts") == [99], "the newest health")
         assert len(page.texts) <= 3

@@ -147,10 +147,10 @@ def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, set
 def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, dive: Recording) -> None:
     (state,) = json.loads(state_block(0, time=99.0, set_point_default=0.3).payload)
 
-    def tell(connection: Connection) -> None:
+    def notify(connection: Connection) -> None:
         connection.execute(text("UPDATE session SET robot_state = :state"), {"state": json.dumps(state)})
 
-    asyncio.run(store.write(tell))
+    asyncio.run(store.write(notify))
     assert dive.row.id is not None
     recording = read(store, dive.row.id)
     seen = [

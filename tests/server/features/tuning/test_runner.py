@@ -62,7 +62,7 @@ class Robot:
         loop = {"name": "depth", "on": False, "set_point": 0.5, "controller": "pid", "controllers": [PID]}
         self._served.runtime.state = {"mode": mode, "loops": [loop]}
 
-    def tell(self, run: int, phase: Any, since: float, **more: Any) -> None:
+    def notify(self, run: int, phase: Any, since: float, **more: Any) -> None:
         words: dict[str, Any] = {"progress": 0.5, "cycles": 0, "bias": 0.0, "text": "", "kind": "step"} | more
         told = Experiment(time=since, number=run, loop="depth", phase=phase, since=since, **words)
         self._publish("experiment", 1, pack_documents([told]))
@@ -120,11 +120,11 @@ def test_a_step_is_kept_with_its_curve_and_figures(settings: Settings) -> None:
             while (told := await next_text(socket, "tuning"))["active"] is None:
                 pass
             assert (told["active"]["run"], told["active"]["phase"]) == (run, "settling")
-        robot.tell(run, "settling", 100.0)
+        robot.notify(run, "settling", 100.0)
         robot.tick([(100.0 + 0.1 * one, 0.4, 0.4, 0.1) for one in range(50)])
-        robot.tell(run, "running", 105.0)
+        robot.notify(run, "running", 105.0)
         robot.tick([(105.0 + 0.1 * one, 0.7, min(0.4 + 0.02 * one, 0.7), 0.5) for one in range(61)])
-        robot.tell(run, "complete", 111.0, progress=1.0)
+        robot.notify(run, "complete", 111.0, progress=1.0)
         kept = await over(served)
         assert (kept["id"], kept["state"], kept["problem"]) == (run, "complete", "")
         assert kept["force"] == {
@@ -151,8 +151,8 @@ def test_a_relay_proposes_gains(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
         run = await begin(served, RELAY)
-        robot.tell(run, "settling", 100.0, kind="relay")
-        robot.tell(run, "running", 104.0, kind="relay")
+        robot.notify(run, "settling", 100.0, kind="relay")
+        robot.notify(run, "running", 104.0, kind="relay")
         ticks = [0.1 * one for one in range(161)]
         robot.tick(
             [
@@ -165,7 +165,7 @@ def test_a_relay_proposes_gains(settings: Settings) -> None:
                 for at in ticks
             ]
         )
-        robot.tell(run, "complete", 116.0, kind="relay", cycles=3)
+        robot.notify(run, "complete", 116.0, kind="relay", cycles=3)
         kept = await over(served)
         assert (kept["state"], kept["problem"]) == ("complete", "")
         cycle = kept["cycle"]
@@ -185,13 +185,13 @@ def test_a_run_that_was_stopped_keeps_its_curve_without_figures(settings: Settin
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
         run = await begin(served, STEP)
-        robot.tell(run, "settling", 100.0)
+        robot.notify(run, "settling", 100.0)
         robot.tick([(100.0 + 0.1 * one, 0.4, 0.3, 0.1) for one in range(20)])
         refused = await served.api.delete(f"/tuning/runs/{run}")
         assert (refused.status_code, "is on" in refused.text) == (409, True)
         assert (await served.api.post("/tuning/stop")).status_code == 204
         assert served.runtime.asked[-1] == ("end_experiment", {})
-        robot.tell(run, "stopped", 102.0, text="It was stopped.")
+        robot.notify(run, "stopped", 102.0, text="It was stopped.")
         kept = await over(served)
         assert (kept["state"], kept["problem"], kept["figures"]) == ("stopped", "It was stopped.", {})
         assert len(kept["curve"]["times"]) == 20
@@ -203,7 +203,7 @@ def test_runs_are_named_and_deleted(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
         run = await begin(served, STEP)
-        robot.tell(run, "failed", 102.0, text="It ended at 1.60, which is beyond the limits (0 to 1.5).")
+        robot.notify(run, "failed", 102.0, text="It ended at 1.60, which is beyond the limits (0 to 1.5).")
         await over(served)
         named = await served.api.patch(f"/tuning/runs/{run}", json={"name": "with tape"})
         assert named.json()["name"] == "with tape"
@@ -264,7 +264,7 @@ def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> 
 def test_an_experiment_of_another_server_is_ended(settings: Settings) -> None:
     async def scenario(served: Served, robot: Robot) -> None:
         robot.arm()
-        robot.tell(7, "running", 100.0)
+        robot.notify(7, "running", 100.0)
         await until(lambda: ("end_experiment", {}) in served.runtime.asked, "it to be ended")
 
     play(settings, scenario)
