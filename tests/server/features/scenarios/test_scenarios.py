@@ -4,11 +4,14 @@ import sqlite3
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from robot_runtime.errors import NoAnswerError
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.stack import Stack
 
 pytestmark = pytest.mark.stack
@@ -65,10 +68,10 @@ def stack() -> Iterator[Stack]:
         yield stack
 
 
-def wait(condition: Callable[[], object], what: str) -> None:
+def wait(condition: Callable[[], object], what: str, why: Callable[[], object] = str) -> None:
     end = time.monotonic() + SECONDS
     while not condition():
-        assert time.monotonic() < end, f"waited in vain for {what}"
+        assert time.monotonic() < end, f"waited in vain for {what} {why()}"
         time.sleep(0.05)
 
 
@@ -102,7 +105,16 @@ def ended(stack: Stack) -> dict[str, Any]:
 
 def begin_long(stack: Stack) -> None:
     start(stack, LONG)
-    wait(lambda: robot(stack)["armed"], "the scenario to arm the robot")
+    wait(lambda: robot(stack)["armed"], "the scenario to arm the robot", lambda: state(stack))
+
+
+def simulator_answers(stack: Stack) -> bool:
+    """Whether it does; its process runs, and is well, a moment before."""
+    runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
+    with ZenohTransport("turtle", connect=[runtime], client=True) as messages, suppress(NoAnswerError):
+        messages.query("simulator/surroundings", {})
+        return True
+    return False
 
 
 def settings_of(stack: Stack) -> dict[str, Any]:
@@ -140,7 +152,8 @@ def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) ->
     stack.api.post("/robot/commands/loop", json=chosen).raise_for_status()
     points = {"control.set_point": 0.9, "control.set_point_detected": 1.1}
     stack.api.post("/robot/commands/parameters", json={"values": points}).raise_for_status()
-    wait(lambda: robot(stack)["set_point_default"] == 0.9, "the set points")
+    # The depth loop takes its set point up with the next control step.
+    wait(lambda: robot(stack)["loops"][0]["set_point"] == 0.9, "the set points")
     before = settings_of(stack)
     start(stack, SHORT)
     assert refusal(stack, SHORT).startswith("“A short one” is being run.")
@@ -196,6 +209,7 @@ def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
         "The simulator ended in the middle of it, and with it what was set.",
     )
     stack.wait_ready()
+    wait(lambda: simulator_answers(stack), "the next simulator to answer")
 
 
 def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: Stack) -> None:
