@@ -44,9 +44,9 @@ test('they are grouped by all of their name but its end, in their order', () => 
 test.each([
   [{}, 5, null],
   [{}, 5.1, 'Out of range'],
-  [{}, NaN, 'A number is wanted'],
-  [{ type: 'whole' }, 1.5, 'A whole number is wanted'],
-  [{ type: 'choice', choices: ['a'] }, 'b', 'No such choice'],
+  [{}, NaN, 'Enter a number'],
+  [{ type: 'whole' }, 1.5, 'Enter a whole number'],
+  [{ type: 'choice', choices: ['a'] }, 'b', 'Not one of the choices'],
   [{ type: 'switch' }, true, null],
 ] as const)('%o as %s: %s', (changes, value, problem) => {
   expect(wrong(parameter('x', changes as Partial<TunableParameter>), value)).toBe(problem);

@@ -52,7 +52,7 @@ def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: 
     row = page.get_by_role("listitem").filter(has=page.get_by_label(AMPLITUDE, exact=True))
     expect(row.get_by_role("button", name="Default 1.6")).to_be_visible()
     name = f"small strokes {page.viewport_size and page.viewport_size['width']}"
-    page.get_by_label("Save what is in force as").fill(name)
+    page.get_by_label("Save present values as").fill(name)
     page.get_by_role("button", name="Save", exact=True).click()
     restore = page.get_by_role("button", name=f"Restore {name}", exact=True)
     expect(restore).to_be_visible()
@@ -66,7 +66,7 @@ def test_a_gain_is_changed_live_undone_kept_and_restored(any_page: Page, stack: 
     expect(difference).to_have_text(f"{AMPLITUDE}0.91.6")
 
     restore.click()
-    expect(page.get_by_text("1 parameter was changed")).to_be_visible()
+    expect(page.get_by_text("1 parameter changed")).to_be_visible()
     expect(page.get_by_label(AMPLITUDE, exact=True)).to_have_value("0.9")
     assert value(stack, AMPLITUDE) == 0.9
 

@@ -39,7 +39,7 @@ def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
     page.goto(f"{empty.url}/#/tune/response")
     expect(page.get_by_text("No step response yet")).to_be_visible()
     page.get_by_text("Limits and waiting").click()
-    fill(page, **{"from": "0.2", "to": "0.4", "measured_for": "3", "waits_at_most": "1"})
+    fill(page, Start="0.2", Target="0.4", Duration="3", Longest_wait="1")
     hold_to_arm(page)
     page.get_by_role("button", name="Run the step").click()
     expect(page.get_by_role("progressbar", name="Progress")).to_be_visible()
@@ -57,7 +57,7 @@ def test_a_step_is_run_and_kept(empty: Stack, any_page: Page) -> None:
     runs.get_by_role("button", name="Save").click()
     expect(figures.get_by_role("columnheader", name=re.compile("in tap water$"))).to_be_visible()
     runs.get_by_role("button", name=re.compile("^Delete .* in tap water$")).click()
-    runs.get_by_role("button", name="Delete for good").click()
+    runs.get_by_role("button", name="Delete permanently").click()
     expect(page.get_by_text("No step response yet")).to_be_visible()
 
 
@@ -76,7 +76,7 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
     depth: dict[str, Any], empty: Stack, page: Page, browser: Browser
 ) -> None:
     page.goto(f"{empty.url}/#/tune/relay")
-    fill(page, **{"about": "0.3", "command_±": "100", "cycles": "3"})
+    fill(page, **{"Centre": "0.3", "Command_±": "100", "Cycles": "3"})
     hold_to_arm(page)
     page.get_by_role("button", name="Run the relay").click()
     table = page.get_by_role("region", name="Gains by rule, beside the present ones")
@@ -91,13 +91,13 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
     row = table.get_by_role("row", name=re.compile("^Tyreus–Luyben"))
     proposed = row.get_by_role("cell").nth(0).inner_text()
     row.get_by_role("button", name="Apply").click()
-    expect(page.get_by_text("The PID is in force, with the gains by Tyreus–Luyben.")).to_be_visible()
+    expect(page.get_by_text("PID active with the gains by Tyreus–Luyben.")).to_be_visible()
     present = table.get_by_role("row", name=re.compile("^Present gains"))
     expect(present).to_contain_text(proposed)
-    expect(present).to_contain_text("In force now.")
+    expect(present).to_contain_text("Active now.")
 
-    page.get_by_role("button", name="Try them with a step").click()
+    page.get_by_role("button", name="Test with a step").click()
     expect(page.get_by_role("heading", name="Tune")).to_be_visible()
-    expect(page.get_by_text("Step response on the depth")).to_be_visible()
+    expect(page.get_by_text("Step response on depth")).to_be_visible()
     page.get_by_role("button", name="STOP").click()
     expect(page.get_by_role("region", name="Runs", exact=True)).to_contain_text("The robot was disarmed.")

@@ -1,6 +1,7 @@
 /** How parameters are found, grouped, checked and compared. */
 import type { ParameterValue } from '../../../api';
 import type { TunableParameter } from '../../../generated/topics';
+import { tune as texts } from '../../../texts/tune';
 
 export interface Group {
   readonly name: string;
@@ -35,18 +36,18 @@ export function group(parameters: readonly TunableParameter[]): Group[] {
 
 /** Why the runtime would refuse this value; null where it would not. */
 export function wrong(parameter: TunableParameter, value: ParameterValue): string | null {
-  if (parameter.type === 'choice') return parameter.choices.includes(String(value)) ? null : 'No such choice';
+  if (parameter.type === 'choice') return parameter.choices.includes(String(value)) ? null : texts.parameters.noSuchChoice;
   if (parameter.type === 'switch') return null;
-  if (typeof value !== 'number' || Number.isNaN(value)) return 'A number is wanted';
-  if (parameter.type === 'whole' && !Number.isInteger(value)) return 'A whole number is wanted';
+  if (typeof value !== 'number' || Number.isNaN(value)) return texts.parameters.notNumber;
+  if (parameter.type === 'whole' && !Number.isInteger(value)) return texts.parameters.notWhole;
   const { minimum, maximum } = parameter;
-  return minimum !== null && maximum !== null && value >= minimum && value <= maximum ? null : 'Out of range';
+  return minimum !== null && maximum !== null && value >= minimum && value <= maximum ? null : texts.parameters.outOfRange;
 }
 
 /** As a person reads it; six digits tell more than anybody can set. */
 export function words(value: ParameterValue | null): string {
   if (value === null) return '–';
-  if (typeof value === 'boolean') return value ? 'on' : 'off';
+  if (typeof value === 'boolean') return value ? texts.parameters.on : texts.parameters.off;
   return typeof value === 'number' ? String(Number(value.toPrecision(6))) : value.replaceAll('_', ' ');
 }
 

@@ -1,6 +1,7 @@
 import uPlot from 'uplot';
 import { canvasFont, token } from '../../../theme.svelte';
 import type { Loop } from './loops';
+import { tune as texts } from '../../../texts/tune';
 
 /** A run's curve, times in s, values in the shown unit. */
 export interface CurveLine {
@@ -74,7 +75,7 @@ function seriesOf({ label, colour }: CurveLine, values: boolean): uPlot.Series[]
   const points = { show: false };
   if (!values) return [{ label, stroke: colour, width: 2, points, paths: stepped }];
   return [
-    { label: `${label}, set point`, stroke: colour, width: 1.25, dash: [6, 5], points, alpha: 0.8, paths: stepped },
+    { label: texts.curves.setPointOf(label), stroke: colour, width: 1.25, dash: [6, 5], points, alpha: 0.8, paths: stepped },
     { label, stroke: colour, width: 2, points },
   ];
 }

@@ -5,6 +5,7 @@ import { sessionColour } from '../../../parts/sessionColour';
 import type { CurveLine } from './curvePlot';
 import type { Loop } from './loops';
 import { runTitle } from './words';
+import { tune as texts } from '../../../texts/tune';
 
 /** s before the step that a curve begins */
 export const LEAD = 3;
@@ -28,7 +29,7 @@ export function liveLine(active: ActiveTuning, rings: Rings, now: number, colour
   const waits = active.kind === 'step' && active.phase === 'settling';
   const zero = active.kind === 'relay' ? active.began : waits ? now : active.since;
   const from = active.kind === 'relay' ? active.began : zero - LEAD;
-  const line = { label: 'now', colour, times: [] as number[], setPoints: [] as number[], values: [] as number[], outputs: [] as number[] };
+  const line = { label: texts.curves.live, colour, times: [] as number[], setPoints: [] as number[], values: [] as number[], outputs: [] as number[] };
   const take = <K extends 'control' | 'turning'>(ring: RowRing<K>, columns: readonly ArrayLike<number>[]) => {
     const [setPoints, values, outputs] = columns;
     for (let order = ring.firstSince(from); order < ring.length; order += 1) {

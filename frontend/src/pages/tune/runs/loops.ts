@@ -1,5 +1,6 @@
 /** The robot's loops as people tune them: depths in m, angles in degrees. */
 import type { LoopName } from '../../../api';
+import { tune as texts } from '../../../texts/tune';
 
 export interface Loop {
   readonly name: LoopName;
@@ -18,13 +19,13 @@ export interface Loop {
 const DEGREES = 180 / Math.PI;
 const angle = { unit: '°', factor: DEGREES, decimals: 1, downwards: false } as const;
 
-const DEPTH: Loop = { name: 'depth', title: 'Depth', unit: 'm', factor: 1, least: 0, most: 10, decimals: 2, downwards: true };
+const DEPTH: Loop = { name: 'depth', title: texts.loops.depth, unit: 'm', factor: 1, least: 0, most: 10, decimals: 2, downwards: true };
 
 export const LOOPS: readonly Loop[] = [
   DEPTH,
-  { name: 'heading', title: 'Heading', least: -180, most: 180, ...angle },
-  { name: 'pitch', title: 'Pitch', least: -28, most: 28, ...angle },
-  { name: 'roll', title: 'Roll', least: -28, most: 28, ...angle },
+  { name: 'heading', title: texts.loops.heading, least: -180, most: 180, ...angle },
+  { name: 'pitch', title: texts.loops.pitch, least: -28, most: 28, ...angle },
+  { name: 'roll', title: texts.loops.roll, least: -28, most: 28, ...angle },
 ];
 
 export function loopOf(name: LoopName): Loop {

@@ -1,5 +1,6 @@
 /** What an experiment is to be, in the shown unit, as the forms hold it and the server takes it. */
 import type { LoopName, TuningStart } from '../../../api';
+import { tune as texts } from '../../../texts/tune';
 import { loopOf } from './loops';
 
 export interface StepForm {
@@ -33,29 +34,29 @@ export interface FieldSpec<Name> {
 }
 
 export const STEP_FIELDS: readonly FieldSpec<keyof StepForm>[] = [
-  { name: 'start', label: 'from', unit: null, range: null, hint: 'Held until the value rests there' },
-  { name: 'target', label: 'to', unit: null, range: null, hint: 'The set point after the step' },
-  { name: 'duration', label: 'measured for', unit: 's', range: [2, 300], hint: 'From the step on' },
+  { name: 'start', ...texts.fields.start, unit: null, range: null },
+  { name: 'target', ...texts.fields.target, unit: null, range: null },
+  { name: 'duration', ...texts.fields.stepDuration, unit: 's', range: [2, 300] },
 ];
 
 export const STEP_MORE: readonly FieldSpec<keyof StepForm>[] = [
-  { name: 'tolerance', label: 'rests within ±', unit: null, range: [0.001, 20], hint: 'So near to the start, for 2 s, counts as rest' },
-  { name: 'settle', label: 'waits at most', unit: 's', range: [0, 120], hint: 'For the value to rest at the start; then the step comes anyway' },
-  { name: 'low', label: 'not below', unit: null, range: [-180, 180], hint: 'Beyond, the experiment ends at once' },
-  { name: 'high', label: 'not above', unit: null, range: [-180, 180], hint: 'Beyond, the experiment ends at once' },
+  { name: 'tolerance', ...texts.fields.tolerance, unit: null, range: [0.001, 20] },
+  { name: 'settle', ...texts.fields.settle, unit: 's', range: [0, 120] },
+  { name: 'low', ...texts.fields.low, unit: null, range: [-180, 180] },
+  { name: 'high', ...texts.fields.high, unit: null, range: [-180, 180] },
 ];
 
 export const RELAY_FIELDS: readonly FieldSpec<keyof RelayForm>[] = [
-  { name: 'set_point', label: 'about', unit: null, range: null, hint: 'The relay switches as the value passes here' },
-  { name: 'amplitude', label: 'command ±', unit: '%', range: [10, 100], hint: 'Share of the most command, either way' },
-  { name: 'cycles', label: 'cycles', unit: '', range: [3, 20], hint: 'That are measured, once both halves of a cycle are alike' },
+  { name: 'set_point', ...texts.fields.centre, unit: null, range: null },
+  { name: 'amplitude', ...texts.fields.amplitude, unit: '%', range: [10, 100] },
+  { name: 'cycles', ...texts.fields.cycles, unit: '', range: [3, 20] },
 ];
 
 export const RELAY_MORE: readonly FieldSpec<keyof RelayForm>[] = [
-  { name: 'hysteresis', label: 'switches ± beyond', unit: null, range: [0, 20], hint: 'So that noise does not switch it' },
-  { name: 'duration', label: 'gives up after', unit: 's', range: [2, 300], hint: 'Where there are not enough cycles by then' },
-  { name: 'low', label: 'not below', unit: null, range: [-180, 180], hint: 'Beyond, the experiment ends at once' },
-  { name: 'high', label: 'not above', unit: null, range: [-180, 180], hint: 'Beyond, the experiment ends at once' },
+  { name: 'hysteresis', ...texts.fields.hysteresis, unit: null, range: [0, 20] },
+  { name: 'duration', ...texts.fields.relayDuration, unit: 's', range: [2, 300] },
+  { name: 'low', ...texts.fields.low, unit: null, range: [-180, 180] },
+  { name: 'high', ...texts.fields.high, unit: null, range: [-180, 180] },
 ];
 
 export function usualStep(loop: LoopName): StepForm {
