@@ -120,7 +120,7 @@ describe('Pads', () => {
     expect(pilot.axes[X]).toBeGreaterThan(0);
     show(gone);
     expect([pilot.axes[X], pads.name]).toEqual([0, null]);
-    expect(pads.notice).toContain('Test pad has gone');
+    expect(pads.notice).toContain('Test pad disconnected');
     show(pad([0, 0, 0, -1]));
     expect([pilot.axes[X], pads.waits, pads.notice]).toEqual([0, true, '']);
   });
@@ -147,7 +147,7 @@ describe('Pads', () => {
   it('do not use one of another layout', () => {
     show(pad([0, 0, 0, -1], [], { mapping: '' }));
     expect([pads.name, pilot.axes[X]]).toEqual([null, 0]);
-    expect(pads.notice).toContain('not used');
+    expect(pads.notice).toContain('not supported');
   });
 });
 

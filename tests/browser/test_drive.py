@@ -172,7 +172,7 @@ def test_a_lost_gamepad_a_lost_socket_and_escape_are_rest(page: Page, stack: Sta
     ):
         expect_surge(page, "forwards")
         page.evaluate("() => { globalThis.pad = null; }")
-    expect(drive.get_by_text("Test pad has gone; what it held is let go.")).to_be_visible()
+    expect(drive.get_by_text("Test pad disconnected; controls released.")).to_be_visible()
     expect_surge(page, "")
     with resting_within_half_a_second(stack, lambda: page.keyboard.down("r")):
         page.evaluate("() => { for (const one of globalThis.sockets) one.close(); }")

@@ -1,6 +1,7 @@
 import { PITCH, ROLL, X, Y, YAW, Z, type Push } from './axes';
 import { SPEEDS } from './handling.svelte';
 import type { Holdable } from './holds';
+import { drive as texts } from '../texts/drive';
 
 /** A key of the map: where it lies (as on a US keyboard, so that hands find it on others too), and what it does. */
 export interface Key {
@@ -20,24 +21,24 @@ const key = (code: string, cap: string, what: string, axis: Push['axis'], amount
 /** In rows, as they lie. */
 export const LEFT_HAND: readonly (readonly Key[])[] = [
   [
-    key('KeyQ', 'Q', 'left', Y, -1),
-    key('KeyW', 'W', 'ahead', X, 1),
-    key('KeyE', 'E', 'right', Y, 1),
-    key('KeyR', 'R', 'up', Z, -1),
+    key('KeyQ', 'Q', texts.keys.left, Y, -1),
+    key('KeyW', 'W', texts.keys.ahead, X, 1),
+    key('KeyE', 'E', texts.keys.right, Y, 1),
+    key('KeyR', 'R', texts.keys.up, Z, -1),
   ],
   [
-    key('KeyA', 'A', 'turn ‹', YAW, -1),
-    key('KeyS', 'S', 'back', X, -1),
-    key('KeyD', 'D', 'turn ›', YAW, 1),
-    key('KeyF', 'F', 'down', Z, 1),
+    key('KeyA', 'A', texts.keys.turnLeft, YAW, -1),
+    key('KeyS', 'S', texts.keys.back, X, -1),
+    key('KeyD', 'D', texts.keys.turnRight, YAW, 1),
+    key('KeyF', 'F', texts.keys.down, Z, 1),
   ],
 ];
 export const RIGHT_HAND: readonly (readonly Key[])[] = [
-  [key('ArrowUp', '↑', 'nose ↑', PITCH, 1)],
+  [key('ArrowUp', '↑', texts.keys.noseUp, PITCH, 1)],
   [
-    key('ArrowLeft', '←', 'roll ‹', ROLL, -1),
-    key('ArrowDown', '↓', 'nose ↓', PITCH, -1),
-    key('ArrowRight', '→', 'roll ›', ROLL, 1),
+    key('ArrowLeft', '←', texts.keys.rollLeft, ROLL, -1),
+    key('ArrowDown', '↓', texts.keys.noseDown, PITCH, -1),
+    key('ArrowRight', '→', texts.keys.rollRight, ROLL, 1),
   ],
 ];
 const PUSHES = new Map([...LEFT_HAND, ...RIGHT_HAND].flat().map(({ code, push }) => [code, push]));

@@ -1,5 +1,6 @@
 import { BUTTONS, pressed, pushesOf, type Button } from './gamepad';
 import type { Pilot } from './pilot.svelte';
+import { drive as texts } from '../texts/drive';
 
 /** ms between two looks */
 const LOOK = 20;
@@ -40,7 +41,7 @@ export class Pads {
   #join(pad: Gamepad | null): void {
     if (pad === null || this.#index !== null) return;
     if (pad.mapping !== 'standard') {
-      this.notice = `${shortName(pad.id)} has a layout that this page does not know; it is not used.`;
+      this.notice = texts.gamepad.unsupported(shortName(pad.id));
       return;
     }
     this.#index = pad.index;
@@ -64,7 +65,7 @@ export class Pads {
     if (this.#index === null) return;
     const pad = navigator.getGamepads()[this.#index];
     if (!pad?.connected) {
-      this.notice = `${this.name ?? 'The gamepad'} has gone; what it held is let go.`;
+      this.notice = texts.gamepad.disconnected(this.name ?? texts.gamepad.unnamed);
       this.#leave();
       return;
     }
