@@ -114,7 +114,7 @@ def exported(stack: Stack, session: int) -> dict[str, list[dict[str, str]]]:
 
 def test_typing_does_not_drive(page: Page) -> None:
     arm_by_hand(page)
-    field = page.get_by_label("Text that lines must hold")
+    field = page.get_by_label("Filter by text")
     field.focus()
     page.keyboard.down("w")
     expect(field).to_have_value("w")

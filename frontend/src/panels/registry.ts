@@ -6,6 +6,7 @@ import Fins from './fins/Fins.svelte';
 import Horizon from './attitude/Horizon.svelte';
 import Navigation from './navigation/Navigation.svelte';
 import { ownTitle, type PanelKind, type Plain, type Size } from '../parts/panelKind';
+import { panels as texts } from '../texts/panels';
 
 /** What an operator looks at first comes with the page, the others when they are first shown. */
 const here = (component: Plain) => () => Promise.resolve({ default: component });
@@ -14,24 +15,24 @@ const here = (component: Plain) => () => Promise.resolve({ default: component })
 export const PANELS: readonly PanelKind[] = [
   {
     name: 'camera',
-    title: 'Camera',
-    about: 'The picture with what is found in it',
+    title: texts.titles.camera,
+    about: texts.about.camera,
     load: here(Camera),
     size: { width: 17, height: 11 },
     least: { width: 9, height: 8 },
   },
   {
     name: 'depth',
-    title: 'Depth over time',
-    about: 'Depth and set point, events as flags',
+    title: texts.titles.depth,
+    about: texts.about.depth,
     load: here(DepthChart),
     size: { width: 17, height: 6 },
     least: { width: 10, height: 5 },
   },
   {
     name: 'attitude',
-    title: 'Attitude',
-    about: 'The artificial horizon',
+    title: texts.titles.attitude,
+    about: texts.about.attitude,
     load: here(Horizon),
     size: { width: 7, height: 6 },
     least: { width: 5, height: 5 },
@@ -39,8 +40,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'fins',
-    title: 'Fins',
-    about: 'Angles, commanded and measured, and the drive of the motors',
+    title: texts.titles.fins,
+    about: texts.about.fins,
     load: here(Fins),
     size: { width: 7, height: 6 },
     least: { width: 6, height: 6 },
@@ -48,8 +49,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'robot',
-    title: 'Robot',
-    about: 'The robot in space, its fins as the encoders say',
+    title: texts.titles.robot,
+    about: texts.about.robot,
     load: () => import('./robot/Robot3d.svelte'),
     size: { width: 7, height: 6 },
     least: { width: 5, height: 5 },
@@ -57,8 +58,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'navigation',
-    title: 'Navigation command',
-    about: 'What the controller or the pilot asks of the fins',
+    title: texts.titles.navigation,
+    about: texts.about.navigation,
     load: here(Navigation),
     size: { width: 8, height: 7 },
     least: { width: 7, height: 5 },
@@ -66,8 +67,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'imu',
-    title: 'Inertial sensor',
-    about: 'Roll, pitch and yaw, turn rates, specific forces',
+    title: texts.titles.imu,
+    about: texts.about.imu,
     load: () => import('./imu/Imu.svelte'),
     size: { width: 8, height: 8 },
     least: { width: 6, height: 5 },
@@ -75,8 +76,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'beacons',
-    title: 'Light beacons',
-    about: 'Which detector sees the beacon, now and before',
+    title: texts.titles.beacons,
+    about: texts.about.beacons,
     load: () => import('./beacons/Beacons.svelte'),
     size: { width: 8, height: 5 },
     least: { width: 6, height: 4 },
@@ -84,8 +85,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'battery',
-    title: 'Battery',
-    about: 'Voltage, and how long until its alarm',
+    title: texts.titles.battery,
+    about: texts.about.battery,
     load: () => import('./battery/Battery.svelte'),
     size: { width: 6, height: 6 },
     least: { width: 5, height: 4 },
@@ -93,8 +94,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'link',
-    title: 'Serial link',
-    about: 'Round trip, losses and repeats between computer and board',
+    title: texts.titles.link,
+    about: texts.about.link,
     load: () => import('./link/Link.svelte'),
     size: { width: 8, height: 7 },
     least: { width: 6, height: 5 },
@@ -102,8 +103,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'console',
-    title: 'Console',
-    about: 'What the firmware prints, with a filter',
+    title: texts.titles.console,
+    about: texts.about.console,
     load: here(Console),
     size: { width: 9, height: 7 },
     least: { width: 8, height: 4 },
@@ -111,8 +112,8 @@ export const PANELS: readonly PanelKind[] = [
   },
   {
     name: 'events',
-    title: 'Events',
-    about: 'What has happened, in words',
+    title: texts.titles.events,
+    about: texts.about.events,
     load: here(Events),
     size: { width: 7, height: 7 },
     least: { width: 5, height: 4 },
@@ -125,12 +126,12 @@ export const OWN = 'own/';
 export const loadChart = () => import('./chart/PlacedChart.svelte');
 export const loadOwn = () => import('./own/OwnPanel.svelte');
 
-const CHART_KIND = { title: 'Chart', size: { width: 12, height: 7 }, least: { width: 7, height: 5 } };
+const CHART_KIND = { title: texts.titles.chart, size: { width: 12, height: 7 }, least: { width: 7, height: 5 } };
 const OWN_SIZE = { size: { width: 8, height: 7 }, least: { width: 4, height: 3 } };
 
 /** What a layout's panel is called and how large it is; an unknown one can be moved and removed as well. */
 export function describe(panel: string): { readonly title: string; readonly size: Size; readonly least: Size } {
   if (panel === CHART) return CHART_KIND;
   if (panel.startsWith(OWN)) return { title: ownTitle(panel.slice(OWN.length)), ...OWN_SIZE };
-  return PANELS.find(({ name }) => name === panel) ?? { title: `Unknown panel “${panel}”`, ...OWN_SIZE };
+  return PANELS.find(({ name }) => name === panel) ?? { title: texts.titles.unknown(panel), ...OWN_SIZE };
 }

@@ -1,10 +1,11 @@
 import type { DebugLine } from '../../generated/topics';
+import { panels as texts } from '../../texts/panels';
 
 /** Words of DebugLevel, in its order. */
 export const LEVELS = ['debug', 'info', 'warning', 'error'] as const;
 
 export function levelWord(level: number): string {
-  return LEVELS[level] ?? `level ${level}`;
+  return LEVELS[level] ?? texts.console.unknownLevel(level);
 }
 
 /** The lines of at least this level that hold this text, upper and lower case alike. */

@@ -1,6 +1,7 @@
 import { canvasFont } from '../../theme.svelte';
 import { FLANK, HEAD_FACETS, HULL, LENS, MOUNTS, NECK, finAt, type Facet } from './shape';
 import { dot, eyeOf, FOCAL, turn, turnBack, unit as unitOf, type Camera, type Eye, type Quaternion, type Vector } from './space';
+import { panels as texts } from '../../texts/panels';
 
 export interface Pose {
   readonly attitude: Quaternion;
@@ -153,7 +154,7 @@ function surface(pen: Pen, height: number, depth: number, colours: Colours): voi
   context.font = canvasFont('small');
   context.textAlign = 'left';
   context.textBaseline = 'bottom';
-  context.fillText(far ? `surface ${depth.toFixed(2)} m above` : 'surface', 0, height);
+  context.fillText(far ? texts.robot.surfaceAbove(depth.toFixed(2)) : texts.robot.surface, 0, height);
 }
 
 /** 0 to 1, of a face that looks this way in the world */
