@@ -129,7 +129,7 @@ def test_a_viewer_is_told_before_he_tries(browser: Browser, stack: Stack) -> Non
     page = context.new_page()
     context.add_init_script(path=AXE)
     page.goto(make_link(stack, "viewer"))
-    expect(page.get_by_text("You are looking on.")).to_be_visible()
+    expect(page.get_by_text("View only.")).to_be_visible()
     refused = {
         "sessions": ["Delete", "Start recording", "Import…"],
         "scenarios": ["Run in simulation"],

@@ -1,0 +1,50 @@
+/** Texts around every page: alarms, control, connection, notices. */
+export const shell = {
+  lookingOn: {
+    title: 'View only.',
+    text: 'You can watch and press STOP.',
+    link: 'Ask an operator for more rights',
+  },
+  alarms: {
+    active: 'active',
+    over: 'over',
+    since: (time: string, acknowledged: boolean) => `since ${time}${acknowledged ? ', acknowledged' : ''}`,
+    cause: 'Likely cause:',
+    remedy: 'Do:',
+    none: 'No alarms. Faults of the robot, its link and its computer appear here, with what to do.',
+    acknowledge: (count: number) => (count > 1 ? `Acknowledge all ${count}` : 'Acknowledge'),
+    history: 'Alarm history, newest first',
+  },
+  notices: {
+    stopUnconfirmed: 'STOP is not confirmed yet',
+    outdated: 'This page is older than the server.',
+    outdatedText: 'Its data may be wrong until you reload it.',
+    reload: 'Reload',
+    close: 'Close',
+  },
+  control: {
+    unknown: 'Loading who has control…',
+    viewer: 'Viewers can watch and press STOP. An operator can change your role under System, People.',
+    mine: 'Others can watch, press STOP, and take over.',
+    release: 'Release control',
+    take: 'Take control',
+    takeOverWarning: (name: string) => `${name} loses control at once and the sticks return to neutral. Agree with them first.`,
+    takeOverNow: 'Take over now',
+    takeOver: 'Take over',
+    signedInAs: 'Signed in as',
+    people: 'People',
+    lost: (name: string) => `${name} took control from this page.`,
+    lostText: 'You can watch and press STOP.',
+  },
+  hops: {
+    label: 'Connection lost',
+    since: (duration: string) => `for ${duration}`,
+  },
+  robotNow: {
+    label: 'Robot now',
+    unknown: 'unknown',
+    armed: 'ARMED',
+    disarmed: 'disarmed',
+    disconnected: 'not connected',
+  },
+} as const;
