@@ -183,7 +183,7 @@ def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stac
     shown = page.frame_locator("iframe[title='Climb rate']").get_by_role("status")
     expect(shown).to_have_text(re.compile(r"\d\.\d\d"))
     broken = page.get_by_role("region", name="Broken")
-    expect(broken).to_contain_text("panels/broken.js went wrong: it exports no default function")
+    expect(broken).to_contain_text("Error in panels/broken.js: it exports no default function")
     nosy = page.frame_locator("iframe[title='Nosy']")
     expect(nosy.locator("output")).to_have_text(re.compile(r"\d"))
     expect(nosy.locator("#got")).to_have_text("nothing")
