@@ -31,7 +31,7 @@ PAGES = (
     View("scenarios", "scenarios", "New run"),
     View("comm-tests", "comm-tests", "Runs"),
     View("comm-test", "comm-tests/runs/{run}", "Every cell"),
-    View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Side by side"),
+    View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Compare runs"),
     View("sessions", "sessions", "Recorded"),
     View("session", "sessions/{first}", "Export"),
     View("sessions-compare", "sessions/compare/{first},{second}", "Over time"),

@@ -137,7 +137,7 @@ def check_json(page: Page, tmp_path: Path, grid: Grid) -> None:
 def check_comparison(page: Page, shown: dict[Place, str]) -> None:
     """Beside Table 6 stand the same rates, and what they differ by."""
     page.get_by_role("link", name="Compare with Table 6").click()
-    expect(page.get_by_role("heading", name="Side by side")).to_be_visible()
+    expect(page.get_by_role("heading", name="Compare runs")).to_be_visible()
     expect(page.locator(".point")).to_have_count(75 + 2 * len(shown), timeout=STEP_MS)
     thesis = read_table("table6")
     rows = rows_of(page, "Every cell")
@@ -193,7 +193,7 @@ def test_what_is_cancelled_is_kept(page: Page) -> None:
 def test_a_newcomer_sees_the_samples_beside_the_thesis(any_page: Page) -> None:
     any_page.get_by_role("link", name="Comm tests", exact=True).click()
     any_page.get_by_role("link", name="Compare with the thesis").click()
-    compared = any_page.get_by_role("region", name="What is compared")
+    compared = any_page.get_by_role("region", name="Compared runs")
     expect(compared.get_by_role("row").filter(has_text="robot's own link")).to_contain_text("1.00")
     expect(any_page.locator(".point").first).to_be_visible(timeout=STEP_MS)
     wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
