@@ -29,7 +29,7 @@ def test_control_goes_from_one_to_the_other(page: Page, browser: Browser, stack:
         other.get_by_role("button", name="Take over").click()
         other.get_by_role("button", name="Take over now").click()
         expect(control(other)).to_have_accessible_name(MINE)
-        lost = page.get_by_role("alert").filter(has_text="took control over from this page")
+        lost = page.get_by_role("alert").filter(has_text="took control from this page")
         expect(lost).to_be_visible()
         expect(page.get_by_role("button", name="Hold to arm")).to_be_disabled()
         page.get_by_role("button", name="STOP").click()
