@@ -18,7 +18,7 @@ _PAGE_SEEKS = 50
 _AHEAD = 5.0
 _HISTORY = 300.0
 """s after and before the moment, as the page asks for them."""
-_SLIDER = "Time since the session's start"
+_SLIDER = "Time since the start of the session"
 
 
 def measure() -> dict[str, float]:
