@@ -12,6 +12,8 @@ const READ = new Set([
 ]);
 
 const WORD = /\p{L}{2}/u;
+/** Symbols of units, the same in every language. */
+const UNITS = new Set(['Hz', 'ms']);
 
 /** The literal texts that an expression may show: its own, and those of its branches and its template. */
 function literals(expression) {
@@ -44,7 +46,7 @@ export const textsApart = {
     if (!file.endsWith('.svelte') || !CONVERTED.some((place) => file.startsWith(place))) return {};
     function check(node) {
       const text = words(node).trim();
-      if (WORD.test(text)) context.report({ node, messageId: 'literal', data: { words: text } });
+      if (WORD.test(text) && !UNITS.has(text)) context.report({ node, messageId: 'literal', data: { words: text } });
     }
     function checkAttribute(node) {
       if (!READ.has(node.key.name)) return;

@@ -1,6 +1,7 @@
 /** Texts of manual driving. */
 export const drive = {
   title: 'Drive',
+  noPicture: 'No picture yet',
   rightStick: 'Right stick',
   swim: 'Swim',
   tilt: 'Tilt',
