@@ -84,6 +84,11 @@ class Alarms:
         self._on_event(Event(time=now, kind=name, severity=fault.severity, text=text))
         self._changed()
 
+    def begin_again(self, name: str, detail: str = "") -> None:
+        """Begins an acknowledged alarm anew: its fault has stopped the robot once more."""
+        if self._alarms[name].acknowledged:
+            self.begin(name, detail)
+
     def acknowledge(self) -> None:
         """Acknowledges all alarms; those that are over are removed."""
         self._alarms = {

@@ -230,8 +230,10 @@ class Supervisor:
             active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}
             wrong = self.detector.wrong(self.mode, active)
             self._alarms.update(wrong)
-            for name in wrong:
+            for name, detail in wrong.items():
                 if BY_NAME[name].stops(self.mode):
+                    if self.armed:
+                        self._alarms.begin_again(name, detail)
                     self._all_stop()
             if not self.armed and self._arming is None and self.board_armed:
                 self._line.send(Stop())

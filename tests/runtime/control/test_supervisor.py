@@ -280,6 +280,29 @@ def test_a_failsafe_is_acknowledged_before_anything_arms(rig: Rig) -> None:
     assert rig.supervisor.armed
 
 
+def test_a_fault_that_comes_back_after_it_was_acknowledged_is_an_alarm_again(rig: Rig) -> None:
+    def live(seconds: float, *, depth: bool) -> None:
+        for _ in range(round(seconds / 0.05)):
+            rig.clock.forward(0.05)
+            rig.report()
+            rig.feel_attitude()
+            if depth:
+                rig.feel_depth()
+            rig.supervisor.tick()
+
+    rig.supervisor.arm()
+    live(1.0, depth=False)
+    live(0.2, depth=True)
+    rig.supervisor.acknowledge()
+    rig.supervisor.arm()
+    live(1.0, depth=False)
+    live(2.0, depth=True)
+    assert rig.supervisor.mode == "failsafe"
+    assert [(one.fault, one.active, one.acknowledged) for one in rig.supervisor.alarms] == [
+        ("depth_stale", False, False)
+    ]
+
+
 def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
