@@ -117,8 +117,9 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
 def snapshot(stack: Stack) -> dict[str, Any]:
     """What an attack might have changed."""
     robot = stack.api.get("/robot").raise_for_status().json()
-    names = ("mode", "armed", "controller", "set_point_default", "set_point_detected", "card", "vision_rate")
+    names = ("mode", "armed", "set_point_default", "set_point_detected", "card", "vision_rate")
     found: dict[str, Any] = {name: robot[name] for name in names}
+    found["loops"] = [(one["name"], one["on"], one["controller"], one["set_point"]) for one in robot["loops"]]
     for path in ("/sessions", "/exports", "/scenarios", "/comm-tests/runs"):
         found[path] = [str(one.get("id", one.get("name"))) for one in stack.api.get(path).json()]
     devices = stack.api.get("/access/devices").json()
