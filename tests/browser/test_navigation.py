@@ -64,7 +64,7 @@ def test_the_tab_of_tune_that_one_is_on_is_in_view_on_a_phone(
     page = context.new_page()
     for address, name in TABS.items():
         page.goto(f"{stack.url}/#/tune/{address}")
-        tabs = page.get_by_role("navigation", name="What to tune")
+        tabs = page.get_by_role("navigation", name="Tuning views")
         tab = tabs.get_by_role("link", name=name)
         expect(tab).to_have_attribute("aria-current", "page")
         expect(tab).to_be_in_viewport(ratio=1)
