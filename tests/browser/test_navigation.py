@@ -50,10 +50,10 @@ def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> N
 
 def test_views_of_one_page_leave_the_focus_on_their_tab(page: Page, stack: Stack) -> None:
     page.goto(f"{stack.url}/#/tune/response")
-    tab = page.get_by_role("link", name="Parameters")
+    tab = page.get_by_role("navigation", name="Tuning views").get_by_role("link", name="Parameters")
     tab.focus()
     tab.press("Enter")
-    expect(page.get_by_role("link", name="Parameters")).to_have_attribute("aria-current", "page")
+    expect(tab).to_have_attribute("aria-current", "page")
     expect(tab).to_be_focused()
 
 
