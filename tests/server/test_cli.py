@@ -84,8 +84,9 @@ def port() -> int:
 
 
 def test_the_version_is_the_project_s() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert project["version"] == VERSION
+    document = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert document["project"]["dynamic"] == ["version"]
+    assert document["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "server.VERSION"}
     assert mucat("--version").stdout == f"mucat {VERSION}\n"
 
 
