@@ -64,7 +64,7 @@ class Container:
         self.settings = settings
         self._stopping: asyncio.Task[None] | None = None
         self._ended = ended
-        """How the server before this one has ended unexpectedly, a sentence."""
+        """A sentence about the unexpected end of the server before this one; empty without one."""
         self.clock: Clock = SteadyClock()
         self.page = Page(settings.page)
         self.store = Store(settings.data.database)

@@ -27,7 +27,7 @@ EVERYWHERE: dict[int | str, dict[str, Any]] = {
         "not valid (422)",
     }
 }
-"""What any operation may answer."""
+"""The answers that every operation may give."""
 
 SILENT = answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s")
 """Of what is asked of the runtime."""

@@ -34,7 +34,7 @@ class RunRecord:
     place: Place
     board: BoardKind
     who: str = ""
-    """Who started it."""
+    """The person or program that started it."""
     phase: Phase = "waiting"
     elapsed: float = 0.0
     session: int | None = None
