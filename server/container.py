@@ -26,7 +26,7 @@ from server.features.lease.sync import LeaseSync
 from server.features.parameters.changes import Changes
 from server.features.parameters.profiles import Profiles
 from server.features.scenarios.live_run import LiveExecutor
-from server.features.scenarios.runs import ScenarioRunner as ScenarioRuns
+from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.simulated_run import SimulatedExecutor
 from server.features.sessions.auto_recording import AutoRecorder
 from server.features.sessions.bookmarks import Bookmarks
@@ -136,7 +136,7 @@ class Container:
             self.notices.notify,
         )
         simulated = SimulatedExecutor(self.settings, self.store, self.notices)
-        self.scenarios = ScenarioRuns(self._live, simulated, self.hub.notify)
+        self.scenarios = ScenarioRunner(self._live, simulated, self.hub.notify)
         self.bridge.on_stop = self.scenarios.see_stop
 
     def _add_tuning(self) -> None:

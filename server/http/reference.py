@@ -62,7 +62,8 @@ def http_page(document: Schema) -> str:
 
 
 def _row(name: str, operation: Schema) -> tuple[str, ...]:
-    meaning = " ".join(filter(None, (operation["summary"] + ".", operation.get("description", ""))))
+    summary, description = operation["summary"], operation.get("description", "")
+    meaning = description if description.startswith(summary) else f"{summary}. {description}"
     return (
         f"`{name}`",
         operation[DECLARED],

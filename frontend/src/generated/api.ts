@@ -178,8 +178,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Cancel what runs
-         * @description The cells that are finished are kept. Its end is told on the live socket.
+         * Cancel the running document; finished cells are stored
+         * @description Cancel the running document; finished cells are stored.
          */
         post: operations["cancelTestRun"];
         delete?: never;
@@ -198,8 +198,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * What is wrong with a document
-         * @description Its problems, field by field; or its tests, with about how long they take.
+         * Check a document: its problems field by field, or its tests with about how long they take
+         * @description Check a document: its problems field by field, or its tests with about how long they take.
          */
         post: operations["checkTestDocument"];
         delete?: never;
@@ -216,8 +216,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The documents that come with the program
-         * @description The thesis's own example (Figure 10) first.
+         * List the documents that ship with the program, the thesis's own example (Figure 10) first
+         * @description List the documents that ship with the program, the thesis's own example (Figure 10) first.
          */
         get: operations["listTestDocuments"];
         put?: never;
@@ -236,14 +236,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All runs, newest first
-         * @description One's own and those that come with the program.
+         * List all runs, also those that ship with the program, newest first
+         * @description List all runs, also those that ship with the program, newest first.
          */
         get: operations["listTestRuns"];
         put?: never;
         /**
-         * Run a document
-         * @description Each test of the document becomes a run, one after the other; this answers when the first has begun.
+         * Run the tests of a document one after the other; this answers when the first has begun
+         * @description Run the tests of a document one after the other; this answers when the first has begun.
          */
         post: operations["startTestRun"];
         delete?: never;
@@ -260,8 +260,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One run
-         * @description With its configuration and its cells.
+         * Return a run with its configuration and its cells
+         * @description Return a run with its configuration and its cells.
          */
         get: operations["getTestRun"];
         put?: never;
@@ -280,8 +280,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Download a run's cells
-         * @description A line for each cell.
+         * Download a run as CSV, a line for each cell
+         * @description Download a run as CSV, a line for each cell.
          */
         get: operations["downloadTestRunCsv"];
         put?: never;
@@ -300,8 +300,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Download a run
-         * @description Everything that is known of it, and its cells.
+         * Download everything that is known of a run, with its cells, as JSON
+         * @description Download everything that is known of a run, with its cells, as JSON.
          */
         get: operations["downloadTestRunJson"];
         put?: never;
@@ -320,8 +320,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The thesis's own results
-         * @description Table 5 (plain numbers) and Table 6 (packets).
+         * Return the thesis's own results: Table 5 (plain numbers) and Table 6 (packets)
+         * @description Return the thesis's own results: Table 5 (plain numbers) and Table 6 (packets).
          */
         get: operations["listTestTables"];
         put?: never;
@@ -342,8 +342,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Lay sessions over each other
-         * @description Lines, figures and what was different about the sessions.
+         * Compare sessions: lines, figures and differences
+         * @description Compare sessions: lines, figures and differences.
          */
         post: operations["compareSessions"];
         delete?: never;
@@ -362,8 +362,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Lines for a part of the time
-         * @description The lines of a shorter time range in full resolution.
+         * Return the lines of a shorter time range in full resolution
+         * @description Return the lines of a shorter time range in full resolution.
          */
         post: operations["compareLines"];
         delete?: never;
@@ -380,8 +380,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A comparison as one HTML file
-         * @description Charts, figures and differences, with all that they need: it opens without any network.
+         * Return a comparison as one HTML file with charts, figures and differences; it needs no network
+         * @description Return a comparison as one HTML file with charts, figures and differences; it needs no network.
          */
         get: operations["getComparisonReport"];
         put?: never;
@@ -463,14 +463,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All exports, newest first
-         * @description Those that are kept, and those that are being made.
+         * List the exports that are stored, running or waiting, newest first
+         * @description List the exports that are stored, running or waiting, newest first.
          */
         get: operations["listExports"];
         put?: never;
         /**
-         * Have a session made into a file
-         * @description Files are made one after the other, apart from the server; GET tells how far it is.
+         * Export a session to a file, in a process beside the server; GET returns the progress
+         * @description Export a session to a file, in a process beside the server; GET returns the progress.
          */
         post: operations["startExport"];
         delete?: never;
@@ -487,15 +487,15 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One export
-         * @description Progress of an export; its size and checksum when it is done.
+         * Return the progress of an export, and its size and checksum when it is done
+         * @description Return the progress of an export, and its size and checksum when it is done.
          */
         get: operations["getExport"];
         put?: never;
         post?: never;
         /**
-         * Cancel or delete an export
-         * @description The file is gone then.
+         * Cancel an export, or delete its file
+         * @description Cancel an export, or delete its file.
          */
         delete: operations["deleteExport"];
         options?: never;
@@ -511,8 +511,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Download an export
-         * @description A download that was cut goes on where it was: ask with Range, and with If-Range its ETag.
+         * Download the file of an export
+         * @description Download the file of an export.
+         *
+         *     An interrupted download continues with Range, and If-Range with its ETag.
          */
         get: operations["downloadExport"];
         put?: never;
@@ -553,8 +555,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Import the archive of a session
-         * @description The body is the file. It is looked at as a whole, and stored as a whole or not at all.
+         * Import a session from an archive, the request's body; it is stored whole or not at all
+         * @description Import a session from an archive, the request's body; it is stored whole or not at all.
          */
         post: operations["importSession"];
         delete?: never;
@@ -619,8 +621,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The last frames on the serial line, now and at the last fault
-         * @description Asked of the runtime at each call; it costs nothing where nobody calls.
+         * Return the last frames on the serial line, now and at the last fault
+         * @description Return the last frames on the serial line, now and at the last fault.
+         *
+         *     Each call asks the runtime; without calls it costs nothing.
          */
         get: operations["getLinkFrames"];
         put?: never;
@@ -1103,14 +1107,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The scenarios that there are
-         * @description Those that come with the program, the thesis's own first, then those in the data folder.
+         * List the scenarios: those of the program, the thesis's own first, then those of the data folder
+         * @description List the scenarios: those of the program, the thesis's own first, then those of the data folder.
          */
         get: operations["listScenarios"];
         put?: never;
         /**
-         * Keep a scenario
-         * @description Write it into the data folder under its own name, over one of that name.
+         * Store a scenario in the data folder under its own name, replacing one of that name
+         * @description Store a scenario in the data folder under its own name, replacing one of that name.
          */
         post: operations["keepScenario"];
         delete?: never;
@@ -1129,8 +1133,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Cancel what runs
-         * @description End the active run and clear the queue; recordings stay. The end is reported on the live socket.
+         * Cancel the active run and clear the queue; recordings stay
+         * @description Cancel the active run and clear the queue; recordings stay.
          */
         post: operations["cancelScenario"];
         delete?: never;
@@ -1149,8 +1153,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * What is wrong with a scenario
-         * @description Its problems, field by field; or what it says.
+         * Check a scenario: its problems field by field, or its summary
+         * @description Check a scenario: its problems field by field, or its summary.
          */
         post: operations["checkScenario"];
         delete?: never;
@@ -1169,8 +1173,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Run a scenario
-         * @description Live: at once, or refused with the reasons. In simulated time: at once, or in its turn.
+         * Run a scenario: live at once, or refused with the reasons; in simulated time in its turn
+         * @description Run a scenario: live at once, or refused with the reasons; in simulated time in its turn.
          */
         post: operations["startScenario"];
         delete?: never;
@@ -1187,8 +1191,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * What runs
-         * @description The active run, the queue and the last run, as on the live socket.
+         * Return the active run, the queue and the last run, as on the live socket
+         * @description Return the active run, the queue and the last run, as on the live socket.
          */
         get: operations["getScenarioState"];
         put?: never;
@@ -1227,14 +1231,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Sessions, newest first
-         * @description Sessions that are to be found by all that is asked.
+         * List the sessions that match every given condition, newest first
+         * @description List the sessions that match every given condition, newest first.
          */
         get: operations["listSessions"];
         put?: never;
         /**
-         * Start recording
-         * @description Record everything from now on; refused while another session records or a test uses the board.
+         * Start recording everything; refused while another session records or a test uses the board
+         * @description Start recording everything; refused while another session records or a test uses the board.
          */
         post: operations["startSession"];
         delete?: never;
@@ -1251,22 +1255,22 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One session
-         * @description One session with everything that is known of it, but its samples; also from the bin.
+         * Return a session with everything that is known of it except its samples; also from the bin
+         * @description Return a session with everything that is known of it except its samples; also from the bin.
          */
         get: operations["getSession"];
         put?: never;
         post?: never;
         /**
-         * Put a session into the bin
-         * @description It can be restored until it is purged, or until `sessions.undo_days` have passed.
+         * Move a session to the bin, until it is purged or `sessions.undo_days` have passed
+         * @description Move a session to the bin, until it is purged or `sessions.undo_days` have passed.
          */
         delete: operations["deleteSession"];
         options?: never;
         head?: never;
         /**
-         * Name, note, tag or keep a session
-         * @description Change what people say about it; tags are replaced as a whole.
+         * Change name, note, tags or protection of a session; tags are replaced as a whole
+         * @description Change name, note, tags or protection of a session; tags are replaced as a whole.
          */
         patch: operations["changeSession"];
         trace?: never;
@@ -1279,12 +1283,12 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A stretch of a session
-         * @description The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+         * Return the samples of all topics from `start` up to `end`, in order of time
+         * @description Return the samples of all topics from `start` up to `end`, in order of time.
          *
-         *     With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
-         *     of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
-         *     that are damaged or cannot be said in this version's definitions.
+         *     Times are in s since the session's start; those in the blocks are the stored ones. With a `history` (s)
+         *     the answer begins with the values in force at `start`, and with the earlier samples that the page's charts
+         *     and lists show. The header `Left-Out` counts samples that are damaged or unknown to this version.
          */
         get: operations["getBlocks"];
         put?: never;
@@ -1305,8 +1309,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Mark a moment
-         * @description Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended.
+         * Bookmark a moment; without a time it is now
+         * @description Bookmark a moment; without a time it is now.
+         *
+         *     Refused beyond the session's end, and without a time after the session has ended.
          */
         post: operations["addMark"];
         delete?: never;
@@ -1326,15 +1332,15 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Take a mark away
-         * @description Take it away for good.
+         * Remove a bookmark for good
+         * @description Remove a bookmark for good.
          */
         delete: operations["removeMark"];
         options?: never;
         head?: never;
         /**
-         * Change a mark
-         * @description Move it, or say something else of it.
+         * Change the time or the text of a bookmark
+         * @description Change the time or the text of a bookmark.
          */
         patch: operations["changeMark"];
         trace?: never;
@@ -1349,8 +1355,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Remove a session that is in the bin for good
-         * @description It is gone at once; the room that it took comes back little by little.
+         * Remove a session in the bin for good; its disk space is freed little by little
+         * @description Remove a session in the bin for good; its disk space is freed little by little.
          */
         post: operations["purgeSession"];
         delete?: never;
@@ -1370,7 +1376,7 @@ export interface paths {
         put?: never;
         /**
          * Take a session out of the bin
-         * @description Undo its deletion.
+         * @description Take a session out of the bin.
          */
         post: operations["restoreSession"];
         delete?: never;
@@ -1387,8 +1393,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * What of a session can be drawn over time
-         * @description The columns of its topics that have samples, and numbers of its documents.
+         * List the signals of a session: the columns of its topics, and numbers of its documents
+         * @description List the signals of a session: the columns of its topics, and numbers of its documents.
          */
         get: operations["listSignals"];
         put?: never;
@@ -1409,7 +1415,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Stop recording
+         * Stop recording; everything that arrived before is stored when this answers
          * @description Stop recording; everything that arrived before is stored when this answers.
          */
         post: operations["stopSession"];
@@ -1427,8 +1433,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A small picture of what the camera saw
-         * @description The first from this time on.
+         * Return the first small camera picture from this time on
+         * @description Return the first small camera picture from this time on.
          */
         get: operations["getThumbnail"];
         put?: never;
@@ -1447,8 +1453,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Events and markers
-         * @description A session's events, bookmarks and gaps.
+         * Return a session's events, bookmarks and gaps
+         * @description Return a session's events, bookmarks and gaps.
          */
         get: operations["getTimeline"];
         put?: never;
@@ -1487,8 +1493,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Storage used and free
-         * @description The disk that holds the data folder, and the rules by which sessions go.
+         * Return the use of the disk that holds the data folder, and the rules of retention
+         * @description Return the use of the disk that holds the data folder, and the rules of retention.
          */
         get: operations["getStorage"];
         put?: never;
@@ -1507,14 +1513,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The runs on a loop
-         * @description Newest first, without their curves; and what the figures of a step response are.
+         * List the runs on a loop without their curves, newest first, and the meanings of their figures
+         * @description List the runs on a loop without their curves, newest first, and the meanings of their figures.
          */
         get: operations["listTuningRuns"];
         put?: never;
         /**
-         * Begin a run
-         * @description On the armed robot, in automatic. Afterwards the loop goes on as before.
+         * Start a run on the armed robot, in automatic; afterwards the loop goes on as before
+         * @description Start a run on the armed robot, in automatic; afterwards the loop goes on as before.
          */
         post: operations["startTuningRun"];
         delete?: never;
@@ -1531,22 +1537,22 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One run
-         * @description With its curve, and of a relay experiment with the gains that the rules propose.
+         * Return a run with its curve, and the gains proposed from a relay experiment
+         * @description Return a run with its curve, and the gains proposed from a relay experiment.
          */
         get: operations["getTuningRun"];
         put?: never;
         post?: never;
         /**
-         * Delete a run
-         * @description For good; refused while it runs.
+         * Delete a run for good; refused while it runs
+         * @description Delete a run for good; refused while it runs.
          */
         delete: operations["deleteTuningRun"];
         options?: never;
         head?: never;
         /**
-         * Name a run
-         * @description Call it otherwise.
+         * Rename a run
+         * @description Rename a run.
          */
         patch: operations["renameTuningRun"];
         trace?: never;
@@ -1559,8 +1565,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * What runs
-         * @description The run that is on, and the one that ended last, as on the live socket.
+         * Return the active run and the last one, as on the live socket
+         * @description Return the active run and the last one, as on the live socket.
          */
         get: operations["getTuningState"];
         put?: never;
@@ -1581,8 +1587,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Stop the run that is on
-         * @description The robot stays armed, and goes on as before the run. What was measured so far is kept.
+         * Stop the active run and store what was measured; the robot stays armed
+         * @description Stop the active run and store what was measured; the robot stays armed.
          */
         post: operations["stopTuningRun"];
         delete?: never;

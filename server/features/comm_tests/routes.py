@@ -27,6 +27,7 @@ from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import NotFoundError
@@ -34,30 +35,20 @@ from server.platform.models import IDENTIFIER_MAX, CommTestRun
 
 UNKNOWN = answers(_404="There is no such run")
 
-router = APIRouter(prefix="/api/comm-tests", tags=["communication tests"])
+router = APIRouter(prefix="/api/comm-tests", tags=["communication tests"], route_class=Operation)
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
-@router.get(
-    "/documents",
-    summary="The documents that come with the program",
-    operation_id="listTestDocuments",
-    openapi_extra=needs(Need.VIEWER),
-)
-def get_documents() -> list[TestDocument]:
-    """The thesis's own example (Figure 10) first."""
+@router.get("/documents", openapi_extra=needs(Need.VIEWER))
+def list_test_documents() -> list[TestDocument]:
+    """List the documents that ship with the program, the thesis's own example (Figure 10) first."""
     return shipped_documents()
 
 
-@router.post(
-    "/check",
-    summary="What is wrong with a document",
-    operation_id="checkTestDocument",
-    openapi_extra=needs(Need.VIEWER),
-)
-def check(document: DocumentText) -> Check:
-    """Its problems, field by field; or its tests, with about how long they take."""
+@router.post("/check", openapi_extra=needs(Need.VIEWER))
+def check_test_document(document: DocumentText) -> Check:
+    """Check a document: its problems field by field, or its tests with about how long they take."""
     try:
         return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
     except DocumentError as problem:
@@ -67,8 +58,6 @@ def check(document: DocumentText) -> Check:
 @router.post(
     "/runs",
     status_code=201,
-    summary="Run a document",
-    operation_id="startTestRun",
     openapi_extra=needs(Need.OPERATOR),
     responses=answers(
         _409="Refused now",
@@ -77,69 +66,51 @@ def check(document: DocumentText) -> Check:
         _503="The database does not work",
     ),
 )
-async def start(
+async def start_test_run(
     request: Request,
-    watch: Provided[HealthMonitor],
+    monitor: Provided[HealthMonitor],
     comm_tests: Provided[CommTestRunner],
     body: CommTestStart,
 ) -> Started:
-    """Each test of the document becomes a run, one after the other; this answers when the first has begun."""
+    """Run the tests of a document one after the other; this answers when the first has begun."""
     if body.place == "robot":
         require_control(request)
-    watch.require_disarmed("A communication test builds and uploads programs.")
+    monitor.require_disarmed("A communication test builds and uploads programs.")
     return Started(run=await comm_tests.start(body.text, body.place))
 
 
-@router.post(
-    "/cancel",
-    status_code=204,
-    summary="Cancel what runs",
-    operation_id="cancelTestRun",
-    openapi_extra=needs(Need.OPERATOR),
-)
-async def cancel(comm_tests: Provided[CommTestRunner]) -> None:
-    """The cells that are finished are kept. Its end is told on the live socket."""
+@router.post("/cancel", status_code=204, openapi_extra=needs(Need.OPERATOR))
+async def cancel_test_run(comm_tests: Provided[CommTestRunner]) -> None:
+    """Cancel the running document; finished cells are stored."""
     comm_tests.cancel()
 
 
-@router.get(
-    "/runs", summary="All runs, newest first", operation_id="listTestRuns", openapi_extra=needs(Need.VIEWER)
-)
-def get_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
-    """One's own and those that come with the program."""
+@router.get("/runs", openapi_extra=needs(Need.VIEWER))
+def list_test_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
+    """List all runs, also those that ship with the program, newest first."""
     return list(comm_tests.runs.summaries())
 
 
-@router.get(
-    "/runs/{run}",
-    summary="One run",
-    operation_id="getTestRun",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
-def get_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommTestRunDetails:
-    """With its configuration and its cells."""
+@router.get("/runs/{run}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommTestRunDetails:
+    """Return a run with its configuration and its cells."""
     return comm_tests.runs.whole(_find(comm_tests.runs, run))
 
 
 @router.get(
     "/runs/{run}/csv",
-    summary="Download a run's cells",
-    operation_id="downloadTestRunCsv",
     openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"text/csv": {}}, "description": "A line for each cell"}, **UNKNOWN},
 )
-def get_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
-    """A line for each cell."""
+def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
+    """Download a run as CSV, a line for each cell."""
     found = _find(comm_tests.runs, run)
     return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
 @router.get(
     "/runs/{run}/json",
-    summary="Download a run",
-    operation_id="downloadTestRunJson",
     openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={
@@ -147,21 +118,16 @@ def get_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
         **UNKNOWN,
     },
 )
-def get_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
-    """Everything that is known of it, and its cells."""
+def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
+    """Download everything that is known of a run, with its cells, as JSON."""
     found = _find(comm_tests.runs, run)
     text = tables.write_json(found, comm_tests.runs.cells(run))
     return _file(text, "application/json", f"comm_test_{run}.json")
 
 
-@router.get(
-    "/tables",
-    summary="The thesis's own results",
-    operation_id="listTestTables",
-    openapi_extra=needs(Need.VIEWER),
-)
-def get_tables() -> list[ThesisTable]:
-    """Table 5 (plain numbers) and Table 6 (packets)."""
+@router.get("/tables", openapi_extra=needs(Need.VIEWER))
+def list_test_tables() -> list[ThesisTable]:
+    """Return the thesis's own results: Table 5 (plain numbers) and Table 6 (packets)."""
     return [
         ThesisTable(
             name=name,

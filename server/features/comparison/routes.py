@@ -12,6 +12,7 @@ from server.features.comparison.schemas import Comparison, ComparisonQuery, Line
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
@@ -20,7 +21,7 @@ from server.platform.store import StoreError
 REPORT_POINTS = 2000
 UNKNOWN = answers(UnknownSessionError, StoreError)
 
-router = APIRouter(prefix="/api", tags=["comparison"])
+router = APIRouter(prefix="/api", tags=["comparison"], route_class=Operation)
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
@@ -58,14 +59,14 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
 
 @router.get(
     "/compare/report",
-    summary="A comparison as one HTML file",
-    operation_id="getComparisonReport",
     openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"text/html": {}}, "description": "The file"}, **UNKNOWN},
 )
-def get_report(comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]) -> HTMLResponse:
-    """Charts, figures and differences, with all that they need: it opens without any network."""
+def get_comparison_report(
+    comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]
+) -> HTMLResponse:
+    """Return a comparison as one HTML file with charts, figures and differences; it needs no network."""
     from server.features.comparison.report import write_report  # Plotly is not needed before
 
     try:
@@ -80,37 +81,19 @@ def get_report(comparisons: Provided[Comparisons], query: Annotated[ReportQuery,
     )
 
 
-@router.get(
-    "/sessions/{session}/signals",
-    summary="What of a session can be drawn over time",
-    operation_id="listSignals",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
-def get_signals(comparisons: Provided[Comparisons], session: Identifier) -> list[Signal]:
-    """The columns of its topics that have samples, and numbers of its documents."""
+@router.get("/sessions/{session}/signals", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+def list_signals(comparisons: Provided[Comparisons], session: Identifier) -> list[Signal]:
+    """List the signals of a session: the columns of its topics, and numbers of its documents."""
     return comparisons.comparer.signals(session)
 
 
-@router.post(
-    "/compare",
-    summary="Lay sessions over each other",
-    operation_id="compareSessions",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
-def compare(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
-    """Lines, figures and what was different about the sessions."""
+@router.post("/compare", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+def compare_sessions(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
+    """Compare sessions: lines, figures and differences."""
     return comparisons.comparer.compare(body)
 
 
-@router.post(
-    "/compare/lines",
-    summary="Lines for a part of the time",
-    operation_id="compareLines",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
-def lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
-    """The lines of a shorter time range in full resolution."""
+@router.post("/compare/lines", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+def compare_lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
+    """Return the lines of a shorter time range in full resolution."""
     return comparisons.comparer.lines(body)

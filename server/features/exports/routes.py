@@ -17,6 +17,7 @@ from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import ConflictError, NotFoundError
@@ -24,67 +25,50 @@ from server.platform.store import Store, StoreError
 
 UNKNOWN = answers(_404="There is no such export")
 
-router = APIRouter(prefix="/api", tags=["exports"])
+router = APIRouter(prefix="/api", tags=["exports"], route_class=Operation)
 
 Identifier = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 
 
-@router.get(
-    "/exports",
-    summary="All exports, newest first",
-    operation_id="listExports",
-    openapi_extra=needs(Need.VIEWER),
-)
-async def get_exports(jobs: Provided[Jobs]) -> list[Job]:
-    """Those that are kept, and those that are being made."""
+@router.get("/exports", openapi_extra=needs(Need.VIEWER))
+async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
+    """List the exports that are stored, running or waiting, newest first."""
     return jobs.list()
 
 
 @router.post(
     "/exports",
     status_code=201,
-    summary="Have a session made into a file",
-    operation_id="startExport",
     openapi_extra=needs(Need.OPERATOR),
     responses=answers(UnknownSessionError, ConflictError, ExportRequestError),
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
-    """Files are made one after the other, apart from the server; GET tells how far it is."""
+    """Export a session to a file, in a process beside the server; GET returns the progress."""
     row = await run_in_threadpool(find_row, store, body.session)
     if row is None:
         raise NotFoundError(f"There is no session {body.session}; GET /api/sessions lists those there are.")
     return jobs.add(row, body)
 
 
-@router.get(
-    "/exports/{export}",
-    summary="One export",
-    operation_id="getExport",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
+@router.get("/exports/{export}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
 async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
-    """Progress of an export; its size and checksum when it is done."""
+    """Return the progress of an export, and its size and checksum when it is done."""
     return _find(jobs, export)
 
 
 @router.delete(
     "/exports/{export}",
     status_code=204,
-    summary="Cancel or delete an export",
-    operation_id="deleteExport",
     openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **answers(_409="It cannot be deleted")},
 )
 async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
-    """The file is gone then."""
+    """Cancel an export, or delete its file."""
     jobs.remove(_find(jobs, export))
 
 
 @router.get(
     "/exports/{export}/file",
-    summary="Download an export",
-    operation_id="downloadExport",
     openapi_extra=needs(Need.VIEWER),
     response_class=FileResponse,
     responses={
@@ -97,8 +81,11 @@ async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
         **answers(_409="It is not finished"),
     },
 )
-async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
-    """A download that was cut goes on where it was: ask with Range, and with If-Range its ETag."""
+async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
+    """Download the file of an export.
+
+    An interrupted download continues with Range, and If-Range with its ETag.
+    """
     job = _find(jobs, export)
     if job.state != "done":
         raise ConflictError(job.problem or "The file is not finished yet. Wait until its state is done.")
@@ -113,8 +100,6 @@ async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
 @router.post(
     "/imports",
     status_code=201,
-    summary="Import the archive of a session",
-    operation_id="importSession",
     openapi_extra={
         **needs(Need.OPERATOR),
         "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}},
@@ -127,10 +112,10 @@ async def get_file(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     ),
 )
 async def import_session(
-    request: Request, watch: Provided[HealthMonitor], imports: Provided[Imports], store: Provided[Store]
+    request: Request, monitor: Provided[HealthMonitor], imports: Provided[Imports], store: Provided[Store]
 ) -> Session:
-    """The body is the file. It is looked at as a whole, and stored as a whole or not at all."""
-    watch.require_disarmed("An upload takes time and disk from what is recorded.")
+    """Import a session from an archive, the request's body; it is stored whole or not at all."""
+    monitor.require_disarmed("An upload takes time and disk from what is recorded.")
     length = request.headers.get("content-length")
     number = await imports.receive(request.stream(), int(length) if length else None)
     row = await run_in_threadpool(find_row, store, number)

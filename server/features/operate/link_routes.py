@@ -5,11 +5,12 @@ from pydantic import BaseModel, Field
 
 from robot_runtime.link.dissection import Dissection
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.stream.bridge import Bridge
 
-router = APIRouter(prefix="/api/link", tags=["link"])
+router = APIRouter(prefix="/api/link", tags=["link"], route_class=Operation)
 
 
 class LinkFault(BaseModel):
@@ -30,11 +31,12 @@ class LinkFrames(BaseModel):
 
 @router.get(
     "/frames",
-    summary="The last frames on the serial line, now and at the last fault",
-    operation_id="getLinkFrames",
     openapi_extra=needs(Need.VIEWER),
     responses=answers(_503="The runtime is not running", _504="The runtime did not answer within 2 s"),
 )
-async def get_frames(bridge: Provided[Bridge]) -> LinkFrames:
-    """Asked of the runtime at each call; it costs nothing where nobody calls."""
+async def get_link_frames(bridge: Provided[Bridge]) -> LinkFrames:
+    """Return the last frames on the serial line, now and at the last fault.
+
+    Each call asks the runtime; without calls it costs nothing.
+    """
     return LinkFrames.model_validate(await bridge.query("frames"))

@@ -29,6 +29,7 @@ from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
 from server.platform.errors import InvalidError, NotFoundError
@@ -41,7 +42,7 @@ SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
 """The header that says how many samples could not be given."""
 
-router = APIRouter(prefix="/api", tags=["sessions"])
+router = APIRouter(prefix="/api", tags=["sessions"], route_class=Operation)
 
 UNKNOWN_MARK = answers(_404="There is no such session, or it has no such mark")
 
@@ -49,13 +50,8 @@ MarkIdentifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 
 
-@router.get(
-    "/sessions",
-    summary="Sessions, newest first",
-    operation_id="listSessions",
-    openapi_extra=needs(Need.VIEWER),
-)
-def get_sessions(
+@router.get("/sessions", openapi_extra=needs(Need.VIEWER))
+def list_sessions(
     catalogue: Provided[Catalogue],
     search: Annotated[
         str, Query(max_length=200, description="words that name, note, tags or scenario have")
@@ -64,30 +60,23 @@ def get_sessions(
     origin: Origin | None = None,
     deleted: Annotated[bool, Query(description="those in the bin instead")] = False,
 ) -> list[Session]:
-    """Sessions that are to be found by all that is asked."""
+    """List the sessions that match every given condition, newest first."""
     return catalogue.list(search, tag or (), origin, deleted=deleted)
 
 
-@router.post(
-    "/sessions",
-    status_code=201,
-    summary="Start recording",
-    operation_id="startSession",
-    openapi_extra=needs(Need.OPERATOR),
-    responses=STORING,
-)
+@router.post("/sessions", status_code=201, openapi_extra=needs(Need.OPERATOR), responses=STORING)
 async def start_session(
     bridge: Provided[Bridge],
-    watch: Provided[HealthMonitor],
+    monitor: Provided[HealthMonitor],
     settings: Provided[Settings],
     clock: Provided[Clock],
     recorder: Provided[Recorder],
     body: NewSession,
 ) -> Session:
-    """Record everything from now on; refused while another session records or a test uses the board."""
+    """Start recording everything; refused while another session records or a test uses the board."""
     if bridge.reserved_reason is not None:
         raise RecordingRefusedError(bridge.reserved_reason)
-    state = json.dumps(watch.state())
+    state = json.dumps(monitor.state())
     try:
         row = await run_in_threadpool(new_row, settings, clock, body.name, body.note, state)
     except OSError as problem:
@@ -97,39 +86,21 @@ async def start_session(
     return await recorder.start(row)
 
 
-@router.get(
-    "/sessions/{session}",
-    summary="One session",
-    operation_id="getSession",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
+@router.get("/sessions/{session}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
 def get_session(catalogue: Provided[Catalogue], session: Identifier) -> SessionDetail:
-    """One session with everything that is known of it, but its samples; also from the bin."""
+    """Return a session with everything that is known of it except its samples; also from the bin."""
     return catalogue.detail(session)
 
 
-@router.patch(
-    "/sessions/{session}",
-    summary="Name, note, tag or keep a session",
-    operation_id="changeSession",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORING},
-)
+@router.patch("/sessions/{session}", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
 async def change_session(
     catalogue: Provided[Catalogue], session: Identifier, body: SessionChanges
 ) -> Session:
-    """Change what people say about it; tags are replaced as a whole."""
+    """Change name, note, tags or protection of a session; tags are replaced as a whole."""
     return await catalogue.change(session, **body.model_dump())
 
 
-@router.post(
-    "/sessions/{session}/stop",
-    summary="Stop recording",
-    operation_id="stopSession",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORING},
-)
+@router.post("/sessions/{session}/stop", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
 async def stop_session(
     catalogue: Provided[Catalogue], recorder: Provided[Recorder], session: Identifier
 ) -> Session:
@@ -138,50 +109,36 @@ async def stop_session(
     return await recorder.stop(session)
 
 
-@router.delete(
-    "/sessions/{session}",
-    summary="Put a session into the bin",
-    operation_id="deleteSession",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORING},
-)
+@router.delete("/sessions/{session}", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
 async def delete_session(catalogue: Provided[Catalogue], session: Identifier) -> Session:
-    """It can be restored until it is purged, or until `sessions.undo_days` have passed."""
+    """Move a session to the bin, until it is purged or `sessions.undo_days` have passed."""
     return await catalogue.delete(session)
 
 
 @router.post(
-    "/sessions/{session}/restore",
-    summary="Take a session out of the bin",
-    operation_id="restoreSession",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORING},
+    "/sessions/{session}/restore", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING}
 )
 async def restore_session(catalogue: Provided[Catalogue], session: Identifier) -> Session:
-    """Undo its deletion."""
+    """Take a session out of the bin."""
     return await catalogue.restore(session)
 
 
 @router.post(
     "/sessions/{session}/purge",
     status_code=204,
-    summary="Remove a session that is in the bin for good",
-    operation_id="purgeSession",
     openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN, **STORING},
 )
 async def purge_session(
     catalogue: Provided[Catalogue], retention: Provided[RetentionWorker], session: Identifier
 ) -> None:
-    """It is gone at once; the room that it took comes back little by little."""
+    """Remove a session in the bin for good; its disk space is freed little by little."""
     await catalogue.purge(session)
     retention.wake()
 
 
 @router.get(
     "/sessions/{session}/thumbnail",
-    summary="A small picture of what the camera saw",
-    operation_id="getThumbnail",
     openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={200: {"content": {"image/jpeg": {}}, "description": "The picture"}, **UNKNOWN},
@@ -189,7 +146,7 @@ async def purge_session(
 def get_thumbnail(
     recording: OpenRecording, time: Annotated[float, Query(description="s since the start")]
 ) -> Response:
-    """The first from this time on."""
+    """Return the first small camera picture from this time on."""
     for _, jpeg in recording.pictures("thumbnail", recording.row.started_steady + time):
         return Response(jpeg, media_type="image/jpeg", headers={"cache-control": "max-age=86400"})
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
@@ -198,15 +155,16 @@ def get_thumbnail(
 @router.post(
     "/sessions/{session}/markers",
     status_code=201,
-    summary="Mark a moment",
-    operation_id="addMark",
     openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def add_mark(
     markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
 ) -> Bookmark:
-    """Mark a moment, now or later; refused beyond the session's end, and without a time once it has ended."""
+    """Bookmark a moment; without a time it is now.
+
+    Refused beyond the session's end, and without a time after the session has ended.
+    """
     mark = await markers.add(session, body.time, body.text)
     catalogue.notify(session)
     return mark
@@ -214,50 +172,38 @@ async def add_mark(
 
 @router.patch(
     "/sessions/{session}/markers/{mark}",
-    summary="Change a mark",
-    operation_id="changeMark",
     openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def change_mark(
     markers: Provided[Bookmarks], session: Identifier, mark: MarkIdentifier, body: BookmarkChanges
 ) -> Bookmark:
-    """Move it, or say something else of it."""
+    """Change the time or the text of a bookmark."""
     return await markers.change(session, mark, body.time, body.text)
 
 
 @router.delete(
     "/sessions/{session}/markers/{mark}",
     status_code=204,
-    summary="Take a mark away",
-    operation_id="removeMark",
     openapi_extra=needs(Need.OPERATOR),
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def remove_mark(
     markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
 ) -> None:
-    """Take it away for good."""
+    """Remove a bookmark for good."""
     await markers.remove(session, mark)
     catalogue.notify(session)
 
 
-@router.get(
-    "/sessions/{session}/timeline",
-    summary="Events and markers",
-    operation_id="getTimeline",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
+@router.get("/sessions/{session}/timeline", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
 def get_timeline(recording: OpenRecording) -> Timeline:
-    """A session's events, bookmarks and gaps."""
+    """Return a session's events, bookmarks and gaps."""
     return read_timeline(recording)
 
 
 @router.get(
     "/sessions/{session}/blocks",
-    summary="A stretch of a session",
-    operation_id="getBlocks",
     openapi_extra=needs(Need.VIEWER),
     response_class=Response,
     responses={
@@ -271,11 +217,11 @@ def get_blocks(
     end: Seconds,
     history: Annotated[float | None, Query(ge=0, le=HISTORY_MAX, allow_inf_nan=False)] = None,
 ) -> Response:
-    """The samples of all topics from `start` up to `end`, in s since the session's start, in order of time.
+    """Return the samples of all topics from `start` up to `end`, in order of time.
 
-    With a `history` (s), before them what was in force at `start`, and what the page's charts and lists show
-    of the time before. The times in the blocks are the stored ones. The header `Left-Out` counts samples
-    that are damaged or cannot be said in this version's definitions.
+    Times are in s since the session's start; those in the blocks are the stored ones. With a `history` (s)
+    the answer begins with the values in force at `start`, and with the earlier samples that the page's charts
+    and lists show. The header `Left-Out` counts samples that are damaged or unknown to this version.
     """
     if end < start:
         raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
@@ -285,9 +231,7 @@ def get_blocks(
     return Response(stretch.data, media_type="application/octet-stream", headers=headers)
 
 
-@router.get(
-    "/storage", summary="Storage used and free", operation_id="getStorage", openapi_extra=needs(Need.VIEWER)
-)
+@router.get("/storage", openapi_extra=needs(Need.VIEWER))
 def get_storage(store: Provided[Store], settings: Provided[Settings]) -> Storage:
-    """The disk that holds the data folder, and the rules by which sessions go."""
+    """Return the use of the disk that holds the data folder, and the rules of retention."""
     return measure(store, settings)

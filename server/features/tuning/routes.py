@@ -18,6 +18,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.dependencies import Provided
+from server.http.operation import Operation
 from server.http.problems import COMMAND, answers
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need, needs
@@ -27,85 +28,52 @@ from server.platform.store import StoreError
 
 UNKNOWN = answers(UnknownTuningRunError, ConflictError, StoreError)
 
-router = APIRouter(prefix="/api/tuning", tags=["tuning"])
+router = APIRouter(prefix="/api/tuning", tags=["tuning"], route_class=Operation)
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 
 
-@router.get("/state", summary="What runs", operation_id="getTuningState", openapi_extra=needs(Need.VIEWER))
-async def get_state(tuning: Provided[TuningRunner]) -> TuningState:
-    """The run that is on, and the one that ended last, as on the live socket."""
+@router.get("/state", openapi_extra=needs(Need.VIEWER))
+async def get_tuning_state(tuning: Provided[TuningRunner]) -> TuningState:
+    """Return the active run and the last one, as on the live socket."""
     return tuning.state()
 
 
-@router.get(
-    "/runs", summary="The runs on a loop", operation_id="listTuningRuns", openapi_extra=needs(Need.VIEWER)
-)
-def get_runs(tuning: Provided[TuningRunner], loop: LoopName = "depth") -> TuningRuns:
-    """Newest first, without their curves; and what the figures of a step response are."""
+@router.get("/runs", openapi_extra=needs(Need.VIEWER))
+def list_tuning_runs(tuning: Provided[TuningRunner], loop: LoopName = "depth") -> TuningRuns:
+    """List the runs on a loop without their curves, newest first, and the meanings of their figures."""
     return TuningRuns(figures=meanings(loop), runs=list(tuning.runs.list(loop)))
 
 
-@router.post(
-    "/runs",
-    status_code=201,
-    summary="Begin a run",
-    operation_id="startTuningRun",
-    openapi_extra=needs(Need.CONTROL),
-    responses=COMMAND,
-)
-async def start(tuning: Provided[TuningRunner], caller: Caller, body: Start) -> TuningStarted:
-    """On the armed robot, in automatic. Afterwards the loop goes on as before."""
+@router.post("/runs", status_code=201, openapi_extra=needs(Need.CONTROL), responses=COMMAND)
+async def start_tuning_run(tuning: Provided[TuningRunner], caller: Caller, body: Start) -> TuningStarted:
+    """Start a run on the armed robot, in automatic; afterwards the loop goes on as before."""
     return TuningStarted(run=await tuning.start(caller.name, body))
 
 
-@router.post(
-    "/stop",
-    status_code=204,
-    summary="Stop the run that is on",
-    operation_id="stopTuningRun",
-    openapi_extra=needs(Need.CONTROL),
-    responses=COMMAND,
-)
-async def stop(tuning: Provided[TuningRunner]) -> None:
-    """The robot stays armed, and goes on as before the run. What was measured so far is kept."""
+@router.post("/stop", status_code=204, openapi_extra=needs(Need.CONTROL), responses=COMMAND)
+async def stop_tuning_run(tuning: Provided[TuningRunner]) -> None:
+    """Stop the active run and store what was measured; the robot stays armed."""
     await tuning.stop()
 
 
-@router.get(
-    "/runs/{run}",
-    summary="One run",
-    operation_id="getTuningRun",
-    openapi_extra=needs(Need.VIEWER),
-    responses=UNKNOWN,
-)
-def get_run(tuning: Provided[TuningRunner], run: Identifier) -> TuningRunDetail:
-    """With its curve, and of a relay experiment with the gains that the rules propose."""
+@router.get("/runs/{run}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+def get_tuning_run(tuning: Provided[TuningRunner], run: Identifier) -> TuningRunDetail:
+    """Return a run with its curve, and the gains proposed from a relay experiment."""
     return tuning.runs.detail(run)
 
 
-@router.patch(
-    "/runs/{run}",
-    summary="Name a run",
-    operation_id="renameTuningRun",
-    openapi_extra=needs(Need.OPERATOR),
-    responses=UNKNOWN,
-)
-async def rename(tuning: Provided[TuningRunner], run: Identifier, body: TuningName) -> TuningRunDetail:
-    """Call it otherwise."""
+@router.patch("/runs/{run}", openapi_extra=needs(Need.OPERATOR), responses=UNKNOWN)
+async def rename_tuning_run(
+    tuning: Provided[TuningRunner], run: Identifier, body: TuningName
+) -> TuningRunDetail:
+    """Rename a run."""
     runs = tuning.runs
     await runs.rename(run, body.name)
     return await run_in_threadpool(runs.detail, run)
 
 
-@router.delete(
-    "/runs/{run}",
-    status_code=204,
-    summary="Delete a run",
-    operation_id="deleteTuningRun",
-    openapi_extra=needs(Need.OPERATOR),
-    responses=UNKNOWN,
-)
-async def delete(tuning: Provided[TuningRunner], run: Identifier) -> None:
-    """For good; refused while it runs."""
+@router.delete("/runs/{run}", status_code=204, openapi_extra=needs(Need.OPERATOR), responses=UNKNOWN)
+async def delete_tuning_run(tuning: Provided[TuningRunner], run: Identifier) -> None:
+    """Delete a run for good; refused while it runs."""
     await tuning.delete(run)
