@@ -15,7 +15,7 @@ import numpy as np
 
 from bench.svg import Axis, Line, Panel, draw
 from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row
+from server.features.sessions.session import UnknownSessionError, find_row
 from server.platform.store import Reader
 
 if TYPE_CHECKING:
@@ -52,9 +52,10 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=Path("docs/pictures"))
     options = parser.parse_args()
     with closing(Reader(options.data / "mucat.db")) as store:
-        row = find_row(store, options.session)
-        if row is None:
-            print(f"there is no session {options.session}")
+        try:
+            row = find_row(store, options.session)
+        except UnknownSessionError as problem:
+            print(problem)
             return 1
         experiment = read(Recording(store, row), row.started_steady)
     for number, panels in (

@@ -9,15 +9,15 @@ import asyncio
 import fcntl
 import os
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Engine, create_engine, event, pool
+from sqlalchemy import Connection, Engine, UpdateBase, create_engine, event, insert, pool
 from sqlalchemy.exc import DBAPIError
-from sqlmodel import Session
+from sqlmodel import Session, SQLModel
 
 from server.platform.errors import UnavailableError
 
@@ -80,6 +80,10 @@ class Store(Reader):
         """
         return await asyncio.wrap_future(self._thread.submit(self._commit, change))
 
+    async def execute(self, change: UpdateBase, rows: Sequence[Mapping[str, Any]] | None = None) -> int:
+        """Run one statement in a transaction, for each of `rows` if given; the number of changed rows."""
+        return await self.write(lambda connection: connection.execute(change, rows).rowcount)
+
     async def probe(self) -> None:
         """Write next to nothing, to learn whether writing works. Raises StoreError where it does not."""
         await self.write(_touch)
@@ -104,6 +108,13 @@ class Store(Reader):
             raise StoreError(self.failing) from problem
         self.failing = None
         return result
+
+
+def insert_row(connection: Connection, table: type[SQLModel], values: Mapping[str, Any]) -> int:
+    """Insert a row, within a transaction; its number."""
+    key = connection.execute(insert(table).values(**values)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
 
 
 def _touch(connection: Connection) -> None:

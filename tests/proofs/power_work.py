@@ -149,7 +149,6 @@ class Work:
         jobs.open()
         working = asyncio.create_task(jobs.run())
         found = find_row(store, session)
-        assert found is not None
         job = jobs.add(found, NewExport(session=session, format="archive"))
         while job.state in ("waiting", "running"):
             await asyncio.sleep(0.01)

@@ -15,7 +15,7 @@ from robot_runtime.experiments.comm_test.document import CommTest
 from server import VERSION
 from server.features.comm_tests.schemas import Cell, CommTestRunDetails, Place, RunSummary
 from server.platform.models import CommTestCell, CommTestRun
-from server.platform.store import Reader, Store
+from server.platform.store import Reader, Store, insert_row
 
 End = Literal["complete", "cancelled", "failed"]
 
@@ -98,34 +98,31 @@ class CommTestStore(CommTestRuns):
             "place": place,
             "sample": "",
         }
-        return await self._store.write(lambda connection: _insert_run(connection, values))
+        return await self._store.write(lambda connection: insert_row(connection, CommTestRun, values))
 
     async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
         """Store a cell as the test process reports it. Raises ValueError where it is none."""
         cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
-        row = cell.model_dump(exclude={"id"})
-        await self._store.write(lambda connection: connection.execute(insert(CommTestCell).values(row)))
+        await self._store.execute(insert(CommTestCell).values(cell.model_dump(exclude={"id"})))
         return _cell(cell)
 
     async def end(self, run: int, state: End, problem: str = "") -> None:
         """The run is over."""
         changes = {"ended": time.time(), "state": state, "problem": problem}
-        change = update(CommTestRun).where(col(CommTestRun.id) == run).values(changes)
-        await self._store.write(lambda connection: connection.execute(change))
+        await self._store.execute(update(CommTestRun).where(col(CommTestRun.id) == run).values(changes))
 
     async def mark_interrupted(self) -> None:
         """Runs that still say that they run were left by a program that was killed."""
         changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
-        change = update(CommTestRun).where(col(CommTestRun.state) == "running").values(changes)
-        await self._store.write(lambda connection: connection.execute(change))
+        running = col(CommTestRun.state) == "running"
+        await self._store.execute(update(CommTestRun).where(running).values(changes))
 
     async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:
         """A run that comes with the program, with its cells, all or nothing; columns by name."""
 
         def change(connection: Connection) -> None:
-            number = _insert_run(connection, dict(run))
-            for cell in cells:
-                connection.execute(insert(CommTestCell).values({**cell, "run_id": number}))
+            number = insert_row(connection, CommTestRun, run)
+            connection.execute(insert(CommTestCell), [{**cell, "run_id": number} for cell in cells])
 
         await self._store.write(change)
 
@@ -145,9 +142,3 @@ def _summary(run: CommTestRun, done: int, mean: float | None, low: float | None)
 def _cell(cell: CommTestCell) -> Cell:
     values = cell.model_dump(include=set(Cell.model_fields) - {"causes"})
     return Cell(**values, causes=[cause for cause in cell.causes.split(", ") if cause])
-
-
-def _insert_run(connection: Connection, values: dict[str, Any]) -> int:
-    key = connection.execute(insert(CommTestRun).values(values)).inserted_primary_key
-    assert key is not None
-    return int(key[0])

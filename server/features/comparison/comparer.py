@@ -44,7 +44,7 @@ from server.features.comparison.signals import Signal, list_signals, split
 from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats
 from server.features.sessions.recording import Recording
-from server.features.sessions.session import UnknownSessionError, find_row
+from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Moment, read_events
 from server.platform.models import SessionRow
 from server.platform.store import Reader
@@ -112,10 +112,7 @@ class Comparer:
         )
 
     def _open(self, session: int) -> Recording:
-        row = find_row(self._store, session)
-        if row is None:
-            raise UnknownSessionError(session)
-        return Recording(self._store, row)
+        return Recording(self._store, find_row(self._store, session))
 
     def _align(self, query: LinesQuery) -> list[_AlignedSession]:
         recordings = [self._open(one) for one in dict.fromkeys(query.sessions)]

@@ -9,8 +9,7 @@ from sqlmodel import col, select
 from server.features.comparison.moments import ControlHistory, ControlPeriod, Span, Tuned
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
-from server.features.sessions.recorded_state import depth_loop
-from server.features.sessions.recording import Recording
+from server.features.sessions.recording import Recording, depth_loop
 from server.features.sessions.timeline import Moment
 from server.platform.models import BookmarkRow, Gap
 from server.platform.store import Reader

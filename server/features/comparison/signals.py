@@ -7,8 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from server.features.sessions.chunks import row_layout
-from server.features.sessions.recorded_state import depth_loop
-from server.features.sessions.recording import Recording
+from server.features.sessions.recording import Recording, depth_loop
 
 
 class Signal(BaseModel):

@@ -45,10 +45,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
         )
         kind = check(options)
         with open_reader(settings.data) as store:
-            row = find_row(store, session)
-            if row is None:
-                raise SetupError(f"There is no session {session} in {settings.data.path}.")
-            source = ExportSelection(store, row, options, _Progress().tell)
+            source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
             path = output or Path(file_name(source, kind.ending))
             part = path.with_name(path.name + PART)
             written = write_part(part, lambda file: kind.write(store, source, file))
@@ -88,9 +85,7 @@ def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
 
     with open_writer(folder) as store:
         number = asyncio.run(take(Imports(folder, store)))
-        row = find_row(store, number)
-        assert row is not None
-        return number, row.name
+        return number, find_row(store, number).name
 
 
 def _words(error: Any) -> str:

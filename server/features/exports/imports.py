@@ -1,20 +1,19 @@
 """Sessions brought from other machines: an archive is received, examined, and stored under a new number.
 
 It is stored piece by piece, so that what is being recorded meanwhile is not held up, and is seen by nobody
-before its last piece is there. What does not become whole is marked, and removed by `tidying`.
+before its last piece is there. The retention worker removes what does not become whole.
 """
 
 import asyncio
 import json
 import shutil
 from collections.abc import AsyncIterable, Iterator
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from secrets import token_hex
 from typing import Any
 
-from sqlalchemy import Connection, Update, insert, update
+from sqlalchemy import insert, update
 from sqlmodel import SQLModel, col, select
 
 from robot_runtime.durable_files import PART
@@ -25,7 +24,7 @@ from server.features.exports.files import FileWriteError, explain
 from server.features.sessions.session import IMPORTING, REMOVING
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
-from server.platform.store import Store
+from server.platform.store import Store, insert_row
 
 BATCH_BYTES = 500_000
 """Stored in one transaction."""
@@ -52,9 +51,7 @@ class Imports:
             for file in self._folder.iterdir():
                 file.unlink(missing_ok=True)
         unfinished = col(SessionRow.state) == IMPORTING
-        await self._store.write(
-            partial(_execute, update(SessionRow).where(unfinished).values(state=REMOVING))
-        )
+        await self._store.execute(update(SessionRow).where(unfinished).values(state=REMOVING))
 
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
         """Import the archive that comes in pieces, of `size` bytes where that is known: its new number.
@@ -110,11 +107,12 @@ class Imports:
         with open_archive(path) as archive:
             self._refuse_known(archive)
             values = _session_values(archive)
-            number = await self._store.write(lambda connection: _insert_session(connection, values))
+            number = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
             try:
                 await self._fill(number, archive)
             except BaseException:
-                await asyncio.shield(self._give_up(number))
+                # The retention worker removes the rest.
+                await asyncio.shield(self._change(number, {"state": REMOVING}))
                 raise
         return number
 
@@ -139,24 +137,18 @@ class Imports:
         ]
         for table, rows in small:
             for at in range(0, len(rows), ROWS_AT_ONCE):
-                await self._insert(table, rows[at : at + ROWS_AT_ONCE])
+                await self._store.execute(insert(table), rows[at : at + ROWS_AT_ONCE])
         batches = _batches(archive, number)
         samples = size = 0
         while batch := await asyncio.to_thread(next, batches, None):
-            await self._insert(Chunk, batch)
+            await self._store.execute(insert(Chunk), batch)
             samples += sum(row["count"] for row in batch)
             size += sum(len(row["data"]) for row in batch)
         done = {"state": content.session.state, "samples": samples, "bytes": size}
-        change = update(SessionRow).where(col(SessionRow.id) == number).values(done)
-        await self._store.write(partial(_execute, change))
+        await self._change(number, done)
 
-    async def _insert(self, table: type[SQLModel], rows: list[dict[str, Any]]) -> None:
-        await self._store.write(lambda connection: connection.execute(insert(table), rows))
-
-    async def _give_up(self, number: int) -> None:
-        """Leave the rest to `tidying`, which removes sessions."""
-        unwanted = update(SessionRow).where(col(SessionRow.id) == number).values(state=REMOVING)
-        await self._store.write(partial(_execute, unwanted))
+    async def _change(self, number: int, values: dict[str, Any]) -> None:
+        await self._store.execute(update(SessionRow).where(col(SessionRow.id) == number).values(values))
 
 
 def _session_values(archive: Archive) -> dict[str, Any]:
@@ -173,12 +165,6 @@ def _session_values(archive: Archive) -> dict[str, Any]:
     }
 
 
-def _insert_session(connection: Connection, values: dict[str, Any]) -> int:
-    key = connection.execute(insert(SessionRow).values(values)).inserted_primary_key
-    assert key is not None
-    return int(key[0])
-
-
 def _batches(archive: Archive, number: int) -> Iterator[list[dict[str, Any]]]:
     batch: list[dict[str, Any]] = []
     size = 0
@@ -191,7 +177,3 @@ def _batches(archive: Archive, number: int) -> Iterator[list[dict[str, Any]]]:
             batch, size = [], 0
     if batch:
         yield batch
-
-
-def _execute(change: Update, connection: Connection) -> None:
-    connection.execute(change)

@@ -18,7 +18,7 @@ from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, level, stamp
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
-from server.features.sessions.recorded_state import depth_loop
+from server.features.sessions.recording import depth_loop
 from server.platform.models import BookmarkRow
 from server.platform.store import Reader
 

@@ -44,10 +44,7 @@ async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
-    row = await run_in_threadpool(find_row, store, body.session)
-    if row is None:
-        raise NotFoundError(f"There is no session {body.session}; GET /api/sessions lists those there are.")
-    return jobs.add(row, body)
+    return jobs.add(await run_in_threadpool(find_row, store, body.session), body)
 
 
 @router.get("/exports/{export}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
@@ -118,9 +115,7 @@ async def import_session(
     monitor.require_disarmed("An upload takes time and disk from what is recorded.")
     length = request.headers.get("content-length")
     number = await imports.receive(request.stream(), int(length) if length else None)
-    row = await run_in_threadpool(find_row, store, number)
-    assert row is not None
-    return from_row(row)
+    return from_row(await run_in_threadpool(find_row, store, number))
 
 
 def _find(jobs: Jobs, export: str) -> Job:

@@ -48,4 +48,4 @@ def _find_before(store: Store, name: str, session: int) -> int | None:
 async def mark(store: Store, session: int, moment: float, text: str) -> None:
     """Point out a moment (s, the session's clock). Raises StoreError."""
     values = {"session_id": session, "time": moment, "text": text, "made": time()}
-    await store.write(lambda connection: connection.execute(insert(BookmarkRow).values(values)))
+    await store.execute(insert(BookmarkRow).values(values))

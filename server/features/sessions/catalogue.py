@@ -18,7 +18,6 @@ from server.features.sessions.session import (
     HIDDEN,
     REMOVING,
     SessionStateError,
-    UnknownSessionError,
     find_row,
     from_row,
     require,
@@ -72,20 +71,11 @@ class Listing:
 
     def find(self, session: int) -> Session:
         """One session, also from the bin."""
+        row = find_row(self._reader, session)
         with self._reader.read() as database:
-            row = database.get(SessionRow, session)
-            if row is None or row.state in HIDDEN:
-                raise UnknownSessionError(session)
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
             markers = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
             return from_row(row, tags, database.exec(markers).one())
-
-    def row(self, session: int) -> SessionRow:
-        """The row of a session."""
-        row = find_row(self._reader, session)
-        if row is None:
-            raise UnknownSessionError(session)
-        return row
 
     def detail(self, session: int) -> SessionDetail:
         """One session with all that is known of it."""

@@ -31,7 +31,7 @@ from server.features.sessions.session import from_row
 from server.platform.errors import ConflictError
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
-from server.platform.store import Store, StoreError
+from server.platform.store import Store, StoreError, insert_row
 
 log = logging.getLogger(__name__)
 
@@ -177,7 +177,7 @@ class Recorder:
             if self.session is not None:
                 raise RecordingRefusedError(f"“{self.session.name}” is being recorded; stop it first.")
             values = row.model_dump(exclude={"id"})
-            row.id = await self._store.write(lambda connection: _insert_session(connection, values))
+            row.id = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
             self.session = from_row(row)
             self._started_steady = row.started_steady
             self._reset()
@@ -361,12 +361,6 @@ def _drop_oldest(batch: _Batch, now: float) -> None:
 async def _whole(step: Coroutine[Any, Any, T]) -> T:
     """Finish a step even where its caller is cancelled, so that memory and database agree."""
     return await asyncio.shield(asyncio.create_task(step))
-
-
-def _insert_session(connection: Connection, values: dict[str, Any]) -> int:
-    key = connection.execute(insert(SessionRow).values(values)).inserted_primary_key
-    assert key is not None
-    return int(key[0])
 
 
 def _insert(connection: Connection, session: int, batch: _Batch, changes: dict[str, Any]) -> None:

@@ -246,6 +246,14 @@ class Recording:
             first = found[-1].number + 1
 
 
+def depth_loop(state: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The depth loop of a recorded `state`: its set point, its controller and the choice of controllers.
+
+    The first versions had these fields in the document itself, and no loops.
+    """
+    return next((loop for loop in state.get("loops", ()) if loop["name"] == "depth"), state)
+
+
 @contextmanager
 def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:

@@ -118,12 +118,8 @@ class RetentionWorker:
         return None if found is None else found[0] - found[1]
 
     async def _empty_bin(self, before: float) -> None:
-        deleted = col(SessionRow.deleted)
-        await self._store.write(
-            lambda connection: connection.execute(
-                update(SessionRow).where(deleted <= before).values(state=REMOVING)
-            )
-        )
+        expired = col(SessionRow.deleted) <= before
+        await self._store.execute(update(SessionRow).where(expired).values(state=REMOVING))
 
     async def _expire_old(self, now: float, before: float) -> None:
         rows = [row for row in await self._unprotected() if row.started < before]
@@ -187,15 +183,8 @@ class RetentionWorker:
         return await asyncio.to_thread(read)
 
     async def _change(self, sessions: list[_Candidate], **values: object) -> None:
-        ids = [one.id for one in sessions]
-
-        def write(connection: Connection) -> None:
-            those = col(SessionRow.id).in_(ids)
-            connection.execute(
-                update(SessionRow).where(those, col(SessionRow.state) != "recording").values(values)
-            )
-
-        await self._store.write(write)
+        chosen = col(SessionRow.id).in_([one.id for one in sessions]), col(SessionRow.state) != "recording"
+        await self._store.execute(update(SessionRow).where(*chosen).values(values))
 
     async def _doomed(self) -> Sequence[int | None]:
         def read() -> Sequence[int | None]:
@@ -206,11 +195,7 @@ class RetentionWorker:
 
     async def _remove(self, session: int | None) -> None:
         some = select(Chunk.id).where(Chunk.session_id == session).limit(CHUNKS_AT_ONCE)
-
-        def remove_some(connection: Connection) -> int:
-            return connection.execute(delete(Chunk).where(col(Chunk.id).in_(some))).rowcount
-
-        while await self._store.write(remove_some) > 0:
+        while await self._store.execute(delete(Chunk).where(col(Chunk.id).in_(some))) > 0:
             await asyncio.sleep(PAUSE)
 
         def remove_rest(connection: Connection) -> None:

@@ -3,15 +3,15 @@
 import json
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import APIRouter, Depends, Path, Query
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 
 from robot_runtime.clock import Clock
 from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.dependencies import STORING, UNKNOWN, Identifier, OpenRecording
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
+from server.features.sessions.recording import Recording
 from server.features.sessions.replay import HISTORY_MAX, read_stretch
 from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.schemas import (
@@ -24,7 +24,7 @@ from server.features.sessions.schemas import (
     SessionChanges,
     SessionDetail,
 )
-from server.features.sessions.session import new_row
+from server.features.sessions.session import UnknownSessionError, find_row, new_row
 from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import HealthMonitor
@@ -32,10 +32,10 @@ from server.http.dependencies import Provided
 from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
-from server.platform.errors import InvalidError, NotFoundError
+from server.platform.errors import ConflictError, InvalidError, NotFoundError
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
-from server.platform.store import Store
+from server.platform.store import Store, StoreError
 from server.stream.bridge import Bridge
 
 SECONDS_MAX = 1e9
@@ -44,10 +44,20 @@ LEFT_OUT = "Left-Out"
 
 router = APIRouter(prefix="/api", tags=["sessions"], route_class=Operation)
 
+UNKNOWN = answers(UnknownSessionError)
+STORING = answers(ConflictError, StoreError)
 UNKNOWN_MARK = answers(_404="There is no such session, or it has no such mark")
 
-MarkIdentifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
+
+
+def _open(store: Provided[Store], session: Identifier) -> Recording:
+    return Recording(store, find_row(store, session))
+
+
+OpenRecording = Annotated[Recording, Depends(_open)]
+"""The recording of the session in the path, also from the bin."""
 
 
 @router.get("/sessions", openapi_extra=needs(Need.VIEWER))
@@ -176,7 +186,7 @@ async def add_mark(
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def change_mark(
-    markers: Provided[Bookmarks], session: Identifier, mark: MarkIdentifier, body: BookmarkChanges
+    markers: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
 ) -> Bookmark:
     """Change the time or the text of a bookmark."""
     return await markers.change(session, mark, body.time, body.text)
@@ -189,7 +199,7 @@ async def change_mark(
     responses={**UNKNOWN_MARK, **STORING},
 )
 async def remove_mark(
-    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: MarkIdentifier
+    markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: Identifier
 ) -> None:
     """Remove a bookmark for good."""
     await markers.remove(session, mark)

@@ -92,11 +92,13 @@ def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Ses
     )
 
 
-def find_row(store: Reader, session: int) -> SessionRow | None:
-    """The row of a session, also from the bin; None where there is none of this number. Raises StoreError."""
+def find_row(store: Reader, session: int) -> SessionRow:
+    """The row of a session, also from the bin. Raises UnknownSessionError, StoreError."""
     with store.read() as database:
         row = database.get(SessionRow, session)
-        return None if row is None or row.state in HIDDEN else row
+    if row is None or row.state in HIDDEN:
+        raise UnknownSessionError(session)
+    return row
 
 
 def require(connection: Connection, session: int) -> str:

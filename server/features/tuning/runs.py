@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, delete, insert, select, update
+from sqlalchemy import Connection, delete, select, update
 from sqlmodel import col
 from sqlmodel import select as select_rows
 
@@ -25,13 +25,16 @@ from server.features.tuning.schemas import (
 )
 from server.platform.errors import NotFoundError
 from server.platform.models import TuningRunRow
-from server.platform.store import Store
+from server.platform.store import Store, insert_row
 
 LISTED_MOST = 500
 
 
 class UnknownTuningRunError(NotFoundError):
     """There is no such run"""
+
+    def __init__(self, run: int) -> None:
+        super().__init__(f"There is no run {run}; it may have been deleted.")
 
 
 class TuningStore:
@@ -54,7 +57,7 @@ class TuningStore:
         with self._store.read() as database:
             row = database.exec(select_rows(TuningRunRow).where(col(TuningRunRow.id) == run)).one_or_none()
         if row is None:
-            raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
+            raise UnknownTuningRunError(run)
         shown = TuningRun(**_shown(row))
         curve = Curve.from_bytes(row.curve)
         limits = json.loads(row.parameters)["limits"]
@@ -81,13 +84,7 @@ class TuningStore:
             "figures": "{}",
             "curve": b"",
         }
-
-        def change(connection: Connection) -> int:
-            key = connection.execute(insert(TuningRunRow).values(values)).inserted_primary_key
-            assert key is not None
-            return int(key[0])
-
-        return await self._store.write(change)
+        return await self._store.write(lambda connection: insert_row(connection, TuningRunRow, values))
 
     async def end(self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: Curve) -> None:
         """The run is over; with all that came of it, or nothing of it is kept."""
@@ -97,14 +94,13 @@ class TuningStore:
             "figures": json.dumps(found),
             "curve": curve.to_bytes(),
         }
-        change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(values)
-        await self._store.write(lambda connection: connection.execute(change))
+        await self._store.execute(update(TuningRunRow).where(col(TuningRunRow.id) == run).values(values))
 
     async def rename(self, run: int, name: str) -> None:
         """Call it so."""
         change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(name=name)
-        if (await self._store.write(lambda connection: connection.execute(change).rowcount)) == 0:
-            raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
+        if await self._store.execute(change) == 0:
+            raise UnknownTuningRunError(run)
 
     async def delete(self, run: int) -> None:
         """Remove it for good. Raises SessionStateError while it runs."""
@@ -114,7 +110,7 @@ class TuningStore:
                 select(col(TuningRunRow.state)).where(col(TuningRunRow.id) == run)
             ).scalar_one_or_none()
             if state is None:
-                raise UnknownTuningRunError(f"There is no run {run}; it may have been deleted.")
+                raise UnknownTuningRunError(run)
             if state == "running":
                 raise SessionStateError("This run is on. Stop it first.")
             connection.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
@@ -123,14 +119,13 @@ class TuningStore:
 
     async def forget(self, run: int) -> None:
         """It never began."""
-        change = delete(TuningRunRow).where(col(TuningRunRow.id) == run)
-        await self._store.write(lambda connection: connection.execute(change))
+        await self._store.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
 
     async def mark_interrupted(self) -> None:
         """Runs that still say that they are on were left by a server that was killed."""
         values = {"state": "interrupted", "problem": "The server ended while it ran; its curve is not kept."}
-        change = update(TuningRunRow).where(col(TuningRunRow.state) == "running").values(values)
-        await self._store.write(lambda connection: connection.execute(change))
+        running = col(TuningRunRow.state) == "running"
+        await self._store.execute(update(TuningRunRow).where(running).values(values))
 
 
 def _shown(row: TuningRunRow) -> dict[str, Any]:

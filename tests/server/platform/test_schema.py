@@ -13,6 +13,7 @@ import server.platform.models  # noqa: F401 - declares the tables
 from migrations import HEAD
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
 from server.platform import schema
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
@@ -103,7 +104,7 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
         )
         (topic,) = catalogue.detail(1).topics
         assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
-        assert b"".join(Recording(store, catalogue.row(1)).rows("depth")) == ROWS
+        assert b"".join(Recording(store, find_row(store, 1)).rows("depth")) == ROWS
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)

@@ -89,7 +89,6 @@ def session(store: Store, settings: Settings) -> int:
 
 def write(store: Store, session: int, **wanted: Any) -> io.BytesIO:
     row = find_row(store, session)
-    assert row is not None
     chosen, output = ExportOptions(**wanted), io.BytesIO()
     check(chosen).write(store, ExportSelection(store, row, chosen), output)
     output.seek(0)
@@ -100,7 +99,6 @@ def test_json_lines_are_in_order_and_in_si_units(store: Store, session: int) -> 
     lines = write(store, session, format="jsonl").getvalue().decode().splitlines()
     samples = [json.loads(line) for line in lines]
     row = find_row(store, session)
-    assert row is not None
     assert (
         Counter(one["topic"] for one in samples)
         == ExportSelection(store, row, ExportOptions(format="csv")).counts()
@@ -143,7 +141,6 @@ def test_parquet_keeps_numbers_types_and_units(store: Store, session: int) -> No
     assert json.loads(tables["state"].column("colours").to_pylist()[0]) == ["yellow"]
     utc = pandas.Timestamp(depth.column("utc")[0].as_py())
     row = find_row(store, session)
-    assert row is not None
     assert utc.timestamp() == pytest.approx(row.started + 0.5, abs=1e-5)
 
 
@@ -164,7 +161,6 @@ def test_mcap_holds_every_sample_and_what_panels_look_for(store: Store, session:
         topic: summary.statistics.channel_message_counts[channel.id] for topic, channel in channels.items()
     }
     row = find_row(store, session)
-    assert row is not None
     stored = ExportSelection(store, row, ExportOptions(format="csv")).counts()
     assert {topic: counts[f"/{topic}"] for topic in stored} == stored
     schemas = {topic: summary.schemas[channel.schema_id] for topic, channel in channels.items()}

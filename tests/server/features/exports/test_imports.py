@@ -22,7 +22,8 @@ from server.features.exports.archive_reader import ArchiveError, examine
 from server.features.exports.imports import Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.sessions.session import IMPORTING, REMOVING, find_row
+from server.features.sessions.catalogue import Catalogue
+from server.features.sessions.session import IMPORTING, REMOVING, UnknownSessionError, find_row
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -52,7 +53,6 @@ def session(store: Store, settings: Settings) -> int:
 @pytest.fixture
 def archive(store: Store, session: int, tmp_path: Path) -> Path:
     row = find_row(store, session)
-    assert row is not None
     path = tmp_path / "dive.mucat.zip"
     with path.open("wb") as file:
         write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), file)
@@ -99,7 +99,6 @@ def test_a_session_goes_to_another_machine_and_stays_the_same(
     with closing(Reader(folder.database)) as brought:
         assert contents(brought, 2) == contents(store, session)
         row = find_row(brought, 2)
-    assert row is not None
     assert row.origin == "import"
 
 
@@ -219,7 +218,6 @@ def test_what_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
 
 def test_a_session_that_records_is_not_archived(store: Store, session: int) -> None:
     row = find_row(store, session)
-    assert row is not None
     row.state = "recording"
     with pytest.raises(ExportRequestError, match="Stop the recording"):
         write_archive(store, ExportSelection(store, row, ExportOptions(format="archive")), io.BytesIO())
@@ -229,25 +227,25 @@ def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(
     store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(archive, tell(identifier="f" * 32))
-    seen: list[SessionRow | None] = []
+    seen: list[int] = []
 
     async def scenario() -> None:
         imports = Imports(settings.data, store)
-        real = imports._insert
+        real = store.execute
 
-        async def failing(table: Any, rows: Any) -> None:
-            await real(table, rows)
-            seen.append(find_row(store, session + 1))
-            if table is Chunk:
+        async def failing(change: Any, rows: Any = None) -> int:
+            count = await real(change, rows)
+            seen.extend(one.id for one in Catalogue(store).list())
+            if change.table.name == "chunk":
                 raise StoreError("the disk is full")
+            return count
 
-        monkeypatch.setattr(imports, "_insert", failing)
+        monkeypatch.setattr(store, "execute", failing)
         with pytest.raises(StoreError):
             await imports.take(archive)
 
     asyncio.run(scenario())
-    assert seen
-    assert set(seen) == {None}
+    assert set(seen) == {session}
     with store.read() as database:
         states = database.exec(select(SessionRow.state).order_by(col(SessionRow.id))).all()
     assert states == ["complete", REMOVING]
@@ -258,7 +256,8 @@ def test_what_a_killed_server_has_half_imported_is_removed(
 ) -> None:
     half = text(f"UPDATE session SET state = '{IMPORTING}'")
     asyncio.run(store.write(lambda connection: connection.execute(half)))
-    assert find_row(store, session) is None
+    with pytest.raises(UnknownSessionError):
+        find_row(store, session)
     settings.data.imports.mkdir()
     (settings.data.imports / "x.part").write_bytes(b"half")
     asyncio.run(Imports(settings.data, store).recover())

@@ -52,7 +52,6 @@ def record(
 
 def make(store: Store, session: int, **wanted: Any) -> ExportSelection:
     row = find_row(store, session)
-    assert row is not None
     return ExportSelection(store, row, ExportOptions(**{"format": "csv", **wanted}))
 
 

@@ -9,6 +9,7 @@ import httpx
 from websockets.asyncio.client import ClientConnection
 
 from server.features.sessions.recording import Recording
+from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.serving import Served, next_text, play
@@ -74,7 +75,7 @@ def test_what_happens_to_the_control_is_in_the_session(settings: Settings) -> No
         (await served.api.post("/control/take")).raise_for_status()
         (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
         container = served.container
-        recording = Recording(container.store, container.catalogue.row(session))
+        recording = Recording(container.store, find_row(container.store, session))
         texts = [one["text"] for one in recording.documents("notice")]
         shell = "“the shell of this computer”"
         assert texts[-3:] == [

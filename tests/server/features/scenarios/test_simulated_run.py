@@ -61,7 +61,6 @@ def perform(settings: Settings, store: Store, work: Work) -> list[ScenarioState]
 
 def samples(store: Store, session: int) -> list[Any]:
     row = find_row(store, session)
-    assert row is not None
     recording = Recording(store, row)
     return [(topic, [one.data for one in recording.chunks(topic)]) for topic in sorted(recording.counts())]
 
@@ -79,8 +78,6 @@ def test_runs_of_one_seed_wait_for_each_other_and_are_the_same(settings: Setting
         2: ("complete", "", ends[1].session),
     }
     first, second = (find_row(store, ends[number].session or 0) for number in (1, 2))
-    assert first is not None
-    assert second is not None
     assert (first.origin, first.scenario, first.scenario_name, first.seed) == ("simulated", SHORT, "short", 7)
     assert (first.started_steady, first.state) == (0.0, "complete")
     assert len(first.firmware) == len(first.software) == 16
@@ -110,7 +107,6 @@ def test_a_cancelled_run_keeps_what_there_was_and_the_queue_is_forgotten(
     assert last.last is not None
     assert (last.last.state, last.last.problem, last.last.run) == ("cancelled", "It was cancelled.", 1)
     row = find_row(store, last.last.session or 0)
-    assert row is not None
     assert (row.state, row.samples > 0) == ("complete", True)
     assert row.duration < 3600
 

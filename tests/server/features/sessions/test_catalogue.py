@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from tests.server.blocks import depth_block, state_block, thumbnail_block
 from tests.server.serving import Served, next_text, play
@@ -117,7 +118,7 @@ def test_a_session_says_what_is_in_it(settings: Settings) -> None:
         assert (topics["depth"]["count"], topics["thumbnail"]["kind"]) == (11, "picture")
         assert {"name": "depth", "unit": "m"}.items() <= topics["depth"]["columns"][1].items()
         picture = f"/sessions/{session}/thumbnail"
-        start = served.container.catalogue.row(session).started_steady
+        start = find_row(served.container.store, session).started_steady
         answer = await served.api.get(picture, params={"time": now - start + 0.5})
         assert (answer.headers["content-type"], answer.content) == ("image/jpeg", b"\1")
         assert (await served.api.get(picture, params={"time": 1e6})).status_code == 404

@@ -225,7 +225,6 @@ def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
         assert done.ended is not None
         assert done == Catalogue(deck.store).list()[0]
         row = find_row(deck.store, session)
-        assert row is not None
         assert row.configuration == deck.settings.config.read_text()
         assert deck.told == ["Recording of “first” has begun.", "Recording of “first” has ended."]
 
@@ -324,7 +323,7 @@ def test_failing_without_a_session_is_tried_again(deck: Deck, monkeypatch: pytes
             raise OperationalError("INSERT", {}, sqlite3.OperationalError("disk I/O error"))
 
         with monkeypatch.context() as broken:
-            broken.setattr(recorder_module, "_insert_session", refuse)
+            broken.setattr(recorder_module, "insert_row", refuse)
             with pytest.raises(StoreError, match="SD card"):
                 await deck.start()
         assert deck.recorder.session is None
@@ -410,7 +409,6 @@ def test_a_session_begins_with_the_parameters_in_force(deck: Deck, store: Store)
 
     play(scenario)
     row = find_row(store, 1)
-    assert row is not None
     documents = list(Recording(store, row).documents("parameters"))
     assert [(one["time"], one["parameters"][0]["value"]) for one in documents] == [(50.0, 4.0), (42.0, 5.0)]
     assert deck.numbers("parameters") == [1, 2]

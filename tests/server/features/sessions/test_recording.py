@@ -14,7 +14,6 @@ from tests.server.features.exports.test_tables import record
 
 def read(store: Store, session: int) -> Recording:
     row = find_row(store, session)
-    assert row is not None
     return Recording(store, row)
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from server.features.sessions.recorded_state import depth_loop
+from server.features.sessions.recording import depth_loop
 
 HEADING = {"name": "heading", "set_point": 1.0, "controller": "tilt", "controllers": []}
 DEPTH = {"name": "depth", "set_point": 0.7, "controller": "pid", "controllers": []}
