@@ -1,22 +1,11 @@
 import { createContext } from 'svelte';
+import { pages } from './texts/pages';
 
-export const PAGES = [
-  { name: 'operate', title: 'Operate' },
-  { name: 'tune', title: 'Tune' },
-  { name: 'scenarios', title: 'Scenarios' },
-  { name: 'comm-tests', title: 'Comm tests' },
-  { name: 'sessions', title: 'Sessions' },
-  { name: 'system', title: 'System' },
-] as const;
+/** The pages that have a tab. */
+export const PAGES = ['operate', 'tune', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
+const ALL = [...PAGES, 'replay', 'people'] as const;
 
-/** Pages that are reached from others. */
-const INNER = [
-  { name: 'replay', title: 'Replay' },
-  { name: 'people', title: 'People' },
-] as const;
-const ALL = [...PAGES, ...INNER];
-
-export type PageName = (typeof ALL)[number]['name'] | 'unknown';
+export type PageName = (typeof ALL)[number] | 'unknown';
 
 /** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
 export class Router {
@@ -27,7 +16,7 @@ export class Router {
   constructor() {
     const read = () => {
       const [name = '', ...within] = location.hash.replace(/^#\/?/, '').split('/');
-      this.current = name === '' ? 'operate' : (ALL.find((page) => page.name === name)?.name ?? 'unknown');
+      this.current = name === '' ? 'operate' : (ALL.find((page) => page === name) ?? 'unknown');
       this.within = within;
     };
     window.addEventListener('hashchange', read);
@@ -35,7 +24,7 @@ export class Router {
   }
 
   get title(): string {
-    return ALL.find((page) => page.name === this.current)?.title ?? 'Not found';
+    return pages[this.current];
   }
 }
 

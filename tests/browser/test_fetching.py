@@ -6,7 +6,7 @@ from playwright.sync_api import Page, expect
 def test_a_part_of_the_page_that_cannot_be_fetched_is_told(page: Page) -> None:
     page.route("**/assets/System-*.js", lambda route: route.abort())
     page.get_by_role("link", name="System", exact=True).click()
-    told = page.get_by_role("alert").filter(has_text="could not be fetched")
+    told = page.get_by_role("alert").filter(has_text="could not be loaded")
     expect(told).to_be_visible()
     page.unroute("**/assets/System-*.js")
     told.get_by_role("button", name="Try again").click()

@@ -26,14 +26,14 @@ def notes(stack: Stack, session: int) -> list[str]:
 def test_a_mark_leaves_the_keyboard_to_driving(page: Page, stack: Stack, session: int) -> None:
     arm_by_hand(page)
     page.keyboard.press("m")
-    notice = page.get_by_role("region", name="Mark", exact=True)
+    notice = page.get_by_role("region", name="Bookmark", exact=True)
     expect(notice).to_contain_text(re.compile(r"Marked \d\d:\d\d"))
     page.keyboard.down("w")
     expect_surge(page, "forwards")
     page.keyboard.up("w")
     expect_surge(page, "")
-    notice.get_by_role("button", name="Add note").click()
-    field = notice.get_by_label("Note")
+    notice.get_by_role("button", name="Add text").click()
+    field = notice.get_by_label("Text of the bookmark")
     expect(field).to_be_focused()
     field.fill("bubbles")
     field.press("Enter")
@@ -44,7 +44,7 @@ def test_a_mark_leaves_the_keyboard_to_driving(page: Page, stack: Stack, session
 def test_a_mark_without_a_note_goes_out_of_the_way(page: Page, stack: Stack, session: int) -> None:
     expect(page.get_by_role("button", name=re.compile("^REC"))).to_be_visible()
     page.keyboard.press("m")
-    notice = page.get_by_role("region", name="Mark", exact=True)
+    notice = page.get_by_role("region", name="Bookmark", exact=True)
     expect(notice).to_be_visible()
     expect(notice).to_be_hidden(timeout=15_000)
     assert notes(stack, session) == [""]

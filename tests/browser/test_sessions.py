@@ -18,8 +18,8 @@ def test_a_session_is_kept_and_found_again(page: Page, stack: Stack) -> None:
 
     page.get_by_role("link", name="Operate").click()
     page.keyboard.press("m")
-    page.get_by_role("button", name="Add note").click()
-    page.get_by_label("Note", exact=True).fill("bubbles")
+    page.get_by_role("button", name="Add text").click()
+    page.get_by_label("Text of the bookmark").fill("bubbles")
     page.get_by_role("button", name="Save").click()
     page.get_by_role("button", name=re.compile("^REC")).click()
     page.get_by_role("button", name="Stop recording").click()

@@ -65,7 +65,7 @@ def test_a_choice_outlasts_the_device(browser: Browser, stack: Stack, cookies: S
         page.reload()
         expect(theme(page)).to_have_attribute("data-theme", "sunlight")
         page.get_by_role("button", name="Page settings").click()
-        page.get_by_role("radio", name="As the device").check()
+        page.get_by_role("radio", name="Same as device").check()
         expect(theme(page)).to_have_attribute("data-theme", "dark")
 
 

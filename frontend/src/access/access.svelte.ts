@@ -2,6 +2,7 @@ import { createContext } from 'svelte';
 import { api, type Identity, type Me } from '../api';
 import type { operations } from '../generated/api';
 import { onSignedOut } from '../http';
+import { access as texts } from '../texts/access';
 
 /** what the server can be asked for, by the names in its interface */
 export type Operation = keyof operations;
@@ -42,7 +43,7 @@ export class Access {
     const me = await this.#ask();
     if (me === null) return;
     if (me.signed_in) this.#take(me);
-    else this.leave(reason === '' ? 'This browser is not signed in any more.' : reason);
+    else this.leave(reason === '' ? texts.noLongerSignedIn : reason);
   }
 
   /** Use a code. Returns what went wrong, or null. */
@@ -58,7 +59,7 @@ export class Access {
     const problem = await api.signOut();
     if (problem !== null) return problem;
     this.leave('');
-    this.reason = 'You have signed out.';
+    this.reason = texts.signedOut;
     return null;
   }
 
@@ -84,7 +85,7 @@ export class Access {
   /** Why this is not for who uses this page, in words; null where it is. What needs control says so by itself. */
   refusal(operation: Operation): string | null {
     if (this.identity?.role !== 'viewer' || !this.#operatorsOnly.includes(operation)) return null;
-    return 'Viewers may watch and STOP. This needs an operator.';
+    return texts.operatorOnly;
   }
 
   #take(me: Me): void {

@@ -1,3 +1,5 @@
+import { access as texts } from '../texts/access';
+
 /** The code that a link carries after its hash, where no server and no log ever sees it; null where there is none. */
 export function codeIn(hash: string): string | null {
   const code = new URLSearchParams(hash.replace(/^#/, '')).get('pair');
@@ -30,7 +32,7 @@ const SYSTEMS = [
 /** A name for a browser, by what it says of itself: people tell their devices apart by it. */
 export function browserName(agent: string): string {
   const found = (all: readonly (readonly [string, string])[]) => all.find(([mark]) => agent.includes(mark))?.[1];
-  const browser = found(BROWSERS) ?? 'Browser';
+  const browser = found(BROWSERS) ?? texts.browser;
   const system = found(SYSTEMS);
-  return system === undefined ? browser : `${browser} on ${system}`;
+  return system === undefined ? browser : texts.browserOn(browser, system);
 }

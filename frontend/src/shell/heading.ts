@@ -1,3 +1,5 @@
+import { shell } from '../texts/shell';
+
 /** The page's heading names the document, and gets the focus when another page is there, unless it has moved on by then. */
 export class Heading {
   #current: HTMLElement | null = null;
@@ -15,7 +17,7 @@ export class Heading {
    */
   follow(title: string): void {
     this.end();
-    document.title = entitle(title);
+    document.title = shell.titleOf(title);
     this.#left = document.activeElement;
     // Until it is there: the page of a robot at work changes all the time.
     this.#appearing.observe(this.place, { childList: true, subtree: true });
@@ -44,8 +46,6 @@ export class Heading {
 
   #name(): void {
     const text = this.#current?.textContent.replaceAll(/\s+/g, ' ').trim() ?? '';
-    if (text !== '') document.title = entitle(text);
+    if (text !== '') document.title = shell.titleOf(text);
   }
 }
-
-const entitle = (text: string) => `${text} · µ-CAT`;

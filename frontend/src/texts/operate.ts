@@ -1,6 +1,8 @@
 /** Texts of the page Operate. */
+import { pages } from './pages';
+
 export const operate = {
-  title: 'Operate',
+  title: pages.operate,
   stateAndControl: 'State and control',
   tabsLabel: 'Panels',
   tabs: {

@@ -1,10 +1,12 @@
 /** Texts of the page People. */
+import { access } from './access';
+import { pages } from './pages';
 
-const ROLES = { viewer: 'viewer', operator: 'operator' } as const;
+const ROLES = access.roles;
 type Role = keyof typeof ROLES;
 
 export const people = {
-  title: 'People',
+  title: pages.people,
   about: 'Browsers and programs that can use this robot.',
   back: '← System',
   roles: ROLES,

@@ -1,6 +1,8 @@
 /** Texts of a replay. */
+import { pages } from './pages';
+
 export const replay = {
-  title: 'Replay',
+  title: pages.replay,
   noSession: 'No session at this address.',
   sessions: 'Go to Sessions',
   refused: 'This is a replay. Commands are not possible here. Exit the replay first.',

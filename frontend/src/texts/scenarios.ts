@@ -1,6 +1,8 @@
 /** Texts of the page Scenarios. */
+import { pages } from './pages';
+
 export const scenarios = {
-  title: 'Scenarios',
+  title: pages.scenarios,
   about:
     'A scenario describes an experiment: the water, the robot, and each event with its time. Each run is recorded as a session, which you can replay, compare and export.',
   cards: {

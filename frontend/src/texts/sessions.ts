@@ -1,7 +1,8 @@
 /** Texts of the page Sessions: the list, one session, export and import. */
+import { pages } from './pages';
 
 export const sessions = {
-  title: 'Sessions',
+  title: pages.sessions,
   about: 'A session stores every sample, event and console line while it records.',
   record: 'Record a session',
   recorded: 'Recorded',

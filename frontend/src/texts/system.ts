@@ -1,6 +1,8 @@
 /** Texts of the page System. */
+import { pages } from './pages';
+
 export const system = {
-  title: 'System',
+  title: pages.system,
   backup: {
     title: 'Backup',
     about: 'A copy of all data: sessions, tests, settings and accounts. To restore it, run this on the robot’s computer:',

@@ -1,7 +1,8 @@
 /** Texts of the page Tune: step response, automatic tuning, parameters. */
+import { pages } from './pages';
 
 export const tune = {
-  title: 'Tune',
+  title: pages.tune,
   views: { label: 'Tuning views', response: 'Step response', relay: 'Automatic tuning', parameters: 'Parameters', vision: 'Vision' },
   loops: { depth: 'Depth', heading: 'Heading', pitch: 'Pitch', roll: 'Roll' },
   response: {

@@ -1,0 +1,12 @@
+/** Names of the pages: in the tabs, in headings and in the title of the window. */
+export const pages = {
+  operate: 'Operate',
+  tune: 'Tune',
+  scenarios: 'Scenarios',
+  'comm-tests': 'Comm tests',
+  sessions: 'Sessions',
+  system: 'System',
+  replay: 'Replay',
+  people: 'People',
+  unknown: 'Page not found',
+} as const;
