@@ -1,4 +1,4 @@
-// Battery and beacon detectors as the simulator tells of them.
+// Battery and beacon detectors with the simulator's values.
 #include "board/board.h"
 #include "loop.h"
 
@@ -6,7 +6,7 @@ namespace mucat {
 namespace board {
 namespace {
 
-// mV for full scale, as sensors/battery.cpp has it.
+// mV at full scale, as in sensors/battery.cpp.
 constexpr uint32_t kFullScale = 10000;
 constexpr uint16_t kCountsMax = 1023;
 

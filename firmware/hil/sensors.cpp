@@ -1,4 +1,4 @@
-// IMU and pressure sensor as the simulator tells of them, in place of their drivers.
+// IMU and pressure sensor with the simulator's values, in place of their drivers.
 #include "loop.h"
 #include "sensors/mpu6050.h"
 #include "sensors/ms5837.h"

@@ -14,7 +14,7 @@ namespace {
 constexpr float kSpeedPerStep = 0.315f;    // rad/s for a step of the bridge's voltage
 constexpr float kTimeConstant = 0.03f;     // s
 constexpr float kDecayPerTick = 0.71653f;  // exp(-kTickSeconds / kTimeConstant)
-constexpr int8_t kLeastDrive = 6;          // as of the H-bridge
+constexpr int8_t kDriveMin = 6;            // as for the H-bridge
 constexpr float kCountsPerRadian = 1024 / (2 * kPi);
 constexpr int16_t kCountsPerTurn = 1024;
 
@@ -28,13 +28,13 @@ Shaft shafts[kFinCount];
 }  // namespace
 
 bool drive_bridge(uint8_t fin, int8_t drive) {
-  shafts[fin].drive = drive > -kLeastDrive && drive < kLeastDrive ? 0 : drive;
+  shafts[fin].drive = drive > -kDriveMin && drive < kDriveMin ? 0 : drive;
   return true;
 }
 
 bool bridge_failed(uint8_t) { return false; }
 
-// Each encoder is read once a tick: here the tick passes for its shaft.
+// Called once a tick for each encoder: moves its shaft by one tick.
 bool read_encoder_counts(uint8_t fin, int16_t* counts) {
   Shaft& shaft = shafts[fin];
   const float driven = kSpeedPerStep * shaft.drive;

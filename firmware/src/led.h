@@ -4,7 +4,7 @@
 
 namespace mucat {
 
-// Whether it is lit in this tick of 10 ms; `tick` counts them.
+// True if the LED is lit in this tick; `tick_of_second` counts the ticks of 10 ms.
 inline bool led_lit(bool armed, bool fault, uint8_t tick_of_second) {
   if (fault) return tick_of_second % 20 < 10;
   return armed || tick_of_second < 10;

@@ -1,3 +1,3 @@
-// The library as a sketch sees it.
+// The header that a sketch includes.
 #pragma once
 #include "robot.h"

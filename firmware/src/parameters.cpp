@@ -3,7 +3,7 @@
 namespace mucat {
 namespace {
 
-static_assert(kParameterCount <= 8, "more parameters than bits that say which to answer");
+static_assert(kParameterCount <= 8, "more parameters than bits of unanswered_");
 
 uint16_t read(const uint16_t& in_flash) { return pgm_read_word(&in_flash); }
 
@@ -13,7 +13,7 @@ Parameters::Parameters() {
   for (uint8_t i = 0; i < kParameterCount; ++i) values_[i] = read(kParameterLimits[i].initial);
 }
 
-void Parameters::take(const Parameter& requested, bool armed) {
+void Parameters::request(const Parameter& requested, bool armed) {
   if (requested.number >= kParameterCount) return;
   const ParameterLimits& limits = kParameterLimits[requested.number];
   const bool in_range = requested.value >= read(limits.minimum) && requested.value <= read(limits.maximum);

@@ -13,11 +13,11 @@ class Parameters {
   // In thousandths of its unit.
   uint16_t operator[](ParameterNumber number) const { return values_[number]; }
   float value(ParameterNumber number) const { return values_[number] * 0.001f; }
-  // Takes a value within its limits, and where the board is armed only what may change then. It is answered
-  // either way.
-  void take(const Parameter& requested, bool armed);
+  // Sets the value if it is within its limits, and may change while armed if the board is armed. Either way
+  // an answer is due.
+  void request(const Parameter& requested, bool armed);
 
-  // The next one to be answered; false where there is none. It stays the next until it is answered.
+  // The next answer that is due; false if there is none. It stays the next until answered().
   bool next(Parameter* answer) const;
   void answered(uint8_t number) { unanswered_ &= ~(1 << number); }
 

@@ -53,7 +53,7 @@ void Robot::handle(const Message& message) {
     case Stop::kType:
       report_disarmed(arming_.stop());
       lowering_ = false;
-      // Not at the next tick: now.
+      // At once, not at the next tick.
       fins_.step(Motion::kOff, parameters_);
       break;
     case Hello::kType:
@@ -69,8 +69,8 @@ void Robot::handle(const Message& message) {
       accept_simulated_input(unpack<Sense>(message));
       break;
     case Parameter::kType:
-      // By other definitions its number may mean something else.
-      if (!arming_.definitions_differ()) parameters_.take(unpack<Parameter>(message), armed());
+      // With other definitions its number may mean another parameter.
+      if (!arming_.definitions_differ()) parameters_.request(unpack<Parameter>(message), armed());
       break;
     default:
       break;  // a heartbeat needs no handling; the other types are sent by the board alone
@@ -88,9 +88,9 @@ void Robot::arm(const Start& start) {
   const bool was_armed = armed();
   const Refusal refusal = arming_.start(start, board::milliseconds());
   if (refusal != Refusal::kNone) {
-    link_.say(DebugLine(DebugLevel::kWarning) << FLASH_TEXT("START refused: ") << describe(refusal));
+    link_.queue_line(DebugLine(DebugLevel::kWarning) << FLASH_TEXT("START refused: ") << describe(refusal));
   } else if (!was_armed) {
-    link_.say(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("armed"));
+    link_.queue_line(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("armed"));
   }
 }
 
@@ -98,19 +98,19 @@ void Robot::tick(uint8_t ticks) {
   const uint32_t now = board::milliseconds();
   report_disarmed(arming_.tick(now));
   watch_battery(now);
-  // First, before anything slow, so that a command takes effect with the least delay.
+  // First, so that a command takes effect with the least delay.
   fins_.step(motion(now), parameters_);
   sensors_.step(ticks, !armed());
   board::set_led(led_lit(armed(), faults() || battery_alarm_.on(), tick_of_second_));
   tick_of_second_ = (tick_of_second_ + 1) % kTicksPerSecond;
   if (slot_tick_ < kTicksPerSlot) ++slot_tick_;
-  // Telemetry waits for a slow line, so that it is the newest when it is sent.
+  // On a slow line telemetry waits until it can be sent, so that it is new.
   if (slot_tick_ == kTicksPerSlot && (kTicksPerSlot == 1 || link_.line_idle())) {
     slot_tick_ = 0;
     send_telemetry();
     slot_ = (slot_ + 1) % kSlots;
   }
-  // Nothing is sent before a host has greeted: messages of the boot wait in the queue.
+  // Before a host's HELLO nothing is sent: messages of the boot wait in the queue.
   if (!arming_.greeted()) return;
   answer_parameters();
   link_.step(now);
@@ -128,7 +128,7 @@ void Robot::watch_battery(uint32_t now_ms) {
   if (!battery_alarm_.update(millivolts, parameters_[kBatteryAlarm], now_ms)) return;
   DebugLine line(DebugLevel::kError);
   line << FLASH_TEXT("battery at ") << static_cast<uint16_t>(millivolts / 1000) << FLASH_TEXT(".");
-  link_.say(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));
+  link_.queue_line(line.digits(millivolts / 10 % 100, 2) << FLASH_TEXT(" V: fins down, disarmed"));
   lowering_ = armed();
   lowering_since_ms_ = now_ms;
   report_disarmed(arming_.fail_battery());
@@ -156,7 +156,7 @@ void Robot::send_telemetry() {
     link_.send(beacon);
   }
   if (slot_ == kStatusSlot) report_changed_faults();
-  // On a slow line its slot may be far away, and the host that armed the board waits for the status.
+  // On a slow line the status slot may be far away, and the host that armed the board waits for the status.
   if (slot_ == kStatusSlot || (kSlow && armed() != reported_armed_)) send_status();
   link_.flush();
 }

@@ -1,4 +1,4 @@
-// The robot's lines of debug text.
+// The robot's debug lines.
 #include "board/board.h"
 #include "robot.h"
 
@@ -45,12 +45,12 @@ void Robot::report_boot() {
   const ResetCause cause = board::reset_cause();
   const bool hung = cause == ResetCause::kWatchdog;
   DebugLine line(hung ? DebugLevel::kError : DebugLevel::kInfo);
-  link_.say(line << FLASH_TEXT("boot ") << epoch_ << FLASH_TEXT(", ") << describe(cause));
+  link_.queue_line(line << FLASH_TEXT("boot ") << epoch_ << FLASH_TEXT(", ") << describe(cause));
 }
 
 void Robot::report_disarmed(Disarming reason) {
   if (reason == Disarming::kNone) return;
-  link_.say(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("disarmed: ") << mucat::describe(reason));
+  link_.queue_line(DebugLine(DebugLevel::kInfo) << FLASH_TEXT("disarmed: ") << mucat::describe(reason));
 }
 
 // Reports every device the first time, later those whose fault has changed.
@@ -60,7 +60,7 @@ void Robot::report_changed_faults() {
     if (reported_devices_ && !((now ^ reported_faults_) & device)) continue;
     DebugLine line(now & device ? DebugLevel::kWarning : DebugLevel::kInfo);
     line << describe(static_cast<SensorFault>(device));
-    link_.say(line << (now & device ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found")));
+    link_.queue_line(line << (now & device ? FLASH_TEXT(": no sensible answer") : FLASH_TEXT(": found")));
   }
   reported_faults_ = now;
   reported_devices_ = true;

@@ -1,12 +1,12 @@
-// Which telemetry goes out in which tick, and how much of it the line carries.
+// The schedule of telemetry: the ticks in which each packet is sent.
 //
-// In ten slots: Imu in all, Motor in the even, Depth in the odd, Beacon and Status in one each. Imu with
-// Motor, or Imu with Depth and Beacon, fill one frame; Status goes in a second one. At full rate that is 5.5
-// kB/s. A slot is one tick where the line carries that with a quarter to spare, and as many ticks as it takes
-// where it does not.
+// Ten slots: Imu in all, Motor in the even, Depth in the odd, Beacon and Status in one each. Imu with Motor,
+// or Imu with Depth and Beacon, fill one frame; Status goes in a second one. At full rate that is 5.5 kB/s. A
+// slot is one tick if the line carries that with a quarter to spare; otherwise it is longer.
 //
-// Where that would be more than four, there are three slots instead: Depth, which is steered by, in all of
-// them, and beside it Imu, then Motor, then Beacon and Status. robot_runtime/link/timing.py knows of both.
+// If a slot would be longer than four ticks, there are three slots instead: Depth, the input of control, in
+// all of them, with Imu, then Motor, then Beacon and Status. robot_runtime/link/timing.py has the same
+// schedules.
 #pragma once
 #include <stdint.h>
 

@@ -30,7 +30,7 @@ void yield() { end_of_line.wait(); }
 bool receive() {
   Event event = end_of_line.receive(counts);
   if (event == REQUEST) {
-    end_of_line.tell(counts);
+    end_of_line.send_result(counts);
   }
   return event == MESSAGE;
 }

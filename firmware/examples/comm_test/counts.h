@@ -1,11 +1,11 @@
-// What the chip has seen on the line.
+// The chip's counts of received data.
 #pragma once
 
 #include <stdint.h>
 
 #include "parameters.h"
 
-// Two bytes each; no test sends so much that one of them overflows.
+// Two bytes each; no test sends enough to overflow one.
 struct Counts {
   uint16_t right = 0;
   uint16_t out_of_sequence = 0;
@@ -14,8 +14,8 @@ struct Counts {
   uint16_t ring_full = 0;
   uint16_t bytes_read = 0;
 
-  // A number is right when it belongs to the test and is above all right ones before it.
-  void take(uint16_t number) {
+  // Counts a number: right if it belongs to the test and is greater than all right ones before it.
+  void count(uint16_t number) {
     if (number >= next_ && number < COMM_TEST_TO) {
       right++;
       next_ = number + 1;
@@ -28,5 +28,5 @@ struct Counts {
   uint16_t next_ = COMM_TEST_FROM;
 };
 
-// What came of what was read.
+// Result of reading a byte or frame.
 enum Event : uint8_t { NOTHING, MESSAGE, REQUEST };

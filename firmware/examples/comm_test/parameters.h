@@ -1,4 +1,4 @@
-// What the test document says, as macros. The values here are those of a sketch that is uploaded by hand.
+// The test document's values as macros. These defaults are for a sketch that is uploaded by hand.
 #pragma once
 
 #ifndef COMM_TEST_BAUD
@@ -10,7 +10,7 @@
 #ifndef COMM_TEST_FROM
 #define COMM_TEST_FROM 1
 #endif
-#ifndef COMM_TEST_TO  // the first number that is not sent any more
+#ifndef COMM_TEST_TO  // the number after the last one
 #define COMM_TEST_TO 101
 #endif
 

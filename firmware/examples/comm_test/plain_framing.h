@@ -20,7 +20,7 @@ class PlainFraming {
       high_ = byte;
       return NOTHING;
     }
-    counts.take((uint16_t)(high_ << 8 | byte));
+    counts.count((uint16_t)(high_ << 8 | byte));
     return MESSAGE;
   }
 

@@ -1,6 +1,6 @@
-// The chip's end of the robot's own link, with the robot's library and its port instead of Serial: both have
-// the same interrupts. The link is kept alive while the sketch waits. It takes the host's numbers only while
-// there is room for a frame full of them, so that none is acknowledged that could be lost.
+// The chip's end of the robot's own link, with the robot's library and its port instead of Serial: both use
+// the same interrupts. The link is served while the sketch waits. It accepts the host's numbers only while
+// there is room for a full frame, so that no acknowledged number can be lost.
 #pragma once
 
 #include <mucat.h>
@@ -21,28 +21,28 @@ class RobotEnd {
     link_.greet(epoch_);
   }
 
-  // Whether the host has sent a number.
+  // True if the host has sent a number.
   bool heard() const { return heard_; }
 
-  // The oldest number that came. The question is the last that comes, and waits for them.
+  // Handles the oldest stored number. The request is handled after all numbers.
   Event receive(Counts &counts) {
     poll();
-    if (held_) {
-      counts.take(numbers_[first_]);
+    if (stored_) {
+      counts.count(numbers_[first_]);
       first_ = (first_ + 1) % NUMBERS_MAX;
-      held_--;
+      stored_--;
       return MESSAGE;
     }
-    if (!asked_) {
+    if (!requested_) {
       return NOTHING;
     }
-    asked_ = false;
+    requested_ = false;
     return REQUEST;
   }
 
   void send(uint16_t number) { queue(mucat::TestMsg{number}); }
 
-  void tell(const Counts &counts) {
+  void send_result(const Counts &counts) {
     queue(mucat::TestResult{counts.right, counts.out_of_sequence, link_.frames_invalid(),
                             link_.frames_repeated(), mucat::board::bytes_lost()});
   }
@@ -58,7 +58,7 @@ class RobotEnd {
   static constexpr uint8_t NUMBERS_PER_FRAME =
       mucat::kReliableMessagesBytesMax / (1 + sizeof(mucat::TestMsg));
   static constexpr uint8_t NUMBERS_MAX = 2 * NUMBERS_PER_FRAME;
-  static constexpr uint16_t SIGN_OF_LIFE_MS = 400;
+  static constexpr uint16_t ACKNOWLEDGE_PERIOD_MS = 400;
 
   template <typename Packet>
   void queue(const Packet &packet) {
@@ -73,8 +73,8 @@ class RobotEnd {
     } while (take_frame());
     const uint16_t now = mucat::board::milliseconds();
     link_.step(now);
-    if (greeted_ && now - signed_ms_ >= SIGN_OF_LIFE_MS) {
-      signed_ms_ = now;
+    if (greeted_ && now - acknowledged_ms_ >= ACKNOWLEDGE_PERIOD_MS) {
+      acknowledged_ms_ = now;
       link_.acknowledge();
     }
   }
@@ -84,13 +84,13 @@ class RobotEnd {
     mucat::Message message;
     while (valid && link_.next(&message)) {
       handle(message);
-      // Frames that came before their turn may follow at once.
+      // Stored frames may follow at once.
       set_ready();
     }
     return valid;
   }
 
-  void set_ready() { link_.set_ready(held_ + NUMBERS_PER_FRAME <= NUMBERS_MAX); }
+  void set_ready() { link_.set_ready(stored_ + NUMBERS_PER_FRAME <= NUMBERS_MAX); }
 
   void handle(const mucat::Message &message) {
     switch (message.type) {
@@ -100,10 +100,10 @@ class RobotEnd {
         break;
       case mucat::TestMsg::kType:
         heard_ = true;
-        numbers_[(first_ + held_++) % NUMBERS_MAX] = mucat::unpack<mucat::TestMsg>(message).number;
+        numbers_[(first_ + stored_++) % NUMBERS_MAX] = mucat::unpack<mucat::TestMsg>(message).number;
         break;
       case mucat::RequestResult::kType:
-        asked_ = true;
+        requested_ = true;
         break;
       default:
         break;  // a heartbeat
@@ -113,10 +113,10 @@ class RobotEnd {
   mucat::Link link_;
   uint16_t numbers_[NUMBERS_MAX];
   uint16_t epoch_ = 0;
-  uint16_t signed_ms_ = 0;
+  uint16_t acknowledged_ms_ = 0;
   uint8_t first_ = 0;
-  uint8_t held_ = 0;
+  uint8_t stored_ = 0;
   bool greeted_ = false;
   bool heard_ = false;
-  bool asked_ = false;
+  bool requested_ = false;
 };

@@ -1,5 +1,5 @@
-// The chip's end of the line with the Arduino core's Serial, whose ring holds 63 bytes, as any sketch has it.
-// `Framing` makes messages of bytes.
+// The chip's end of the line with the Arduino core's Serial, whose ring holds 63 bytes. `Framing` makes
+// messages of bytes.
 #pragma once
 
 #include <Arduino.h>
@@ -16,10 +16,10 @@ class SerialEnd {
     Serial.begin(COMM_TEST_BAUD);
   }
 
-  // Whether the host has said anything.
+  // True if the host has sent a byte.
   bool heard() const { return heard_; }
 
-  // One message, or what there is of it.
+  // Reads one message, or the part of it that has come.
   Event receive(Counts &counts) {
     counts.ring_full += Serial.available() == RING_BYTES;
     while (Serial.available()) {
@@ -34,9 +34,9 @@ class SerialEnd {
 
   void send(uint16_t number) { Framing::send(number); }
 
-  void tell(const Counts &counts) { send_result(counts); }
+  void send_result(const Counts &counts) { ::send_result(counts); }
 
-  // Until a byte comes, and without sleeping through one that has come since the caller looked.
+  // Sleeps until a byte comes; one that came since the caller checked counts too.
   void rest() {
     noInterrupts();
     if (!Serial.available()) {
@@ -48,7 +48,7 @@ class SerialEnd {
     interrupts();
   }
 
-  // A moment of a delay. Every interrupt, the clock's millisecond too, ends it.
+  // Sleeps until the next interrupt, at most a millisecond.
   void wait() { sleep_mode(); }
 
  private:

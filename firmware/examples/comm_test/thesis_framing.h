@@ -1,5 +1,5 @@
 // The packet of the thesis (Figure 9, Table 4): ~ T D0 D1 CS0 CS1 CS2 CS3 \n, without length and stuffing.
-// The end mark alone ends a packet, wherever it stands; a start mark within one is a byte like any other.
+// The end mark ends a packet wherever it is; a start mark within a packet is an ordinary byte.
 #pragma once
 
 #include "counts.h"
@@ -53,7 +53,7 @@ class ThesisFraming {
     } else if (!checked()) {
       counts.checksum_errors++;
     } else {
-      counts.take((uint16_t)(packet_[1] << 8 | packet_[2]));
+      counts.count((uint16_t)(packet_[1] << 8 | packet_[2]));
     }
     return MESSAGE;
   }

@@ -1,5 +1,5 @@
 // The packet of the thesis's Figure 9, sent byte by byte: the checksum is the XOR of type and data, as four
-// bytes. The answer is one in both framings of the thesis.
+// bytes. The result is such a packet in both framings of the thesis.
 #pragma once
 
 #include <Arduino.h>
@@ -36,7 +36,7 @@ class PacketWriter {
   uint8_t checksum_;
 };
 
-// Hexadecimal digits, because neither mark of a packet can be among them.
+// Writes hexadecimal digits: none of them is a mark of a packet.
 inline void put_hexadecimal(PacketWriter &writer, uint16_t value) {
   for (int8_t shift = 12; shift >= 0; shift -= 4) {
     writer.put((uint8_t) "0123456789abcdef"[value >> shift & 0xf]);

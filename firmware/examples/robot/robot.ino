@@ -1,4 +1,4 @@
-// The robot's own sketch: everything happens in the library.
+// The robot's sketch; the library does everything.
 #include <mucat.h>
 
 mucat::Robot robot;

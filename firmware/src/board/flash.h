@@ -1,4 +1,4 @@
-// Constants in flash, which an AVR reads by instructions of its own; on a host they are ordinary memory.
+// Constants in flash, which an AVR reads by special instructions; on a host they are ordinary memory.
 #pragma once
 #include <stdint.h>
 
@@ -14,9 +14,9 @@ inline uint32_t pgm_read_dword(const void* at) { return *static_cast<const uint3
 
 namespace mucat {
 
-// A zero-terminated text in flash, so that it is not taken for one in RAM.
+// A zero-terminated text in flash; a type of its own, so that it is not confused with a text in RAM.
 struct FlashText {
-  // Not by braces: PSTR within braces makes avr-gcc 5.4 fail at link time.
+  // No braces: PSTR within braces makes avr-gcc 5.4 fail at link time.
   explicit FlashText(const char* text) : at(text) {}
   const char* at;
 };

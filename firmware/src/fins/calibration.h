@@ -1,4 +1,4 @@
-// What differs from robot to robot: one robot's fins.
+// Calibration of one robot's fins; it differs from robot to robot.
 #pragma once
 #include <stdint.h>
 
@@ -7,9 +7,9 @@
 namespace mucat {
 
 struct FinCalibration {
-  int16_t zero;          // encoder counts where the fin lies along its mount
-  int8_t rotation_sign;  // fin angle per shaft angle; the shaft grows under a positive drive
-  int8_t encoder_sign;   // encoder counts per shaft angle
+  int16_t zero;          // encoder counts when the fin points along its mount
+  int8_t rotation_sign;  // sign of fin angle per shaft angle; positive drive increases the shaft angle
+  int8_t encoder_sign;   // sign of encoder counts per shaft angle
 };
 
 // Front right, back right, back left, front left.

@@ -5,7 +5,9 @@
 namespace mucat {
 namespace {
 
-float limit(float value, float most) { return value > most ? most : value < -most ? -most : value; }
+float limit(float value, float maximum) {
+  return value > maximum ? maximum : value < -maximum ? -maximum : value;
+}
 
 }  // namespace
 
@@ -22,7 +24,7 @@ float FinLaw::step(const FinDemand& demand, uint16_t phase, float turn) {
   now_.direction =
       fabsf(remaining) <= turn ? demand.direction : wrap_angle(now_.direction + limit(remaining, turn));
   now_.amplitude += limit(demand.amplitude - now_.amplitude, kAmplitudePerTick);
-  // The full circle is 65536, which -32768 to 32767 covers once.
+  // A full turn is 65536, which -32768 to 32767 covers once.
   const float angle = static_cast<int16_t>(phase) * (kPi / 32768.0f);
   return wrap_angle(now_.direction + now_.amplitude / 2 * sinf(angle));
 }

@@ -11,7 +11,7 @@ namespace mucat {
 namespace {
 
 constexpr float kTipsDown = 1.57f;
-constexpr uint8_t kTicksPerQuestion = 10;
+constexpr uint8_t kTicksPerFaultRead = 10;
 
 void assign(uint8_t* bits, uint8_t index, bool on) {
   const uint8_t bit = 1 << index;
@@ -21,8 +21,7 @@ void assign(uint8_t* bits, uint8_t index, bool on) {
 }  // namespace
 
 void Fins::start() {
-  // An H-bridge keeps its command over a reset of this chip. Where motor power feeds it, it may not answer
-  // now.
+  // An H-bridge keeps its command when this chip resets. It may not answer now: motor power feeds it.
   for (uint8_t i = 0; i < kFinCount; ++i) drive_bridge(i, 0);
 }
 
@@ -48,16 +47,16 @@ void Fins::step(Motion motion, const Parameters& parameters) {
   for (uint8_t i = 0; i < kFinCount; ++i) {
     set_points_[i] = laws_[i].step(demand(i), phase_ + kFinPhase[i], turn);
     const FinCalibration& fin = kFinCalibration[i];
-    const bool blind = encoder_faults_ & 1 << i;
+    const bool encoder_failed = encoder_faults_ & 1 << i;
     const int16_t set_point = counts_from_angle(fin, set_points_[i]);
-    drive(i, blind ? 0 : loops_[i].step(fin, set_point, counts_[i], gain));
+    drive(i, encoder_failed ? 0 : loops_[i].step(fin, set_point, counts_[i], gain));
   }
-  ask_bridges();
+  read_bridge_faults();
 }
 
 FinDemand Fins::demand(uint8_t fin) const {
   if (motion_ == Motion::kDown) return {kTipsDown, 0};
-  // A fin that is to push nothing stops where it points: one commanded to turn round would go on for 0.6 s.
+  // A fin without demand stops where it points: turning it round would take another 0.6 s.
   if (motion_ == Motion::kRest || demands_[fin].amplitude == 0) return {laws_[fin].direction(), 0};
   return demands_[fin];
 }
@@ -79,7 +78,7 @@ void Fins::power(bool on) {
   for (uint8_t i = 0; i < kFinCount; ++i) {
     if (!on) drive_bridge(i, 0);
     drives_[i] = 0;
-    // Resting where they are, so that power alone moves nothing.
+    // At rest where they point, so that power alone moves nothing.
     laws_[i].start(angles_[i]);
     loops_[i].restart();
     demands_[i] = {angles_[i], 0};
@@ -88,12 +87,12 @@ void Fins::power(bool on) {
   board::set_motor_power(on);
 }
 
-// Each chip every 400 ms, so that a fault, cleared by asking, still stands in some of the ten statuses a
+// Reads each chip every 400 ms: reading clears a fault, which should be in several of the ten statuses a
 // second.
-void Fins::ask_bridges() {
-  asked_ = (asked_ + 1) % (kFinCount * kTicksPerQuestion);
-  if (asked_ % kTicksPerQuestion) return;
-  const uint8_t fin = asked_ / kTicksPerQuestion;
+void Fins::read_bridge_faults() {
+  fault_read_tick_ = (fault_read_tick_ + 1) % (kFinCount * kTicksPerFaultRead);
+  if (fault_read_tick_ % kTicksPerFaultRead) return;
+  const uint8_t fin = fault_read_tick_ / kTicksPerFaultRead;
   assign(&reported_faults_, fin, bridge_failed(fin));
 }
 

@@ -12,15 +12,15 @@ namespace mucat {
 enum class Motion : uint8_t {
   kOff,   // no drive, no motor power
   kSwim,  // flap as commanded
-  kRest,  // stop flapping, rest where the fins point
-  kDown,  // stop flapping, turn the tips down
+  kRest,  // stop flapping and rest where the fins point
+  kDown,  // stop flapping and turn the tips down
 };
 
 class Fins {
  public:
-  // Takes drive from the motors, whatever was before the start.
+  // Sets all drives to 0; they may still run from before the start.
   void start();
-  // The newest command wins; it is mixed at the next tick, for that takes 1.5 ms.
+  // The newest command counts. It is mixed at the next tick, because mixing takes 1.5 ms.
   void command(const Navigation& command) {
     command_ = command;
     mixed_ = false;
@@ -28,18 +28,18 @@ class Fins {
   // One tick of 10 ms.
   void step(Motion motion, const Parameters& parameters);
 
-  // No fin flaps, and none is commanded to.
+  // No fin flaps, and none is commanded to flap.
   bool neutral() const;
   bool powered() const { return motion_ != Motion::kOff; }
-  // Bits of SensorFault: encoders that gave nonsense, H-bridges that failed while powered.
+  // Bits of SensorFault: encoders with invalid readings, H-bridges that failed while powered.
   uint8_t faults() const;
-  // Set points, measured angles and drives for the packet; its time is that of the measurement.
+  // Writes set points, measured angles and drives into the packet; its time is that of the measurement.
   void report(Motor* packet) const;
 
  private:
   void read_encoders();
   void power(bool on);
-  void ask_bridges();
+  void read_bridge_faults();
   void drive(uint8_t fin, int8_t drive);
   FinDemand demand(uint8_t fin) const;
 
@@ -58,7 +58,7 @@ class Fins {
   uint8_t reported_faults_ = 0;
   Motion motion_ = Motion::kOff;
   uint16_t phase_ = 0;
-  uint8_t asked_ = 0;
+  uint8_t fault_read_tick_ = 0;
 };
 
 }  // namespace mucat

@@ -5,7 +5,7 @@
 namespace mucat {
 namespace {
 
-// Where a fin sits and, where it lies along its mount, which way it pushes; signs in body axes.
+// Place of a fin, and direction of its push when it points along its mount; signs in body axes.
 struct FinMount {
   int8_t forward;       // 1 at the front
   int8_t right;         // 1 on the right
@@ -20,7 +20,7 @@ constexpr FinMount kMounts[kFinCount] = {
     {1, -1, 1, 1},
 };
 
-// The part of `command` that a fin whose push has this sign can give by flapping the usual way round.
+// The part of `command` that a fin whose push has this sign can give without turning round.
 float share(int8_t command, int8_t sign) {
   const int16_t demand = static_cast<int16_t>(command) * sign;
   return demand > 0 ? demand : 0;

@@ -1,8 +1,8 @@
-// From a navigation command to what each fin is to do.
+// Turns a navigation command into a demand for each fin.
 //
 // A flapping fin pushes from tip to root: with its zero direction at 0 along its mount, at -90° down, at 90°
-// up and at 180° against its mount. So each fin's share is a vector in the plane it turns in: along its mount
-// and down. The direction of that vector is the fin's zero direction, its length the fin's amplitude.
+// up and at 180° against its mount. So each fin's share is a vector in the plane in which it turns: along its
+// mount and down. The vector's direction is the fin's zero direction, its length the fin's amplitude.
 #pragma once
 #include "packets.gen.h"
 
@@ -13,8 +13,8 @@ struct FinDemand {
   float amplitude;  // rad, peak to peak
 };
 
-// `amplitude` is what a command of 1 gives. A fin that is to push nothing keeps its direction, so that a
-// command of nought does not turn fins.
+// `amplitude` belongs to a command of 1. A fin without demand keeps its direction, so that a zero command
+// does not turn fins.
 void mix(const Navigation& command, float amplitude, FinDemand (&demands)[kFinCount]);
 
 }  // namespace mucat

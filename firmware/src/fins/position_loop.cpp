@@ -7,11 +7,11 @@
 namespace mucat {
 namespace {
 
-// A drive step for each count that the error changed in a tick keeps a motor that needs 30 ms to reach its
-// speed from overshooting, and pushes a flapping fin ahead. Within the dead zone (1°) the fin is left alone,
-// so that it does not hunt.
+// One drive step for each count that the error changed in a tick damps a motor that needs 30 ms to reach its
+// speed, and drives a flapping fin ahead. Within the dead zone (1°) the drive is 0, so that the fin does not
+// oscillate.
 constexpr int16_t kDeadZone = 3;
-// The H-bridge gives nothing below 6: from 2 on it gets that, so that a fin does not stop short.
+// The H-bridge gives nothing below 6: a drive of 2 to 5 becomes 6, so that a fin does not stop short.
 constexpr int16_t kDriveNone = 2;
 constexpr int16_t kDriveMin = 6;
 

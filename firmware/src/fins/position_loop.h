@@ -9,11 +9,11 @@ namespace mucat {
 constexpr int16_t kCountsPerTurn = 1024;
 constexpr int8_t kDriveMax = 40;
 
-// A drive step for each count of error.
+// Gain of one drive step for each count of error.
 constexpr int16_t kGainUnit = 256;
 inline int16_t gain_from_thousandths(uint16_t gain) { return gain * 32 / 125; }
 
-// Into -512 to 511.
+// The same position within -512 to 511.
 int16_t wrap_counts(int16_t counts);
 // The encoder's counts at a fin angle (rad).
 int16_t counts_from_angle(const FinCalibration& fin, float angle);
@@ -22,7 +22,7 @@ float angle_from_counts(const FinCalibration& fin, int16_t counts);
 // Controls the angle of one fin.
 class PositionLoop {
  public:
-  // Forgets how the fin moved: to be called where the loop was not stepped for a while.
+  // Resets the loop. Call it if the loop was not stepped for a while.
   void restart() { restarted_ = true; }
   // One tick: the H-bridge command, within ±kDriveMax, for these counts. `gain` is in units of kGainUnit.
   int8_t step(const FinCalibration& fin, int16_t set_point, int16_t measured, int16_t gain);

@@ -1,4 +1,4 @@
-// The rate of the serial line, and how much telemetry it carries. Set -DMUCAT_BAUD=... for another one.
+// The baud rate of the serial line. Set -DMUCAT_BAUD=... for another one.
 #pragma once
 #include <stdint.h>
 

@@ -24,7 +24,7 @@ uint8_t decode_cobs(uint8_t* bytes, uint8_t size) {
     bytes[zero_at] = 0;
     zero_at += code;
   }
-  // Every code became the zero that it stood for; the first stood for none.
+  // Every code is now the zero it replaced; the first code replaced none.
   for (uint8_t i = 1; i < size; ++i) bytes[i - 1] = bytes[i];
   return size - 1;
 }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr uint32_t kPolynomial = 0xedb88320UL;
 
-// What `bits` more zeros make of a remainder.
+// The remainder after `bits` more zeros.
 constexpr uint32_t divide(uint32_t remainder, uint8_t bits) {
   return bits == 0 ? remainder : divide(remainder >> 1 ^ (remainder & 1 ? kPolynomial : 0), bits - 1);
 }
@@ -19,8 +19,8 @@ constexpr uint32_t divide(uint32_t remainder, uint8_t bits) {
 #define MUCAT_SIXTY_FOUR(first) \
   MUCAT_SIXTEEN(first), MUCAT_SIXTEEN((first) + 16), MUCAT_SIXTEEN((first) + 32), MUCAT_SIXTEEN((first) + 48)
 
-// One entry a byte: a kilobyte of flash and 37 cycles a byte, where one a nibble would take 64 bytes and 122
-// cycles. At 250 kbaud both ways the difference is a quarter of the chip.
+// One entry for each byte: 1 kB of flash and 37 cycles a byte. One entry for each nibble would take 64 bytes
+// and 122 cycles. At 250 kbaud both ways the difference is a quarter of the chip's time.
 const uint32_t kTable[256] PROGMEM = {MUCAT_SIXTY_FOUR(0), MUCAT_SIXTY_FOUR(64), MUCAT_SIXTY_FOUR(128),
                                       MUCAT_SIXTY_FOUR(192)};
 

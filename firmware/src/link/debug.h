@@ -7,7 +7,7 @@
 
 namespace mucat {
 
-// A line in the making; what does not fit is cut.
+// Builds one line; text that does not fit is cut off.
 class DebugLine {
  public:
   explicit DebugLine(DebugLevel level);
@@ -23,7 +23,7 @@ class DebugLine {
   Debug packet_;
 };
 
-// Payload bytes of a line on the wire.
+// Bytes of the line's payload on the wire.
 uint8_t debug_bytes(const Debug& line);
 
 }  // namespace mucat

@@ -13,7 +13,7 @@ uint32_t read_u32(const uint8_t* at) {
   return value;
 }
 
-// Bytes of the message at `at`; 0 where its type is unknown or it does not fit.
+// Bytes of the message at `at`; 0 if its type is unknown or it does not fit.
 uint8_t message_bytes_at(const uint8_t* at, uint8_t available) {
   const uint8_t bytes = message_bytes(at[0], available > kTextSizeAt ? at[kTextSizeAt] : 0);
   return bytes > available ? 0 : bytes;
@@ -42,7 +42,7 @@ bool FrameDecoder::feed(uint8_t byte) {
     }
     return false;
   }
-  // Zeros in a row are no frame: a sender may put one before a frame to end whatever noise came earlier.
+  // Zeros in a row are not a frame: a sender may put one before a frame to end earlier noise.
   if (size_ == 0) return false;
   const bool valid = !oversized_ && accept();
   if (!valid) ++invalid_;
@@ -90,7 +90,7 @@ bool FrameDecoder::has(uint8_t type) const {
   return false;
 }
 
-void FrameDecoder::put_back(const uint8_t* content, uint8_t size) {
+void FrameDecoder::restore(const uint8_t* content, uint8_t size) {
   memcpy(block_, content, size);
   messages_end_ = size;
   cursor_ = kControlBytes;

@@ -9,14 +9,14 @@ constexpr uint8_t kNumberMask = 15;
 constexpr uint16_t kUnreliableMask = 4095;
 constexpr uint16_t kAcknowledgeMs = 20;
 constexpr uint16_t kFrameOverhead = kFrameBytesMax - kMessagesBytesMax;
-// No more waits than leaves within a tick, or a frame.
+// The line is idle if less waits than is sent within a tick, or less than a frame.
 constexpr uint16_t kBytesPerTick = kBaud / 1000;
-constexpr uint8_t kCalmRoom =
+constexpr uint8_t kIdleRoom =
     board::kLineRoom - (kBytesPerTick < kFrameBytesMax ? kBytesPerTick : kFrameBytesMax);
 
-// More than the ring holds, since the decoder empties it: only a main loop that stays away for as long as 255
-// bytes take on the line loses any. Four of the longest frames are under way until the word of the first is
-// back, and the fifth while that word is lost.
+// More than the ring holds, because the decoder empties it: bytes are lost only if the main loop is away for
+// the time of 255 bytes on the line. Four of the longest frames are in flight until the first is
+// acknowledged, the fifth if that acknowledgement is lost.
 constexpr uint16_t kCredit = 5 * kFrameBytesMax;
 // As in robot_runtime/link/channel.py.
 constexpr uint8_t kLimitMin = 16;
@@ -30,14 +30,14 @@ bool is_before(uint8_t order, uint8_t other) { return static_cast<int8_t>(order 
 bool Link::receive() {
   for (uint8_t byte; board::read_line(&byte);) {
     if (decoder_.feed(byte)) {
-      fresh_ = put_back_ = false;
+      in_order_ = restored_ = false;
       if (in_session()) {
-        take_acknowledgement();
-        if (decoder_.reliable()) take_number();
+        handle_acknowledgement();
+        if (decoder_.reliable()) accept_reliable_frame();
       }
       return true;
     }
-    // Ending here at every frame, valid or not, keeps a flood of bytes from holding up the main loop.
+    // Returning after every frame, valid or not, keeps a flood of bytes from blocking the main loop.
     if (byte == 0) return false;
   }
   return false;
@@ -49,8 +49,8 @@ bool Link::next(Message* message) {
       if (message->type == Hello::kType || message->type == Stop::kType) return true;
       if (!in_session()) continue;
       if (message->type == Acknowledge::kType) {
-        if (!put_back_) take_selective_acknowledgement(message->payload[0]);
-      } else if (fresh_ || !is_reliable(message->type)) {
+        if (!restored_) handle_selective_acknowledgement(message->payload[0]);
+      } else if (in_order_ || !is_reliable(message->type)) {
         return true;
       }
     }
@@ -59,8 +59,8 @@ bool Link::next(Message* message) {
 }
 
 bool Link::next_reordered() {
-  if (!fresh_ || !ready_ || !reorder_buffer_.take(expected_, &decoder_)) return false;
-  put_back_ = true;
+  if (!in_order_ || !ready_ || !reorder_buffer_.take(expected_, &decoder_)) return false;
+  restored_ = true;
   expected_ = (expected_ + 1) & kNumberMask;
   return true;
 }
@@ -97,7 +97,7 @@ void Link::set_ready(bool ready) {
   }
 }
 
-void Link::take_number() {
+void Link::accept_reliable_frame() {
   if (!acknowledge_) received_ms_ = board::milliseconds();
   acknowledge_ = true;
   if (!ready_) {
@@ -105,8 +105,8 @@ void Link::take_number() {
     return;
   }
   const uint8_t ahead = (decoder_.number() - expected_) & kNumberMask;
-  fresh_ = ahead == 0;
-  if (fresh_) {
+  in_order_ = ahead == 0;
+  if (in_order_) {
     reorder_buffer_.forget(expected_);
     expected_ = (expected_ + 1) & kNumberMask;
   } else if (ahead < kWindow && !decoder_.has(Start::kType)) {
@@ -114,7 +114,7 @@ void Link::take_number() {
   }
 }
 
-void Link::take_acknowledgement() {
+void Link::handle_acknowledgement() {
   uint8_t count = (decoder_.acknowledged() - base_) & kNumberMask;
   if (count > in_flight_) return;  // an old one
   base_ = decoder_.acknowledged();
@@ -122,7 +122,7 @@ void Link::take_acknowledgement() {
   for (uint8_t i = 0; i < count; ++i) {
     const Flight& flight = flights_[i];
     bytes += flight.bytes;
-    if (!flight.held) note_arrival(flight);
+    if (!flight.received) note_arrival(flight);
   }
   queue_.drop(bytes);
   messages_bytes_ -= bytes;
@@ -131,19 +131,19 @@ void Link::take_acknowledgement() {
   note_losses();
 }
 
-void Link::take_selective_acknowledgement(uint8_t held) {
+void Link::handle_selective_acknowledgement(uint8_t received) {
   if (decoder_.acknowledged() != base_) return;  // an old one
   for (uint8_t i = 1; i < in_flight_; ++i) {
     Flight& flight = flights_[i];
-    if (flight.held || !(held >> (i - 1) & 1)) continue;
+    if (flight.received || !(received >> (i - 1) & 1)) continue;
     note_arrival(flight);
-    flight.held = true;
+    flight.received = true;
   }
   note_losses();
 }
 
 void Link::note_arrival(const Flight& flight) {
-  // Nobody knows which of several copies arrived: the first is the safe guess.
+  // It is unknown which of several copies arrived: the first is the safe assumption.
   if (is_before(newest_order_, flight.first_order)) newest_order_ = flight.first_order;
   limit_ = limit_ + kLimitGain < kReliableMessagesBytesMax ? limit_ + kLimitGain : kReliableMessagesBytesMax;
   if (flight.order == flight.first_order) {
@@ -154,7 +154,7 @@ void Link::note_arrival(const Flight& flight) {
 void Link::note_losses() {
   for (uint8_t i = 0; i < in_flight_; ++i) {
     Flight& flight = flights_[i];
-    if (!flight.held && is_before(flight.order, newest_order_)) flight.lost = true;
+    if (!flight.received && is_before(flight.order, newest_order_)) flight.lost = true;
   }
 }
 
@@ -168,7 +168,7 @@ void Link::flush() {
   flush(key_);
 }
 
-// Tells what is held beside the messages of the frame in the making, where there is room.
+// Adds the numbers of stored frames to the frame being packed, if there is room.
 void Link::add_selective_acknowledgement() {
   if (reorder_buffer_.any() && !packer_.empty() && packer_.fits(sizeof(Acknowledge))) send(state());
 }
@@ -180,7 +180,7 @@ void Link::flush(uint32_t key) {
   } else {
     write(number_, key);
   }
-  // A dropped frame has a number too, so that the host counts it.
+  // A dropped frame uses up its number, so that the host counts it as missing.
   number_ = (number_ + 1) & kUnreliableMask;
 }
 
@@ -201,12 +201,12 @@ void Link::greet(uint16_t epoch) {
   }
 }
 
-void Link::say(DebugLine& line) {
+void Link::queue_line(DebugLine& line) {
   line.packet().time = board::microseconds();
   if (!queue_.push(Debug::kType, &line.packet(), debug_bytes(line.packet()))) ++lines_lost_;
 }
 
-bool Link::line_idle() { return board::line_room() >= kCalmRoom; }
+bool Link::line_idle() { return board::line_room() >= kIdleRoom; }
 
 void Link::step(uint16_t now_ms) {
   if (!line_idle()) return;
@@ -234,7 +234,7 @@ bool Link::repeat(uint16_t now_ms, uint16_t timeout) {
   for (uint8_t i = 0; i < in_flight_; ++i) {
     Flight& flight = flights_[i];
     const bool late = static_cast<uint16_t>(now_ms - flight.sent_ms) >= timeout;
-    if (!flight.held && (flight.lost || late)) {
+    if (!flight.received && (flight.lost || late)) {
       pack(offset, flight.bytes);
       add_selective_acknowledgement();
       flight.sent_ms = now_ms;
@@ -266,8 +266,8 @@ bool Link::start_flight(uint16_t now_ms) {
   return true;
 }
 
-// Puts the messages from there on into the frame in the making, up to that many bytes but one at least;
-// returns their bytes.
+// Packs the messages from `offset` on into the frame, up to `limit` bytes but at least one message; returns
+// their bytes.
 uint8_t Link::pack(uint8_t offset, uint8_t limit) {
   uint8_t packed = 0;
   uint8_t message[kReliableBytesMax];

@@ -1,4 +1,4 @@
-// The reliable messages that are not acknowledged yet: the only store of what is in flight.
+// Reliable messages that are not acknowledged yet; the only store of messages in flight.
 #pragma once
 #include <stdint.h>
 
@@ -11,14 +11,14 @@ class MessageQueue {
  public:
   static constexpr uint8_t kBytes = 4 * kReliableMessagesBytesMax;
 
-  // False where it has no room: nothing of the message is kept then.
+  // False if there is no room; then nothing of the message is stored.
   bool push(uint8_t type, const void* payload, uint8_t payload_size);
-  // Copies the message that starts so many bytes behind the oldest, its type first; its bytes, or 0 where
-  // there is none. It stays until drop().
+  // Copies the message at `offset` bytes after the oldest, its type first. Returns its bytes, or 0 if there
+  // is none. The message stays until drop().
   uint8_t peek(uint8_t offset, uint8_t (&message)[kReliableBytesMax]) const;
-  // Whether there is more than so many bytes, or no room for the longest message.
+  // True if more than `bytes` are stored, or the longest message has no room.
   bool more_than(uint8_t bytes) const { return used_ > bytes || kBytes - used_ <= kReliableBytesMax; }
-  // Forgets the oldest bytes, which are whole messages.
+  // Removes the oldest `bytes`, which are whole messages.
   void drop(uint8_t bytes);
 
  private:

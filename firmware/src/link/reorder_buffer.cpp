@@ -15,7 +15,7 @@ void ReorderBuffer::insert(const FrameDecoder& frame) {
 bool ReorderBuffer::take(uint8_t number, FrameDecoder* frame) {
   const uint8_t at = find(number);
   if (at == used_) return false;
-  frame->put_back(bytes_ + at + 1, bytes_[at]);
+  frame->restore(bytes_ + at + 1, bytes_[at]);
   forget(number);
   return true;
 }

@@ -19,7 +19,7 @@ class ReorderBuffer {
   uint8_t after(uint8_t expected) const;
 
  private:
-  // The RAM left beside the stack: two of the longest frames and a short one, or six short ones.
+  // The RAM that the stack leaves: two of the longest frames and a short one, or six short ones.
   static constexpr uint8_t kBytes = 158;
 
   uint8_t find(uint8_t number) const;

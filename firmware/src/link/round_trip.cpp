@@ -9,7 +9,7 @@ namespace {
 constexpr uint16_t airtime_ms(uint16_t bytes) { return bytes * 10000UL / kBaud; }
 
 constexpr uint16_t kCapMs = 100 + airtime_ms(2 * kFrameBytesMax);
-// A pause of the host's may be long; the mean must not overflow.
+// The host may pause for long; the mean must not overflow.
 constexpr uint16_t kLongestMs = 4000;
 
 }  // namespace

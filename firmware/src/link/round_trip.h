@@ -1,7 +1,7 @@
-// How long to wait for an acknowledgement (RFC 6298, in milliseconds and whole numbers): the smoothed round
-// trip and four times its deviation, capped and never doubled, and what the bytes in flight need on the line.
-// The cap is 100 ms and the airtime of two of the host's longest frames: the one that is under way when ours
-// arrives, and the one after it that acknowledges ours.
+// The retransmit timeout (RFC 6298, in milliseconds and whole numbers): the smoothed round trip plus four
+// times its deviation, capped and never doubled, plus the airtime of the bytes in flight. The cap is 100 ms
+// plus the airtime of two of the host's longest frames: the one on the line when ours arrives, and the next
+// one, which acknowledges ours.
 #pragma once
 #include <stdint.h>
 
@@ -11,7 +11,7 @@ class RoundTrip {
  public:
   void measure(uint16_t ms);
   uint16_t timeout(uint16_t bytes_in_flight) const;
-  // The same where the line would idle meanwhile: one and a half mean round trips.
+  // The timeout if the line would otherwise be idle: one and a half mean round trips.
   uint16_t stalled_timeout(uint16_t bytes_in_flight) const;
 
  private:

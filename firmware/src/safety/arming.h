@@ -1,9 +1,8 @@
-// Whether the fins may move: arming, its refusal, and what takes it away.
+// Arming, its refusal, and disarming: the conditions under which the fins may move.
 //
 // Armed only by a START that names this boot, after 500 ms of steady traffic from a host built from the same
-// packet definitions. 250 ms after the last NAVIGATION the fins are to stop; 1 s after the last valid frame
-// the board disarms; STOP disarms at once. Ages are judged at every tick, so that none can wrap around
-// unseen.
+// packet definitions. 250 ms after the last NAVIGATION the fins stop; 1 s after the last valid frame the
+// board disarms; STOP disarms at once. Every tick checks all ages, so that none can wrap around unnoticed.
 #pragma once
 #include <stdint.h>
 
@@ -22,7 +21,7 @@ class Arming {
  public:
   void begin(uint16_t epoch) { epoch_ = epoch; }
 
-  // A valid frame came, whatever is in it.
+  // Notes that a valid frame came, with any content.
   void note_reception(uint32_t now_ms);
   // The calls below return why the board disarmed, or kNone if it did not.
   Disarming greet(const Hello& hello);
@@ -31,14 +30,14 @@ class Arming {
   Disarming tick(uint32_t now_ms);
 
   Refusal start(const Start& start, uint32_t now_ms);
-  // Whether the command may be followed.
+  // True if the command may be carried out.
   bool navigate(uint32_t now_ms);
 
   bool armed() const { return armed_; }
   bool host_alive() const { return alive_; }
   bool greeted() const { return greeted_; }
   bool definitions_differ() const { return greeted_ && !agreed_; }
-  // Whether a command came lately enough to be followed.
+  // True if the last command is recent enough.
   bool commanded() const { return armed_ && commanded_; }
 
  private:

@@ -5,7 +5,7 @@
 namespace mucat {
 namespace {
 
-// The word after the leading one: D9 to D0, then these, then even parity over all sixteen.
+// The word after the leading 1: D9 to D0, then these bits, then even parity over all sixteen.
 constexpr uint16_t kOffsetDone = 1 << 5;
 constexpr uint16_t kCordicOverflow = 1 << 4;
 constexpr uint16_t kFieldOutOfRange = 3 << 1;

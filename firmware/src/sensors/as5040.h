@@ -4,8 +4,8 @@
 
 namespace mucat {
 
-// The fin's position, 0 to 1023. False, and `counts` left alone, where the chip did not answer or says that
-// its magnet is out of place.
+// Reads the fin's position, 0 to 1023. False, with `counts` unchanged, if the chip did not answer or reports
+// that its magnet is out of place.
 bool read_encoder_counts(uint8_t fin, int16_t* counts);
 
 }  // namespace mucat

@@ -5,11 +5,11 @@
 namespace mucat {
 namespace {
 
-// 1/s: gravity is believed over about a second, well above the 1.3 Hz at which the fins shake the hull.
+// 1/s: gravity corrects within about a second, much slower than the fins shake the hull (1.3 Hz).
 constexpr float kGain = 1.0f;
 // 1/s²: a steady offset of the gyroscope is found within about twenty seconds.
 constexpr float kBiasGain = 0.05f;
-// g: outside, the hull is being accelerated, and the force does not point along gravity.
+// g: outside these the hull accelerates, and the force is not along gravity.
 constexpr float kForceMin = 0.7f;
 constexpr float kForceMax = 1.3f;
 
@@ -20,14 +20,14 @@ void Attitude::update(const float (&rate)[3], const float (&force)[3], float sec
   float corrected[3];
   for (int axis = 0; axis < 3; ++axis) corrected[axis] = rate[axis] - bias_[axis];
   if (length > kForceMin && length < kForceMax) {
-    // Specific force is acceleration less gravity: at rest it points up.
+    // Specific force is acceleration minus gravity: at rest it points up.
     const float down[3] = {-force[0] / length, -force[1] / length, -force[2] / length};
     if (!levelled_) level(down);
     const float w = q_[0], x = q_[1], y = q_[2], z = q_[3];
-    const float believed[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z};
+    const float estimated[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z};
     for (int axis = 0; axis < 3; ++axis) {
       const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-      const float error = down[next] * believed[last] - down[last] * believed[next];
+      const float error = down[next] * estimated[last] - down[last] * estimated[next];
       bias_[axis] -= kBiasGain * error * seconds;
       corrected[axis] += kGain * error;
     }
@@ -35,11 +35,12 @@ void Attitude::update(const float (&rate)[3], const float (&force)[3], float sec
   turn(corrected, seconds);
 }
 
-// Roll and pitch from gravity at once, yaw 0: the shortest turn that brings `down` onto the world's down.
+// Sets roll and pitch from gravity at once, yaw 0: the shortest turn that brings `down` onto the world's
+// down.
 void Attitude::level(const float (&down)[3]) {
   levelled_ = true;
   const float w = 1 + down[2];
-  // Upside down there is no shortest turn; a roll of 180° is as good as any.
+  // Upside down there is no shortest turn; it takes a roll of 180°.
   const float found[4] = {w, down[1], -down[0], 0};
   const float length = sqrtf(w * w + found[1] * found[1] + found[2] * found[2]);
   for (int i = 0; i < 4; ++i) q_[i] = length > 1e-3f ? found[i] / length : i == 1;

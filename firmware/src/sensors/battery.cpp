@@ -7,7 +7,7 @@ constexpr uint32_t kFullScaleMillivolts = 2 * 5000UL;
 constexpr uint16_t kCountsMax = 1023;
 
 // Below this no battery is connected to the divider: the chip itself would not run on it.
-constexpr uint16_t kSensedMillivolts = 3000;
+constexpr uint16_t kConnectedMillivolts = 3000;
 constexpr uint32_t kAlarmMs = 20000;
 
 }  // namespace
@@ -17,7 +17,7 @@ uint16_t battery_millivolts(uint16_t counts) {
 }
 
 bool BatteryAlarm::update(uint16_t millivolts, uint16_t alarm_millivolts, uint32_t now_ms) {
-  const bool low = millivolts < alarm_millivolts && millivolts >= kSensedMillivolts;
+  const bool low = millivolts < alarm_millivolts && millivolts >= kConnectedMillivolts;
   if (low && !low_) since_ms_ = now_ms;
   low_ = low;
   if (on_ || !low || now_ms - since_ms_ < kAlarmMs) return false;

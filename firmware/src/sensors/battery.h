@@ -7,8 +7,8 @@ namespace mucat {
 // mV from the converter's counts (0 to 1023 for 5 V) behind a divider of two equal resistors.
 uint16_t battery_millivolts(uint16_t counts);
 
-// Below a voltage for 20 s: alarm, until the next reset, for a flat battery recovers as soon as nothing draws
-// on it.
+// Alarm after 20 s below a voltage. It stays until the next reset, because a flat battery recovers without
+// load.
 class BatteryAlarm {
  public:
   // True once, when the alarm begins.

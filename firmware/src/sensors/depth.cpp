@@ -7,10 +7,10 @@ namespace {
 
 // Pa per m: fresh water of 1000 kg/m³, 9.81 m/s².
 constexpr int32_t kPressurePerMetre = 9810;
-// Pa: the air between a high mountain and the deepest low is within these.
+// Pa: range of air pressure, from a high mountain to a strong high.
 constexpr int32_t kSurfaceMin = 50000;
 constexpr int32_t kSurfaceMax = 120000;
-// Pa: 32 m, where a depth of 16 bits ends.
+// Pa: 32 m, the limit of a depth of 16 bits.
 constexpr int32_t kAboveMax = 32 * kPressurePerMetre;
 
 bool plausible(int32_t pressure) { return pressure >= kSurfaceMin && pressure <= kSurfaceMax; }

@@ -4,16 +4,17 @@
 
 namespace mucat {
 
-// The pressure at the surface: the mean of the first readings after power-on, retained over every other
-// reset, so that a restart under water does not move the surface.
+// The pressure at the surface: the mean of the first readings after power-on. Every other reset keeps it, so
+// that a restart under water does not move the surface.
 class Surface {
  public:
-  // Takes the retained pressure, unless this is a power-on or it is implausible.
+  // Restores the pressure from before the reset, unless this is a power-on or it is implausible.
   void start(bool power_on);
   bool known() const { return readings_ == kReadings; }
-  // A reading (Pa) at the surface; ignored once the surface is known.
+  // Adds a reading (Pa) at the surface, until the surface is known. The last one stores the mean in memory
+  // that survives a reset.
   void add(int32_t pressure);
-  // m, downwards, as a count of 1 mm; only once the surface is known.
+  // Depth in mm, downwards; only once the surface is known.
   int16_t depth(int32_t pressure) const;
 
  private:

@@ -10,7 +10,7 @@ constexpr uint8_t kAddresses[kFinCount] = {0x64, 0x60, 0x61, 0x63};
 constexpr uint8_t kControl = 0x00;
 constexpr uint8_t kForward = 1 << 0;
 constexpr uint8_t kReverse = 1 << 1;
-constexpr uint8_t kLeastVoltage = 6;
+constexpr uint8_t kVoltageMin = 6;
 
 constexpr uint8_t kFault = 0x01;
 constexpr uint8_t kAnyFault = 1 << 0;
@@ -20,7 +20,7 @@ constexpr uint8_t kClear = 1 << 7;
 
 bool drive_bridge(uint8_t fin, int8_t drive) {
   const uint8_t voltage = drive < 0 ? -drive : drive;
-  const uint8_t control = voltage < kLeastVoltage ? 0 : voltage << 2 | (drive < 0 ? kReverse : kForward);
+  const uint8_t control = voltage < kVoltageMin ? 0 : voltage << 2 | (drive < 0 ? kReverse : kForward);
   const uint8_t message[] = {kControl, control};
   return board::exchange_i2c(kAddresses[fin], message, sizeof message, nullptr, 0);
 }

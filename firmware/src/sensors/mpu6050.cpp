@@ -15,14 +15,14 @@ struct Setting {
   uint8_t value;
 };
 constexpr Setting kSettings[] = {
-    {0x6B, 0x01},  // PWR_MGMT_1: awake, clock from the gyroscope, which is steadier than the chip's own
+    {0x6B, 0x01},  // PWR_MGMT_1: awake, clock from the gyroscope, more stable than the internal one
     {0x19, 0x00},  // SMPLRT_DIV: 1 kHz, so that a reading is at most 1 ms old
     {0x1A, 0x03},  // CONFIG: low-pass 44 Hz, below half of the 100 Hz at which it is read
     {0x1B, 0x08},  // GYRO_CONFIG: ±500 °/s
     {0x1C, 0x08},  // ACCEL_CONFIG: ±4 g
 };
 
-// Ticks: the gyroscope needs 30 ms to start after waking; a missing chip is asked again ten times a second.
+// Ticks: the gyroscope needs 30 ms to start after waking; a missing chip is tried again ten times a second.
 constexpr uint8_t kSettle = 5;
 constexpr uint8_t kRetry = 10;
 

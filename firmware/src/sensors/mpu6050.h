@@ -15,7 +15,7 @@ struct ImuReading {
 
 class Mpu6050 {
  public:
-  // Call every tick: sets the chip up when it (re)appears and reads it. True where `reading` is new.
+  // Call every tick: sets the chip up when it (re)appears and reads it. True if `reading` is new.
   bool step(ImuReading* reading);
   bool faulty() const { return faulty_; }
 

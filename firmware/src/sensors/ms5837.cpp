@@ -9,8 +9,8 @@ constexpr uint8_t kAddress = 0x76;
 constexpr uint8_t kReset = 0x1E;
 constexpr uint8_t kReadProm = 0xA0;
 constexpr uint8_t kReadConversion = 0x00;
-// 2048 samples take 4.6 ms, which fits a tick whenever in it the conversion starts; 4096 take 9.1 ms and
-// would not. The resolution is 4 mm of water.
+// 2048 samples take 4.6 ms, which fits into a tick wherever in it the conversion starts; 4096 would take 9.1
+// ms. The resolution is 4 mm of water.
 constexpr uint8_t kConvertPressure = 0x46;
 constexpr uint8_t kConvertTemperature = 0x56;
 
@@ -20,8 +20,8 @@ bool command(uint8_t byte) { return board::exchange_i2c(kAddress, &byte, 1, null
 
 }  // namespace
 
-// The four-bit CRC of AN520 (TE Connectivity), polynomial x^4 + x + 1, kept in the first word's upper four
-// bits.
+// The four-bit CRC of AN520 (TE Connectivity), polynomial x^4 + x + 1, in the upper four bits of the first
+// word.
 bool prom_valid(const uint16_t (&prom)[kPromWords]) {
   uint16_t remainder = 0;
   for (uint8_t byte = 0; byte < 16; ++byte) {
@@ -115,7 +115,7 @@ bool Ms5837::take_conversion(uint32_t* counts) {
   if (!command(kReadConversion) || !board::exchange_i2c(kAddress, nullptr, 0, bytes, sizeof bytes))
     return false;
   *counts = static_cast<uint32_t>(bytes[0]) << 16 | static_cast<uint16_t>(bytes[1]) << 8 | bytes[2];
-  // The chip answers 0 where no conversion was ready.
+  // The chip answers 0 if no conversion was ready.
   return *counts != 0;
 }
 

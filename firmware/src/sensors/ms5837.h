@@ -11,7 +11,7 @@ struct PressureReading {
 
 constexpr uint8_t kPromWords = 7;
 
-// Whether the PROM's own checksum holds.
+// True if the PROM's checksum is right.
 bool prom_valid(const uint16_t (&prom)[kPromWords]);
 // Pressure and temperature from the PROM and the two conversions, with second-order compensation.
 PressureReading compensate(const uint16_t (&prom)[kPromWords], uint32_t d1, uint32_t d2);
@@ -19,7 +19,7 @@ PressureReading compensate(const uint16_t (&prom)[kPromWords], uint32_t d1, uint
 // Steps through reset, PROM and conversions, one each tick; never waits for one.
 class Ms5837 {
  public:
-  // Call every tick of 10 ms. True, every other tick, where `reading` is new.
+  // Call every tick of 10 ms. True, every other tick, if `reading` is new.
   bool step(PressureReading* reading);
   bool faulty() const { return faulty_; }
 

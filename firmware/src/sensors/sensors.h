@@ -1,4 +1,4 @@
-// Everything that is measured but the fins: read in turn, once a tick.
+// All sensors but the fins' encoders, read once a tick.
 #pragma once
 #include <stdint.h>
 
@@ -14,10 +14,11 @@ namespace mucat {
 class Sensors {
  public:
   void start(bool power_on) { surface_.start(power_on); }
-  // Call every tick; `ticks` have passed since the last call. The surface is only sought while `at_surface`.
+  // Call every tick; `ticks` have passed since the last call. The surface is measured only while
+  // `at_surface`.
   void step(uint8_t ticks, bool at_surface);
 
-  // Whether there is a reading that was not taken yet; takes it.
+  // Takes the newest reading; false if there is no new one.
   bool take(Imu* packet);
   bool take(Depth* packet);
   void read(Beacon* packet) const;

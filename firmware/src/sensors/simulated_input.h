@@ -1,5 +1,5 @@
 // Sensor readings from a simulator. The robot has sensors of its own and ignores them; the firmware for
-// hardware in the loop (firmware/hil) has nothing else.
+// hardware in the loop (firmware/hil) has no others.
 #pragma once
 #include "packets.gen.h"
 

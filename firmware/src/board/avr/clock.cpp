@@ -47,7 +47,7 @@ uint8_t take_ticks() {
 void rest() {
   set_sleep_mode(SLEEP_MODE_IDLE);
   cli();
-  // A tick between the look and the sleep would be slept over, were interrupts not held back until then.
+  // Interrupts are off from this check to the sleep: a tick in between would not wake the chip.
   if (ticks == 0) {
     sleep_enable();
     sei();

@@ -1,4 +1,4 @@
-// The boot counter in EEPROM: the one memory that outlives a power cycle. Its cells stand 100,000 boots.
+// The boot counter in EEPROM, which survives a power cycle. Its cells last for 100,000 boots.
 #ifdef __AVR__
 #include <avr/eeprom.h>
 

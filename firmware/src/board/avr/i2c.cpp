@@ -1,6 +1,6 @@
 // I2C at 400 kHz, polled. Every wait is bounded: a byte takes 23 us, and after 100 us the bus counts as
-// stuck. Polled because a transfer is short and the caller needs its result; the Wire library waits without
-// end.
+// stuck. Polled because a transfer is short and the caller needs its result; the Wire library may wait for
+// ever.
 #ifdef __AVR__
 #include <avr/io.h>
 #include <util/delay.h>
@@ -14,12 +14,12 @@ namespace board {
 namespace {
 
 constexpr uint32_t kClockHz = 400000;
-// A pass of the waiting loops takes 8 cycles or more: 200 of them are at least 100 us.
-constexpr uint8_t kPatience = 200;
+// A pass of a waiting loop takes 8 cycles or more: 200 of them are at least 100 us.
+constexpr uint8_t kPassesMax = 200;
 
 bool wait_for(uint8_t control) {
   TWCR = control | _BV(TWINT) | _BV(TWEN);
-  for (uint8_t remaining = kPatience; remaining; --remaining) {
+  for (uint8_t remaining = kPassesMax; remaining; --remaining) {
     if (TWCR & _BV(TWINT)) return true;
   }
   return false;
@@ -35,14 +35,14 @@ bool send_address(uint8_t address_and_direction) {
 
 bool stop() {
   TWCR = _BV(TWINT) | _BV(TWSTO) | _BV(TWEN);
-  for (uint8_t remaining = kPatience; remaining; --remaining) {
+  for (uint8_t remaining = kPassesMax; remaining; --remaining) {
     if (!(TWCR & _BV(TWSTO))) return true;
   }
   return false;
 }
 
-// A device that was cut off within a byte holds SDA down until it has been clocked out of it: at most nine
-// clocks, then a stop. The pins are pulled up from outside, so they are only ever pulled down here.
+// A device that was interrupted within a byte holds SDA down until it has got the byte's remaining clocks: at
+// most nine, then a stop. External resistors pull the pins up; the chip only pulls them down.
 void recover() {
   TWCR = 0;
   PORTC &= static_cast<uint8_t>(~(_BV(PC4) | _BV(PC5)));
@@ -86,9 +86,9 @@ void start_i2c() {
 
 bool exchange_i2c(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t* in, uint8_t in_size) {
   const bool done = transfer(address, out, out_size, in, in_size);
-  // TWINT is clear where a wait ran out; a stop would never get onto the bus then.
-  const bool waiting = !(TWCR & _BV(TWINT));
-  if (waiting || !stop()) {
+  // TWINT is clear after a timeout; a stop would never get onto the bus then.
+  const bool timed_out = !(TWCR & _BV(TWINT));
+  if (timed_out || !stop()) {
     recover();
     return false;
   }

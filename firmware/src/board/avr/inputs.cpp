@@ -1,4 +1,4 @@
-// Battery converter (A2), beacon detectors (D4, D5).
+// The battery's converter (A2) and the beacon detectors (D4, D5).
 #ifdef __AVR__
 #include <avr/io.h>
 

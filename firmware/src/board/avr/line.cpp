@@ -1,5 +1,5 @@
 // The serial line by interrupts. The core's Serial is not used: its rings hold 64 bytes, which is 2.5 ms at
-// 250 kbaud, and it hides what it loses. With rings of 256 bytes an index wraps by itself.
+// 250 kbaud, and it does not count the bytes it loses. The index of a ring of 256 bytes wraps by itself.
 #ifdef __AVR__
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -14,7 +14,7 @@ namespace board {
 namespace {
 
 constexpr uint32_t divisor(uint8_t samples) { return (F_CPU + samples * kBaud / 2) / (samples * kBaud) - 1; }
-// Thousandths by which the chip's rate differs from the wanted one.
+// Deviation of the chip's rate from kBaud, in thousandths.
 constexpr int32_t rate_error(uint8_t samples) {
   return static_cast<int32_t>(F_CPU / (samples * (divisor(samples) + 1)) * 1000 / kBaud) - 1000;
 }
@@ -30,14 +30,14 @@ volatile uint8_t received_head;
 volatile uint8_t received_tail;
 volatile uint16_t lost;
 
-uint8_t waiting[256];
-volatile uint8_t waiting_head;
-volatile uint8_t waiting_tail;
+uint8_t outgoing[256];
+volatile uint8_t outgoing_head;
+volatile uint8_t outgoing_tail;
 
 }  // namespace
 
 ISR(USART_RX_vect) {
-  // The overrun flag belongs to the byte in UDR0 and goes when that is read.
+  // The overrun flag belongs to the byte in UDR0; reading that clears it.
   const bool overrun = UCSR0A & _BV(DOR0);
   const uint8_t byte = UDR0;
   const uint8_t next = received_head + 1;
@@ -51,8 +51,8 @@ ISR(USART_RX_vect) {
 }
 
 ISR(USART_UDRE_vect) {
-  UDR0 = waiting[waiting_tail];
-  if (++waiting_tail == waiting_head) UCSR0B &= static_cast<uint8_t>(~_BV(UDRIE0));
+  UDR0 = outgoing[outgoing_tail];
+  if (++outgoing_tail == outgoing_head) UCSR0B &= static_cast<uint8_t>(~_BV(UDRIE0));
 }
 
 void start_line() {
@@ -69,13 +69,13 @@ bool read_line(uint8_t* byte) {
   return true;
 }
 
-uint8_t line_room() { return waiting_tail - waiting_head - 1; }
+uint8_t line_room() { return outgoing_tail - outgoing_head - 1; }
 
 void write_line(const uint8_t* bytes, uint8_t size) {
-  uint8_t head = waiting_head;
-  while (size--) waiting[head++] = *bytes++;
+  uint8_t head = outgoing_head;
+  while (size--) outgoing[head++] = *bytes++;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-    waiting_head = head;
+    outgoing_head = head;
     UCSR0B |= _BV(UDRIE0);
   }
 }

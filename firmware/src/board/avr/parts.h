@@ -1,4 +1,4 @@
-// What board::start() calls, in its order.
+// The start functions that board::start() calls, in this order.
 #pragma once
 
 namespace mucat {

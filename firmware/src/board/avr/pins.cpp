@@ -1,4 +1,4 @@
-// LED (A1), motor power (A3), and how the inputs are set up (inputs.cpp).
+// LED (A1), motor power (A3), and the set-up of the inputs (inputs.cpp).
 #ifdef __AVR__
 #include <avr/io.h>
 

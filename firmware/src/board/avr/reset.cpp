@@ -1,4 +1,4 @@
-// What happens around a reset: why it came, safe outputs, the watchdog, memory that outlives it.
+// Resets: their cause, safe outputs, the watchdog, and memory that survives them.
 #ifdef __AVR__
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -15,17 +15,17 @@ namespace {
 __attribute__((section(".noinit"))) uint8_t reset_flags;
 __attribute__((section(".noinit"))) RetainedMemory retained;
 
-constexpr uint8_t kPaint = 0xC5;
+constexpr uint8_t kUnusedStack = 0xC5;
 
 }  // namespace
 
 extern "C" {
 extern uint8_t _end;
 
-// Runs before the C runtime sets up memory. Motor power off is the first thing that happens. The watchdog
-// stays on after it has bitten, at its shortest time, so it is set anew at once. A bootloader clears MCUSR
-// and leaves its value in r2. Painting the free memory here lets stack_free() see the deepest the stack ever
-// was.
+// Runs before the C runtime sets up memory. First it switches the motor power off. After a watchdog reset the
+// watchdog stays on with its shortest timeout, so it is set again at once. A bootloader clears MCUSR and
+// leaves its value in r2. The free memory is filled with a pattern, so that stack_free() finds the deepest
+// use of the stack.
 __attribute__((naked, used, section(".init3"))) void mucat_early_start(void) {
   PORTC &= static_cast<uint8_t>(~_BV(PC3));
   DDRC |= _BV(PC3);
@@ -35,7 +35,7 @@ __attribute__((naked, used, section(".init3"))) void mucat_early_start(void) {
   reset_flags = flags ? flags : from_bootloader;
   MCUSR = 0;
   wdt_enable(WDTO_250MS);
-  for (uint8_t* at = &_end; at <= reinterpret_cast<uint8_t*>(RAMEND - 16); ++at) *at = kPaint;
+  for (uint8_t* at = &_end; at <= reinterpret_cast<uint8_t*>(RAMEND - 16); ++at) *at = kUnusedStack;
 }
 }
 
@@ -51,8 +51,7 @@ void start() {
 ResetCause reset_cause() {
   if (reset_flags & _BV(PORF)) return ResetCause::kPowerOn;
   if (reset_flags & _BV(BORF)) return ResetCause::kBrownOut;
-  // Before the watchdog's: after the reset pin, a bootloader starts the sketch by a watchdog reset of its
-  // own.
+  // Checked before the watchdog: after the reset pin, a bootloader starts the sketch by a watchdog reset.
   if (reset_flags & _BV(EXTRF)) return ResetCause::kExternal;
   if (reset_flags & _BV(WDRF)) return ResetCause::kWatchdog;
   return ResetCause::kUnknown;
@@ -64,7 +63,7 @@ RetainedMemory& retained_memory() { return retained; }
 
 uint16_t stack_free() {
   const uint8_t* at = &_end;
-  while (*at == kPaint && at < reinterpret_cast<uint8_t*>(SP)) ++at;
+  while (*at == kUnusedStack && at < reinterpret_cast<uint8_t*>(SP)) ++at;
   return at - &_end;
 }
 

@@ -26,7 +26,7 @@ void start_spi() {
   PORTD |= _BV(PD7);
   DDRD |= _BV(PD7);
   PORTB |= _BV(PB0) | _BV(PB1) | _BV(PB2);
-  // The pull-up on MISO (D12) makes a missing encoder read as ones, which its checks refuse.
+  // The pull-up on MISO (D12) makes a missing encoder read as ones, which the driver refuses.
   PORTB |= _BV(PB4);
   DDRB |= _BV(PB0) | _BV(PB1) | _BV(PB2) | _BV(PB3) | _BV(PB5);
   SPCR = _BV(SPE) | _BV(MSTR) | _BV(CPOL) | _BV(CPHA) | _BV(SPR0);
@@ -35,7 +35,7 @@ void start_spi() {
 
 void read_encoder(uint8_t fin, uint8_t (&bytes)[kEncoderBytes]) {
   select(fin, true);
-  // The AS5040 wants 500 ns between its select and the first clock.
+  // The AS5040 needs 500 ns between its select and the first clock.
   _delay_us(1);
   for (uint8_t& byte : bytes) {
     SPDR = 0;
