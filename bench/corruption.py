@@ -1,4 +1,4 @@
-"""Corrupted frames through the chip's decoder and the host's: how many were believed."""
+"""Corrupted frames that the chip's decoder and the host's accept."""
 
 from tests.proofs.corruption import Counts, measure_all
 
@@ -6,7 +6,7 @@ _FRAMES = 10_500_000
 
 
 def measure() -> dict[str, float]:
-    """Frames that were corrupted on both ways together, and those of them that were believed."""
+    """Corrupted frames of both decoders together, and those that were accepted."""
     counts = sum(measure_all(_FRAMES).values(), Counts())
     return {
         "link.corrupted_frames": counts.corrupted,

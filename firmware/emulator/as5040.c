@@ -24,7 +24,7 @@ void as5040_select(struct as5040 *encoder, bool selected) {
   encoder->selected = selected;
 }
 
-// An encoder that is not there leaves the line to its pull-up.
+// Without an encoder the pull-up holds the line high.
 uint8_t as5040_exchange(struct as5040 *encoder) {
   if (encoder->fault == FAULT_ABSENT) {
     return 0xff;

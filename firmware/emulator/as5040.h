@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // ams AS5040: a 10-bit magnetic encoder, read through its synchronous serial interface.
 //
-// The data line is high from chip select to the clock's first rising edge, so that a master that samples
+// The data line is high from chip select to the first rising edge of the clock. So a master that samples on
 // rising edges (SPI mode 3) reads a 1 and then the word: D9 to D0, OCF, COF, LIN, MagINC, MagDEC, even
 // parity.
 #ifndef AS5040_H
@@ -15,7 +15,7 @@
 
 struct as5040 {
   unsigned position;  // ticks
-  uint32_t shift;     // what has still to go out, from the uppermost bit
+  uint32_t shift;     // bits still to send, the uppermost first
   bool selected;
   enum fault fault;
 };

@@ -42,13 +42,13 @@ bool board_create(struct board *board, struct pty *pty) {
   return true;
 }
 
-bool board_renew(struct board *board) {
+bool board_power_cycle(struct board *board) {
   struct board before = *board;
   if (!board_create(board, before.pty)) {
     return false;
   }
-  chip_inherit(&board->chip, &before.chip);
-  eeprom_inherit(&board->eeprom, &before.eeprom);
+  chip_copy_flash(&board->chip, &before.chip);
+  eeprom_copy(&board->eeprom, &before.eeprom);
   chip_remove(&before.chip);
   board_set_surroundings(board, &before.devices.surroundings);
   return true;
@@ -56,5 +56,5 @@ bool board_renew(struct board *board) {
 
 void board_set_surroundings(struct board *board, const struct surroundings *surroundings) {
   board->devices.surroundings = *surroundings;
-  pins_show(&board->pins);
+  pins_update_inputs(&board->pins);
 }

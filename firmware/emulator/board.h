@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board: the chip, everything that hangs on it, and the serial line to the host.
+// The board: the chip, everything connected to it, and the serial line to the host.
 #ifndef BOARD_H
 #define BOARD_H
 
@@ -28,9 +28,9 @@ struct board {
 // A board without a program, in still water.
 bool board_create(struct board *board, struct pty *pty);
 
-// Takes the power away and gives it back: everything is as after `board_create`, the chip's time too, but for
-// flash memory, EEPROM and surroundings. The reset is the caller's, as is what hangs on the chip's timers.
-bool board_renew(struct board *board);
+// Switches the power off and on. Everything is as after `board_create`, the chip's time too, except flash
+// memory, EEPROM and surroundings. The caller resets the chip and restarts what uses the chip's timers.
+bool board_power_cycle(struct board *board);
 
 void board_set_surroundings(struct board *board, const struct surroundings *surroundings);
 

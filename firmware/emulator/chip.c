@@ -14,7 +14,7 @@
 
 #include "hex.h"
 
-// libsimavr looks at its timers at least this often, in cycles; a reset makes it forget the number.
+// Cycles after which libsimavr checks its timers at the latest; a reset clears this number.
 #define RUN_CYCLES_MAX 16000
 
 #define BOOT_SECTION_MIN 512  // bytes; the fuses BOOTSZ choose one of four sizes
@@ -24,7 +24,7 @@ static void log_nothing(avr_t *avr, const int level, const char *format, va_list
   (void)avr, (void)level, (void)format, (void)arguments;
 }
 
-// Emulated time jumps over sleep; waiting is for whoever paces the chip.
+// Emulated time skips the chip's sleep; the caller paces the chip.
 static void sleep_without_waiting(avr_t *avr, avr_cycle_count_t cycles) { (void)avr, (void)cycles; }
 
 static void timer_fired(struct chip_timer *timer) {
@@ -44,7 +44,7 @@ static void register_timer(struct chip_timer *timer) {
   avr_cycle_timer_register(avr, delay, on_timer, timer);
 }
 
-// Called by libsimavr in the midst of every reset, right after it has dropped all timers.
+// Called by libsimavr within every reset, right after it has dropped all timers.
 static void on_reset(avr_t *avr) {
   struct chip *chip = avr->custom.data;
   if (chip->core_reset) {
@@ -72,7 +72,7 @@ static void finish_reset(struct chip *chip) {
 }
 
 static void on_run_end(void *owner) {
-  (void)owner;  // it only keeps libsimavr from running or sleeping past this cycle
+  (void)owner;  // the timer only stops libsimavr from running or sleeping past this cycle
 }
 
 bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owner) {
@@ -99,7 +99,7 @@ void chip_remove(struct chip *chip) {
   free(chip->avr);
 }
 
-void chip_inherit(struct chip *chip, const struct chip *other) {
+void chip_copy_flash(struct chip *chip, const struct chip *other) {
   memcpy(chip->avr->flash, other->avr->flash, other->avr->flashend + 1);
   chip->avr->reset_pc = other->avr->reset_pc;
 }
@@ -121,7 +121,7 @@ static bool check_elf(const char *path, char *reason, size_t size) {
   return true;
 }
 
-// All of the flash memory but for the boot loader's section.
+// The flash memory without the boot loader's section.
 static uint32_t application_size(const struct chip *chip) {
   return chip->avr->reset_pc ? chip->avr->reset_pc : chip->avr->flashend + 1;
 }
@@ -141,7 +141,7 @@ bool chip_load(struct chip *chip, const char *elf_path, char *reason, size_t rea
   if (fits) {
     memset(avr->flash, 0xff, room);
     firmware.frequency = CHIP_FREQUENCY;
-    firmware.eesize = 0;  // an upload leaves the EEPROM alone
+    firmware.eesize = 0;  // an upload does not change the EEPROM
     avr_load_firmware(avr, &firmware);
   } else {
     snprintf(reason, reason_size, "%s reaches up to 0x%04x; programs have the flash memory below 0x%04x",
@@ -178,9 +178,9 @@ void chip_reset(struct chip *chip, enum chip_reset_cause cause) {
   finish_reset(chip);
 }
 
-// A chip that sleeps with interrupts off, or has run into garbage, can only be woken by a reset, and the
-// watchdog may still bring one: time goes on without instructions.
-static void stand_still(avr_t *avr) {
+// Only a reset wakes a chip that sleeps with interrupts off or has crashed, and the watchdog may still cause
+// one. So time passes without instructions.
+static void skip_instructions(avr_t *avr) {
   avr_cycle_timer_slot_p next = avr->cycle_timers.timer;
   avr->cycle = next && next->when > avr->cycle ? next->when : avr->cycle + 1;
 }
@@ -195,7 +195,7 @@ void chip_run(struct chip *chip, avr_cycle_count_t until) {
     if (chip->was_reset) {
       finish_reset(chip);
     } else if (state == cpu_Done || state == cpu_Crashed) {
-      stand_still(avr);
+      skip_instructions(avr);
       chip->crashes += state == cpu_Crashed && !crashed;
     }
     crashed = state == cpu_Crashed;
@@ -232,7 +232,7 @@ static void on_write(avr_t *avr, avr_io_addr_t address, uint8_t value, void *par
   hook->after(hook->owner, value);
 }
 
-// libsimavr's own way of sharing a register ends after four registers.
+// libsimavr itself can share at most four registers.
 void chip_hook_write(struct chip *chip, avr_io_addr_t address, struct chip_write_hook *hook,
                      void (*after)(void *owner, uint8_t value), void *owner) {
   avr_io_addr_t io = AVR_DATA_TO_IO(address);

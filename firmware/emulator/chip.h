@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The microcontroller: libsimavr's ATmega328P, with what libsimavr 1.6 gets wrong put right.
+// The microcontroller: libsimavr's ATmega328P, with the errors of libsimavr 1.6 corrected.
 //
-// A reset, the watchdog's included, makes libsimavr forget all its timers, so everything that belongs to the
-// world outside the chip keeps time with the timers of this file, which survive.
+// A reset, the watchdog's included, drops all of libsimavr's timers. So everything outside the chip uses the
+// timers of this file, which survive a reset.
 #ifndef CHIP_H
 #define CHIP_H
 
@@ -23,7 +23,7 @@ struct chip_timer {
   struct chip_timer *next;
 };
 
-// Something to do after the chip's program has written to a register.
+// An action after the chip's program has written to a register.
 struct chip_write_hook {
   avr_io_write_t inner;
   void *inner_param;
@@ -48,23 +48,23 @@ struct chip {
 // `after_reset` is called after every reset, before the first instruction.
 bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owner);
 
-// Frees what `chip_create` has made.
+// Frees everything that `chip_create` allocated.
 void chip_remove(struct chip *chip);
 
-// Takes over what is in the other's flash memory, the boot loader and its fuses too.
-void chip_inherit(struct chip *chip, const struct chip *other);
+// Copies the other's flash memory, the boot loader and its fuses too.
+void chip_copy_flash(struct chip *chip, const struct chip *other);
 
-// Puts a program into the flash memory, and leaves a boot loader there; the reset is the caller's. False with
-// a reason where it cannot.
+// Writes a program into the flash memory; a boot loader stays. The caller resets the chip. False with a
+// reason on failure.
 bool chip_load(struct chip *chip, const char *elf_path, char *reason, size_t reason_size);
 
-// Puts a boot loader at the end of the flash memory and sets the fuses BOOTSZ and BOOTRST accordingly: from
-// now on the chip starts with it. False with a reason where it is none.
+// Writes a boot loader to the end of the flash memory and sets the fuses BOOTSZ and BOOTRST: from now on the
+// chip starts with it. False with a reason if the file is not a boot loader.
 bool chip_load_bootloader(struct chip *chip, const char *hex_path, char *reason, size_t reason_size);
 
 void chip_reset(struct chip *chip, enum chip_reset_cause cause);
 
-// Runs to this cycle (give or take one instruction), or until a timer calls `chip_interrupt`.
+// Runs to this cycle (to within one instruction), or until a timer calls `chip_interrupt`.
 void chip_run(struct chip *chip, avr_cycle_count_t until);
 void chip_interrupt(struct chip *chip);
 
@@ -82,7 +82,7 @@ void chip_hook_write(struct chip *chip, avr_io_addr_t address, struct chip_write
 // libsimavr's module of this kind, such as "uart".
 void *chip_module(const struct chip *chip, const char *kind);
 
-// The timer that libsimavr itself keeps for one of its modules, or NULL.
+// libsimavr's own timer for one of its modules, or NULL.
 avr_cycle_timer_slot_p chip_module_timer(const struct chip *chip, const void *module);
 
 #endif

@@ -16,14 +16,14 @@ static bool in_use(const struct sockaddr_un *address) {
   return answered;
 }
 
-// Takes away what a board left that was killed, and nothing else.
+// Removes the socket of a board that was killed, and nothing else.
 static bool clear_path(const struct sockaddr_un *address, char *reason, size_t size) {
   struct stat status;
   if (lstat(address->sun_path, &status)) {
     return true;
   }
   if (!S_ISSOCK(status.st_mode)) {
-    snprintf(reason, size, "%s is in the way: it is not a socket", address->sun_path);
+    snprintf(reason, size, "%s exists and is not a socket", address->sun_path);
     return false;
   }
   if (in_use(address)) {
@@ -59,10 +59,10 @@ bool clients_listen(struct clients *clients, const char *path, char *reason, siz
   return true;
 }
 
-static void send_away(struct clients *clients, struct client *client) {
+static void disconnect(struct clients *clients, struct client *client) {
   close(client->socket);
   client->socket = -1;
-  clients->on_gone(clients->owner, client);
+  clients->on_disconnect(clients->owner, client);
 }
 
 void clients_close(struct clients *clients) {
@@ -82,7 +82,7 @@ void clients_watch(const struct clients *clients, struct pollfd *polls) {
   polls[CLIENTS_MAX] = (struct pollfd){.fd = clients->listener, .events = POLLIN};
 }
 
-static void welcome(struct clients *clients) {
+static void accept_client(struct clients *clients) {
   int socket = accept4(clients->listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (socket < 0) {
     return;
@@ -98,7 +98,7 @@ static void welcome(struct clients *clients) {
   close(socket);
 }
 
-static void take_lines(struct clients *clients, struct client *client) {
+static void handle_lines(struct clients *clients, struct client *client) {
   char *start = client->text, *end;
   while (client->socket >= 0 && (end = memchr(start, '\n', client->length))) {
     *end = 0;
@@ -112,16 +112,16 @@ static void take_lines(struct clients *clients, struct client *client) {
 
 static void receive(struct clients *clients, struct client *client) {
   if (client->length == sizeof client->text) {
-    send_away(clients, client);  // a line without an end
+    disconnect(clients, client);  // a line without an end
     return;
   }
   ssize_t count =
       recv(client->socket, client->text + client->length, sizeof client->text - client->length, 0);
   if (count > 0) {
     client->length += (size_t)count;
-    take_lines(clients, client);
+    handle_lines(clients, client);
   } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
-    send_away(clients, client);
+    disconnect(clients, client);
   }
 }
 
@@ -133,11 +133,11 @@ void clients_serve(struct clients *clients, const struct pollfd *polls) {
     }
   }
   if (polls[CLIENTS_MAX].revents) {
-    welcome(clients);
+    accept_client(clients);
   }
 }
 
-void clients_tell(struct clients *clients, struct client *client, const char *format, ...) {
+void clients_send(struct clients *clients, struct client *client, const char *format, ...) {
   char line[CLIENT_LINE_MAX];
   va_list arguments;
   va_start(arguments, format);
@@ -149,6 +149,6 @@ void clients_tell(struct clients *clients, struct client *client, const char *fo
   size_t size = (size_t)length < sizeof line - 2 ? (size_t)length : sizeof line - 2;
   line[size++] = '\n';
   if (send(client->socket, line, size, MSG_NOSIGNAL | MSG_DONTWAIT) != (ssize_t)size) {
-    send_away(clients, client);
+    disconnect(clients, client);
   }
 }

@@ -13,7 +13,7 @@
 #define CLIENTS_POLLS (CLIENTS_MAX + 1)
 
 struct client {
-  int socket;  // -1: nobody
+  int socket;  // -1: not connected
   char text[CLIENT_LINE_MAX];
   size_t length;
 };
@@ -23,20 +23,20 @@ struct clients {
   struct sockaddr_un address;
   struct client list[CLIENTS_MAX];
   void (*on_line)(void *owner, struct client *client, char *line);
-  void (*on_gone)(void *owner, struct client *client);
+  void (*on_disconnect)(void *owner, struct client *client);
   void *owner;
 };
 
-// False with a reason where the socket cannot be had.
+// False with a reason if the socket cannot be opened.
 bool clients_listen(struct clients *clients, const char *path, char *reason, size_t reason_size);
 void clients_close(struct clients *clients);
 
-// What to wait for, and what to do once it has come; both with CLIENTS_POLLS entries.
+// Sets up the events to wait for, and handles them; both use CLIENTS_POLLS entries.
 void clients_watch(const struct clients *clients, struct pollfd *polls);
 void clients_serve(struct clients *clients, const struct pollfd *polls);
 
-// Sends a line, given without its end; a client that does not read is sent away.
-__attribute__((format(printf, 3, 4))) void clients_tell(struct clients *clients, struct client *client,
+// Sends a line, given without its end; disconnects a client that does not read.
+__attribute__((format(printf, 3, 4))) void clients_send(struct clients *clients, struct client *client,
                                                         const char *format, ...);
 
 #endif

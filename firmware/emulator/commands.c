@@ -20,22 +20,23 @@ struct command {
 };
 
 static void refuse(struct service *service, struct client *client, const char *reason) {
-  clients_tell(&service->clients, client, "error %s", reason);
+  clients_send(&service->clients, client, "error %s", reason);
 }
 
-static void agree(struct service *service, struct client *client) {
-  clients_tell(&service->clients, client, "ok");
+static void send_ok(struct service *service, struct client *client) {
+  clients_send(&service->clients, client, "ok");
 }
 
-// NaN where the text is not exactly one number.
+// The text as a number; NaN if it is not exactly one number.
 static double number(const char *text) {
   char *end;
   double value = strtod(text, &end);
   return end == text || *end ? NAN : value;
 }
 
-// The cycle from which to count. A run ends with the instruction that reaches its end; counting from that end
-// itself, many short runs are as long as a long one. One whose client went away has not come that far.
+// The cycle from which a run counts. A run ends within the instruction that reaches its end. Counting from
+// the planned end makes many short runs as long as one long run. A run whose client disconnected ended
+// earlier.
 static avr_cycle_count_t present(const struct service *service) {
   avr_cycle_count_t now = chip_now(&service->board.chip);
   return service->options->paused && service->run_until < now ? service->run_until : now;
@@ -61,23 +62,23 @@ static void sense(struct service *service, struct client *client, char *numbers)
 
 static void fins(struct service *service, struct client *client, char *nothing) {
   (void)nothing;
-  water_tell_fins(&service->water, client, "ok");
+  water_send_fins(&service->water, client, "ok");
 }
 
 static void reset(struct service *service, struct client *client, char *nothing) {
   (void)nothing;
   chip_reset(&service->board.chip, CHIP_RESET_PIN);
-  agree(service, client);
+  send_ok(service, client);
 }
 
 static void power(struct service *service, struct client *client, char *nothing) {
   (void)nothing;
   if (service->runner) {
-    refuse(service, client, "a run is under way");
+    refuse(service, client, "a run is already active");
     return;
   }
   service_power(service);
-  agree(service, client);
+  send_ok(service, client);
 }
 
 static void load(struct service *service, struct client *client, char *path) {
@@ -94,7 +95,7 @@ static void run(struct service *service, struct client *client, char *seconds) {
   if (!service->options->paused) {
     refuse(service, client, "run needs a board that was started with --paused");
   } else if (service->runner) {
-    refuse(service, client, "a run is under way");
+    refuse(service, client, "a run is already active");
   } else if (!(duration > 0 && duration <= RUN_MAX)) {
     refuse(service, client, "run takes a number of seconds, up to a day");
   } else {
@@ -103,7 +104,7 @@ static void run(struct service *service, struct client *client, char *seconds) {
   }
 }
 
-static void tell_faults(struct service *service, char *text) {
+static void format_line_faults(struct service *service, char *text) {
   size_t length = 0;
   for (unsigned i = 0; i < DIRECTION_COUNT; i++) {
     struct host_port *port = &service->board.host;
@@ -123,9 +124,9 @@ static void stats(struct service *service, struct client *client, char *nothing)
   const struct board *board = &service->board;
   double time = chip_seconds(chip_now(&board->chip));
   char faults[STATS_MAX];
-  tell_faults(service, faults);
+  format_line_faults(service, faults);
   double speed_x = service->busy > 0 ? time / service->busy : 0;
-  clients_tell(&service->clients, client,
+  clients_send(&service->clients, client,
                "stats time=%.6f cycles=%llu speed_x=%.2f late=%lu skipped=%.3f sense_late=%lu resets=%lu "
                "watchdog_resets=%lu crashes=%lu baud_host=%u baud_board=%.0f bytes_from_host=%lu "
                "bytes_to_board=%lu framing_errors_board=%lu overruns=%lu bytes_from_board=%lu "
@@ -135,8 +136,9 @@ static void stats(struct service *service, struct client *client, char *nothing)
                service->pace.skipped, service->water.late, board->chip.resets, board->chip.watchdog_resets,
                board->chip.crashes, board->host.baud, CHIP_FREQUENCY / uart_bit(&board->uart),
                board->host.bytes_taken, board->uart.bytes_received, board->uart.framing_errors,
-               board->uart.overruns, board->uart.bytes_sent, board->host.bytes_given, board->host.bytes_lost,
-               board->host.framing_errors, board->host.send_count - board->host.send_done, faults);
+               board->uart.overruns, board->uart.bytes_sent, board->host.bytes_delivered,
+               board->host.bytes_lost, board->host.framing_errors,
+               board->host.send_count - board->host.send_done, faults);
 }
 
 static void fault(struct service *service, struct client *client, char *arguments) {
@@ -146,7 +148,7 @@ static void fault(struct service *service, struct client *client, char *argument
   }
   enum fault *device = devices_fault(&service->board.devices, arguments);
   if (device && kind && devices_set_fault(device, kind)) {
-    agree(service, client);
+    send_ok(service, client);
     return;
   }
   refuse(service, client, "fault takes imu, pressure, encoder0-3 or bridge0-3, and none, absent or stuck");
@@ -169,8 +171,8 @@ static bool disturb(struct host_port *port, enum direction direction, const char
   return valid;
 }
 
-// The word that a text begins with; `text` becomes what follows it.
-static char *take_word(char **text) {
+// The first word of a text; `text` becomes the rest.
+static char *next_word(char **text) {
   char *word = *text;
   *text += strcspn(word, " ");
   if (**text) {
@@ -180,10 +182,10 @@ static char *take_word(char **text) {
 }
 
 static void line(struct service *service, struct client *client, char *arguments) {
-  const char *name = take_word(&arguments), *kind = take_word(&arguments);
+  const char *name = next_word(&arguments), *kind = next_word(&arguments);
   for (unsigned i = 0; i < DIRECTION_COUNT; i++) {
     if (!strcmp(name, directions[i]) && disturb(&service->board.host, (enum direction)i, kind, arguments)) {
-      agree(service, client);
+      send_ok(service, client);
       return;
     }
   }
@@ -201,7 +203,7 @@ static void seed(struct service *service, struct client *client, char *text) {
     return;
   }
   host_port_seed(&service->board.host, value);
-  agree(service, client);
+  send_ok(service, client);
 }
 
 static void quit(struct service *service, struct client *client, char *nothing) {
@@ -215,7 +217,7 @@ static const struct command commands[] = {
     {"fault", fault},   {"line", line},   {"seed", seed}, {"quit", quit},
 };
 
-void commands_do(void *owner, struct client *client, char *line) {
+void commands_run(void *owner, struct client *client, char *line) {
   char *argument = strchr(line, ' ');
   if (argument) {
     *argument++ = 0;
@@ -226,5 +228,5 @@ void commands_do(void *owner, struct client *client, char *line) {
       return;
     }
   }
-  refuse(owner, client, "there is no such command");
+  refuse(owner, client, "unknown command");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time that a device keeps which takes some for what it does, in s.
+// Clock of a device whose operations take time, in s.
 #ifndef DEVICE_CLOCK_H
 #define DEVICE_CLOCK_H
 

@@ -27,7 +27,7 @@ void devices_create(struct devices *devices, struct device_clock clock) {
 void devices_set_motor_power(struct devices *devices, bool on) {
   devices->motor_power = on;
   for (unsigned i = 0; i < FIN_COUNT && !on; i++) {
-    devices->bridges[i].control = 0;  // they start anew when their power comes back
+    devices->bridges[i].control = 0;  // they lose their settings without power
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is on the board beside the chip, whatever it is that drives it: H-bridges, motors, encoders, IMU and
-// pressure sensor.
+// The devices on the board beside the chip: H-bridges, motors, encoders, IMU and pressure sensor. Emulated
+// chip and host board both use them.
 #ifndef DEVICES_H
 #define DEVICES_H
 
@@ -17,7 +17,7 @@
 struct i2c_device {
   uint8_t address;  // 7 bits
   void *device;
-  bool (*start)(void *device);                                // false: there is no acknowledgement
+  bool (*start)(void *device);                                // false: no acknowledgement
   void (*write)(void *device, unsigned index, uint8_t byte);  // index: bytes since the start condition
   uint8_t (*read)(void *device);
 };
@@ -33,18 +33,18 @@ struct devices {
   struct i2c_device i2c[I2C_DEVICES];
 };
 
-// In still water, as after power-on.
+// Creates the devices in still water, as after power-on.
 void devices_create(struct devices *devices, struct device_clock clock);
 
 void devices_set_motor_power(struct devices *devices, bool on);
 
-// What the line from the encoders held during a byte; it is pulled up where none of them is selected.
+// The byte on the data line of the encoders; 0xff, by the pull-up, if none is selected.
 uint8_t devices_exchange_spi(struct devices *devices);
 
 // The device of this name, or NULL: imu, pressure, encoder0 to 3, bridge0 to 3.
 enum fault *devices_fault(struct devices *devices, const char *name);
 
-// What is meant by none, absent and stuck; false where it is none of them.
+// Sets the fault `none`, `absent` or `stuck`; false for any other name.
 bool devices_set_fault(enum fault *fault, const char *kind);
 
 #endif

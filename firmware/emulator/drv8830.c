@@ -35,7 +35,7 @@ void drv8830_write(void *device, unsigned index, uint8_t byte) {
   }
 }
 
-// The other register tells of over-current and heat, which do not happen here.
+// The other register reports overcurrent and overheating, which are not emulated.
 uint8_t drv8830_read(void *device) {
   const struct drv8830 *bridge = device;
   return bridge->pointer == REGISTER_CONTROL ? bridge->control : 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Texas Instruments DRV8830: an H-bridge on I2C that holds a voltage of about 0.08 V for each step of its
-// VSET. Its logic lives on the motors' power: without that it does not answer, and loses its settings.
+// VSET. The motors' power supplies its logic: without it the chip does not answer and loses its settings.
 #ifndef DRV8830_H
 #define DRV8830_H
 

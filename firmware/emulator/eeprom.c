@@ -19,7 +19,7 @@ static void on_written(void *owner) {
   eeprom->chip->avr->data[REGISTER_EECR] &= (uint8_t)~EECR_EEPE;
 }
 
-// EEPE stays set until the write is done, which is what a program waits for.
+// EEPE stays set until the write is done; programs wait for that.
 static void on_control_written(void *owner, uint8_t value) {
   (void)value;
   struct eeprom *eeprom = owner;
@@ -42,7 +42,7 @@ void eeprom_create(struct eeprom *eeprom, struct chip *chip) {
   chip_hook_write(chip, REGISTER_EECR, &eeprom->control_written, on_control_written, eeprom);
 }
 
-void eeprom_inherit(struct eeprom *eeprom, const struct eeprom *other) {
+void eeprom_copy(struct eeprom *eeprom, const struct eeprom *other) {
   free(eeprom->module->eeprom);
   eeprom->module->eeprom = other->module->eeprom;
   other->module->eeprom = NULL;
@@ -71,7 +71,7 @@ bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t r
     const char *why = errno == EINVAL ? "not an EEPROM of this chip" : strerror(errno);
     snprintf(reason, reason_size, "cannot keep the EEPROM in %s: %s", path, why);
   } else {
-    // Every byte that the program writes is in the file at once, whatever becomes of this process.
+    // Every byte that the program writes is in the file at once, even if this process is killed.
     free(eeprom->module->eeprom);
     eeprom->module->eeprom = memory;
   }

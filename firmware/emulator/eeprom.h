@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chip's EEPROM, kept in a file, and as slow to write as the chip's: libsimavr writes at once.
+// The chip's EEPROM, stored in a file. Writing takes as long as on the chip; libsimavr writes at once.
 #ifndef EEPROM_H
 #define EEPROM_H
 
@@ -16,10 +16,10 @@ struct eeprom {
 
 void eeprom_create(struct eeprom *eeprom, struct chip *chip);
 
-// Keeps the contents in this file from now on; a file that is not there begins erased. False with a reason.
+// Stores the contents in this file from now on; a new file begins erased. False with a reason on failure.
 bool eeprom_open(struct eeprom *eeprom, const char *path, char *reason, size_t reason_size);
 
-// Takes over what the other keeps, and its file.
-void eeprom_inherit(struct eeprom *eeprom, const struct eeprom *other);
+// Copies the other's contents and file.
+void eeprom_copy(struct eeprom *eeprom, const struct eeprom *other);
 
 #endif

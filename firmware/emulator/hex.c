@@ -16,7 +16,7 @@ struct record {
   size_t count;
 };
 
-// Whether the line is one whole record whose checksum is right.
+// True if the line is one complete record with the right checksum.
 static bool read_record(const char *line, struct record *record) {
   if (*line++ != ':') {
     return false;
@@ -34,7 +34,7 @@ static bool read_record(const char *line, struct record *record) {
 
 static size_t word(const uint8_t *bytes) { return (size_t)(bytes[0] << 8 | bytes[1]); }
 
-// The number of the first wrong line, or 0; `lowest` stays where there is no data.
+// The number of the first wrong line, or 0; `lowest` does not change without data.
 static unsigned read_records(FILE *file, uint8_t *memory, size_t size, size_t *lowest) {
   char line[LINE_MAX];
   size_t base = 0;

@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Puts what the file holds where it belongs in `memory`; `lowest` becomes its lowest address. False with a
-// reason where the file is no such file, is empty, or does not fit.
+// Writes the file's data into `memory`; `lowest` becomes its lowest address. False with a reason if the file
+// is not an Intel HEX file, is empty, or does not fit.
 bool hex_read(const char *path, uint8_t *memory, size_t size, size_t *lowest, char *reason,
               size_t reason_size);
 

@@ -9,18 +9,18 @@ static bool stalled(const struct host_port *port, enum direction direction) {
   return port->stall_ends[direction].armed;
 }
 
-static void hand_over(struct host_port *port) {
+static void deliver_received(struct host_port *port) {
   if (stalled(port, FROM_BOARD)) {
     return;
   }
   chip_timer_stop(&port->silence);
   size_t given = port->pty->open ? pty_write(port->pty, port->received, port->received_count) : 0;
-  port->bytes_given += given;
+  port->bytes_delivered += given;
   port->bytes_lost += port->received_count - given;
   port->received_count = 0;
 }
 
-static void on_silence(void *owner) { hand_over(owner); }
+static void on_silence(void *owner) { deliver_received(owner); }
 
 static void on_received(void *owner, uint8_t byte, bool framing_error) {
   struct host_port *port = owner;
@@ -31,7 +31,7 @@ static void on_received(void *owner, uint8_t byte, bool framing_error) {
   }
   port->received[port->received_count++] = byte;
   if (port->received_count >= HOST_CHUNK_BYTES) {
-    hand_over(port);
+    deliver_received(port);
   } else {
     avr_cycle_count_t silence = (avr_cycle_count_t)(SILENCE_BITS * port->bit);
     chip_timer_start(&port->silence, chip_now(port->chip) + silence);
@@ -53,7 +53,7 @@ static void on_sending_stall_end(void *owner) {
   }
 }
 
-static void on_receiving_stall_end(void *owner) { hand_over(owner); }
+static void on_receiving_stall_end(void *owner) { deliver_received(owner); }
 
 static void set_baud(struct host_port *port, unsigned baud) {
   port->baud = baud;

@@ -5,7 +5,7 @@
 
 #define STOP_BIT_MIDDLE 9.5
 #define SAMPLES_PER_BIT 8    // a receiver sees no gap that is shorter
-#define CYCLE_FRACTION 1e-6  // rounding of cycles kept as doubles
+#define CYCLE_FRACTION 1e-6  // rounding of cycles stored as doubles
 
 static struct line_character *character(struct line *line, unsigned index) {
   return &line->characters[index % LINE_CHARACTERS_MAX];
@@ -22,7 +22,7 @@ static bool level_at(struct line *line, double time) {
   return true;
 }
 
-// The first falling edge from this time on; infinity where there is none.
+// The first falling edge from this time on; infinity if there is none.
 static double falling_edge(struct line *line, double from) {
   bool before = true;
   double end = 0;
@@ -42,7 +42,7 @@ static double falling_edge(struct line *line, double from) {
   return INFINITY;
 }
 
-static void look_for_start(struct line *line) {
+static void find_start_bit(struct line *line) {
   double edge = line->receiving ? INFINITY : falling_edge(line, line->receiver_free);
   if (isfinite(edge)) {
     line->receiving = true;
@@ -52,8 +52,8 @@ static void look_for_start(struct line *line) {
   }
 }
 
-// One that has only just ended is still needed, to tell whether the next one begins with an edge.
-static void forget_past(struct line *line) {
+// Drops ended characters except the last, which decides if the next one begins with an edge.
+static void drop_past(struct line *line) {
   while (line->tail != line->head) {
     const struct line_character *oldest = character(line, line->tail);
     if (oldest->start + (CHARACTER_BITS + 1) * oldest->bit > line->receiver_free) {
@@ -74,11 +74,11 @@ static void on_sampled(void *owner) {
   }
   line->receiving = false;
   line->receiver_free = line->edge + (false_start ? 0.5 : STOP_BIT_MIDDLE) * bit;
-  forget_past(line);
+  drop_past(line);
   if (!false_start) {
     line->deliver(line->owner, byte, framing_error);
   }
-  look_for_start(line);
+  find_start_bit(line);
 }
 
 void line_create(struct line *line, struct chip *chip, double receiver_bit,
@@ -87,7 +87,7 @@ void line_create(struct line *line, struct chip *chip, double receiver_bit,
   chip_timer_add(chip, &line->sampled, on_sampled, line);
 }
 
-// A character's time on the line, with these levels.
+// Occupies the line for one character with these levels.
 static void put(struct line *line, double bit, unsigned levels) {
   if (line->head - line->tail < LINE_CHARACTERS_MAX) {
     *character(line, line->head++) =
@@ -103,7 +103,7 @@ double line_send(struct line *line, uint8_t byte, double bit) {
   line->sender_free = fmax(now, line->sender_free);
   if (!line->receiving) {
     line->receiver_free = now;
-    forget_past(line);  // characters that were too broken to be received, too
+    drop_past(line);  // also drops characters that could not be received
   }
   if (line_faults_cut(faults)) {
     put(line, bit, LINE_IDLE_LEVELS);
@@ -120,7 +120,7 @@ double line_send(struct line *line, uint8_t byte, double bit) {
       put(line, bit, line_faults_levels(faults, byte, line->sender_free, bit));
     }
   }
-  look_for_start(line);
+  find_start_bit(line);
   return line->sender_free;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One direction of a serial line as copper carries it: 8N1 characters put on it at the sender's bit time are
-// sampled at the receiver's, so that two ends at different speeds see garbage and framing errors.
+// One direction of a serial line, bit by bit: 8N1 characters are sent at the sender's bit time and sampled at
+// the receiver's. Ends of different speeds see garbage and framing errors.
 #ifndef LINE_H
 #define LINE_H
 
@@ -8,7 +8,7 @@
 #include "line_faults.h"
 
 #define LINE_CHARACTERS_MAX \
-  16  // a power of two; at most two are under way at a time, and two more for each by faults
+  16  // a power of two; at most two are on the line at a time, and two more for each by faults
 
 struct line_character {
   double start;     // cycle of its start bit's edge
@@ -34,10 +34,10 @@ struct line {
 void line_create(struct line *line, struct chip *chip, double receiver_bit,
                  void (*deliver)(void *owner, uint8_t byte, bool framing_error), void *owner);
 
-// Puts a character on the line, after those that are on it; the cycle at which it will have gone.
+// Sends a character after those on the line; returns the cycle at which it ends.
 double line_send(struct line *line, uint8_t byte, double bit);
 
-// The sender falls silent in the midst of a character: the line goes high.
+// Interrupts the sender within a character: the line goes high.
 void line_cut(struct line *line);
 
 #endif

@@ -14,12 +14,12 @@ static uint64_t random_word(struct line_faults *faults) {
   return word ^ word >> 31;
 }
 
-static bool happens(struct line_faults *faults, double rate) {
+static bool draw(struct line_faults *faults, double rate) {
   return rate > 0 && (double)(random_word(faults) >> 11) * 0x1p-53 < rate;
 }
 
-static bool happens_and_counts(struct line_faults *faults, double rate, unsigned long *count) {
-  bool does = happens(faults, rate);
+static bool draw_and_count(struct line_faults *faults, double rate, unsigned long *count) {
+  bool does = draw(faults, rate);
   *count += does;
   return does;
 }
@@ -88,15 +88,15 @@ bool line_faults_cut(struct line_faults *faults) {
 }
 
 bool line_faults_drop(struct line_faults *faults) {
-  return happens_and_counts(faults, faults->drops, &faults->counts.drops);
+  return draw_and_count(faults, faults->drops, &faults->counts.drops);
 }
 
 bool line_faults_double(struct line_faults *faults) {
-  return happens_and_counts(faults, faults->doubles, &faults->counts.doubles);
+  return draw_and_count(faults, faults->doubles, &faults->counts.doubles);
 }
 
 bool line_faults_insert(struct line_faults *faults, uint8_t *byte) {
-  bool does = happens_and_counts(faults, faults->inserts, &faults->counts.inserts);
+  bool does = draw_and_count(faults, faults->inserts, &faults->counts.inserts);
   if (does) {
     *byte = (uint8_t)(random_word(faults) >> 56);
   }
@@ -107,12 +107,12 @@ unsigned line_faults_levels(struct line_faults *faults, uint8_t byte, double sta
   unsigned levels = (unsigned)byte << 1 | 1u << (CHARACTER_BITS - 1);
   for (unsigned i = 0; i < CHARACTER_BITS; i++) {
     double time = start + i * bit;
-    if (time >= faults->burst_end && happens_and_counts(faults, faults->bursts, &faults->counts.bursts)) {
+    if (time >= faults->burst_end && draw_and_count(faults, faults->bursts, &faults->counts.bursts)) {
       faults->burst_end = time + faults->burst_bits * bit;
     }
     bool wrong = time < faults->burst_end
-                     ? happens_and_counts(faults, 0.5, &faults->counts.burst_errors)
-                     : happens_and_counts(faults, faults->bit_errors, &faults->counts.bit_errors);
+                     ? draw_and_count(faults, 0.5, &faults->counts.burst_errors)
+                     : draw_and_count(faults, faults->bit_errors, &faults->counts.bit_errors);
     levels ^= (unsigned)wrong << i;
   }
   return levels;

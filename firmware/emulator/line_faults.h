@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What may go wrong with characters on one direction of the serial line, at chosen rates. The same seed and
-// the same characters at the same times give the same faults.
+// Faults of characters on one direction of the serial line, at chosen rates. The same seed and the same
+// characters at the same times give the same faults.
 #ifndef LINE_FAULTS_H
 #define LINE_FAULTS_H
 
@@ -8,13 +8,13 @@
 #include <stdint.h>
 
 #define CHARACTER_BITS 10       // start bit, eight of data, stop bit
-#define LINE_IDLE_LEVELS 0x3ff  // a character's time without a character
+#define LINE_IDLE_LEVELS 0x3ff  // the levels of an idle line for one character
 
 struct line_fault_counts {
   unsigned long bit_errors;
   unsigned long drops, doubles, inserts;  // characters
   unsigned long bursts;
-  unsigned long burst_errors;  // bits turned over in bursts
+  unsigned long burst_errors;  // bits inverted in bursts
   unsigned long cuts;          // characters lost because the line was cut
 };
 
@@ -29,10 +29,10 @@ struct line_faults {
   struct line_fault_counts counts;
 };
 
-// From now on the faults follow from this number.
+// Sets the seed of the faults.
 void line_faults_seed(struct line_faults *faults, uint64_t seed);
 
-// Sets a rate, a burst's length too, `cut on` or `cut off`, or `clean`; false where the words make no sense.
+// Sets a rate, a burst's rate and length, `cut on` or `cut off`, or `clean`; false for anything else.
 bool line_faults_set(struct line_faults *faults, const char *kind, const char *value);
 
 // True if this fault hits the next character; counts it then.

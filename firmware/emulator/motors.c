@@ -5,14 +5,14 @@
 #include <stdlib.h>
 
 #define TIME_CONSTANT 30e-3   // s
-#define SPEED_PER_STEP 0.315  // rad/s for a step of the bridge's voltage: 12.6 rad/s at 40
-#define FRICTION_STEPS 2      // a motor that is driven by less stands still
+#define SPEED_PER_STEP 0.315  // rad/s for each step of the bridge's voltage: 12.6 rad/s at 40
+#define FRICTION_STEPS 2      // below this drive a motor stands still
 #define STANDSTILL 0.02       // rad/s at which friction holds it
 #define ENCODER_SIGN (-1)
 
 static const double encoder_zero[FIN_COUNT] = {188, 161, 726, 356};
 static const int rotation_sign[FIN_COUNT] = {1, 1, -1, -1};
-// Fins are never found exactly in place at power-on; rad.
+// Fin angles at power-on, never exactly in place; rad.
 static const double first_angle[FIN_COUNT] = {0.05, -0.04, 0.03, -0.06};
 
 static void turn(struct motors *motors, unsigned fin, double driven) {

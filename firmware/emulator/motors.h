@@ -21,11 +21,11 @@ struct motors {
 void motors_create(struct motors *motors, const struct drv8830 bridges[FIN_COUNT],
                    struct as5040 encoders[FIN_COUNT], const struct surroundings *surroundings);
 
-// To be called every MOTORS_PERIOD.
+// Call it every MOTORS_PERIOD.
 void motors_step(struct motors *motors);
 
-// A fin's angle (rad, -pi to pi) and speed (rad/s); fins count front right, back right, back left, front
-// left.
+// A fin's angle (rad, -pi to pi) and speed (rad/s); fins 0 to 3 are front right, back right, back left,
+// front left.
 double motors_fin_angle(const struct motors *motors, unsigned fin);
 double motors_fin_speed(const struct motors *motors, unsigned fin);
 

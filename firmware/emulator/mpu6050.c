@@ -58,7 +58,7 @@ void mpu6050_create(struct mpu6050 *imu, const struct surroundings *surroundings
   reset(imu);
 }
 
-// A transfer sees one sample, whole.
+// A transfer reads one complete sample.
 bool mpu6050_start(void *device) {
   struct mpu6050 *imu = device;
   bool awake = !(imu->registers[REGISTER_POWER] & POWER_SLEEP);

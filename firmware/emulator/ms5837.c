@@ -17,7 +17,7 @@
 // The data sheet's example of a sensor: C1 to C6 follow the word with the checksum.
 static const uint16_t calibration[MS5837_PROM_WORDS] = {0, 34982, 36352, 20328, 22354, 26646, 26146};
 
-// The longest that the data sheet allows for OSR 256, 512 and so on to 8192.
+// Maximum times of the data sheet for OSR 256, 512 and so on to 8192.
 static const double conversion_seconds[OVERSAMPLING_STEPS] = {0.60e-3, 1.17e-3, 2.28e-3,
                                                               4.54e-3, 9.04e-3, 18.08e-3};
 
@@ -40,7 +40,7 @@ static unsigned crc4(const uint16_t prom[MS5837_PROM_WORDS]) {
   return remainder >> 12;
 }
 
-// First and second order, for a raw temperature.
+// First and second order compensation for a raw temperature.
 static struct compensation compensate(const uint16_t c[MS5837_PROM_WORDS], double raw) {
   double difference = raw - c[5] * 0x1p8;
   double temperature = 2000 + difference * c[6] * 0x1p-23;
@@ -60,7 +60,7 @@ static struct compensation compensate(const uint16_t c[MS5837_PROM_WORDS], doubl
   return low;
 }
 
-// The compensated temperature grows with the raw one, so that halving the interval finds it.
+// Bisection: the compensated temperature grows with the raw one.
 static uint32_t raw_temperature(const struct ms5837 *sensor) {
   double target = sensor->surroundings->temperature * 100;
   uint32_t low = 0, high = CONVERSION_MAX;
@@ -127,7 +127,7 @@ void ms5837_write(void *device, unsigned index, uint8_t byte) {
   }
 }
 
-// Before a reset or a conversion is done, and where nothing was asked for, it reads as 0.
+// Reads 0 before a reset or conversion is done, and without a request.
 uint8_t ms5837_read(void *device) {
   struct ms5837 *sensor = device;
   unsigned index = sensor->read_index++;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TE Connectivity MS5837-30BA: pressure and temperature of the water, on I2C. It shows the raw conversions
-// from which the data sheet's compensation gives the pressure and the temperature at the sensor.
+// TE Connectivity MS5837-30BA: pressure and temperature of the water, on I2C. It returns the raw
+// conversions from which the data sheet's compensation gives pressure and temperature at the sensor.
 #ifndef MS5837_H
 #define MS5837_H
 
@@ -18,7 +18,7 @@ struct ms5837 {
   uint16_t prom[MS5837_PROM_WORDS];
   uint8_t command;
   unsigned read_index;
-  double ready;  // s at which its reset or its conversion is done
+  double ready;  // s, end of its reset or conversion
   uint32_t conversion;
   uint32_t pressure, temperature;  // the last conversions
   enum fault fault;

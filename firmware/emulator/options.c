@@ -13,16 +13,17 @@
 static const char usage[] =
     "usage: board --elf FILE --tty LINK --socket PATH [options]\n"
     "       board --bootloader FILE --tty LINK --socket PATH [options]\n"
-    "Runs the firmware on an emulated board; its serial port is at LINK, the water and commands at PATH.\n"
+    "Runs the firmware on an emulated board; LINK is its serial port, PATH its socket for water and "
+    "commands.\n"
     "  --elf FILE        the program in its flash memory\n"
-    "  --bootloader FILE an Intel HEX file with a boot loader, with which it starts after every reset\n"
-    "  --speed X         emulated seconds in a real one, 1 by default; 0: as fast as it goes\n"
-    "  --paused          time passes only when the command `run` says so\n"
-    "  --eeprom FILE     keep the EEPROM in this file\n"
+    "  --bootloader FILE an Intel HEX file with a boot loader, which runs after every reset\n"
+    "  --speed X         emulated seconds in a real one, 1 by default; 0: as fast as possible\n"
+    "  --paused          time passes only by the command `run`\n"
+    "  --eeprom FILE     store the EEPROM in this file\n"
     "  --reset-on-open   opening the serial port resets the board\n"
     "  --with-parent     end when the parent process ends\n"
     "  --server-lock FILE  end when no server has held this file's lock ...\n"
-    "  --linger SECONDS    ... for so long, 30 by default\n";
+    "  --linger SECONDS    ... for that time, 30 by default\n";
 
 enum choice {
   ELF,
@@ -56,7 +57,7 @@ static const struct option long_options[] = {
 };
 
 static void refuse(const char *what) {
-  fprintf(stderr, "board: %s; `board --help` tells more\n", what);
+  fprintf(stderr, "board: %s; see `board --help`\n", what);
   exit(USAGE_ERROR);
 }
 
@@ -108,7 +109,7 @@ static void take(struct options *options, int option) {
       fputs(usage, stdout);
       exit(0);
     default:
-      exit(USAGE_ERROR);  // getopt has said why
+      exit(USAGE_ERROR);  // getopt has printed the reason
   }
 }
 
@@ -118,7 +119,7 @@ struct options options_read(int count, char **arguments) {
     take(&options, option);
   }
   if (optind < count) {
-    refuse("there is an argument too many");
+    refuse("unexpected argument");
   }
   if (!(options.elf || options.bootloader) || !options.tty || !options.socket) {
     refuse("--elf or --bootloader, --tty and --socket are needed");

@@ -40,8 +40,8 @@ static void on_motor_power(avr_irq_t *irq, uint32_t level, void *param) {
   devices_set_motor_power(pins->devices, level);
 }
 
-// Resistors hold the levels of what nothing drives: selects high, LED and motor power low, detectors as
-// shown.
+// Resistors hold the levels of pins that nothing drives: selects high, LED and motor power low, detectors at
+// their value.
 static void pull(struct pins *pins, char port, uint8_t mask, uint8_t levels) {
   avr_ioport_external_t external = {.name = port, .mask = mask, .value = levels};
   avr_ioctl(pins->chip->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &external);
@@ -66,17 +66,17 @@ void pins_reset(struct pins *pins) {
   }
   pins->led = false;
   devices_set_motor_power(pins->devices, false);
-  // The chip has forgotten the levels of its pins; without this flag an unchanged one would not be shown.
+  // A reset clears the levels of the pins; without this flag an unchanged one would not be reported.
   pin_irq(pins->chip, led_pin)->flags |= IRQ_FLAG_INIT;
   pin_irq(pins->chip, motor_power_pin)->flags |= IRQ_FLAG_INIT;
   pins->beacon_right->flags |= IRQ_FLAG_INIT;
   pins->beacon_left->flags |= IRQ_FLAG_INIT;
   pull(pins, 'B', 0x07, 0x07);
   pull(pins, 'C', 1 << led_pin.bit | 1 << motor_power_pin.bit, 0);
-  pins_show(pins);
+  pins_update_inputs(pins);
 }
 
-void pins_show(struct pins *pins) {
+void pins_update_inputs(struct pins *pins) {
   const struct surroundings *surroundings = &pins->devices->surroundings;
   bool right = surroundings->beacon_right, left = surroundings->beacon_left;
   uint8_t beacons = (uint8_t)(right << beacon_right_pin.bit | left << beacon_left_pin.bit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hangs on single pins: encoder selects, beacon detectors, LED, motor power, and the battery's divider.
+// The single pins: encoder selects, beacon detectors, LED, motor power, and the battery's divider.
 #ifndef PINS_H
 #define PINS_H
 
@@ -15,11 +15,10 @@ struct pins {
 
 void pins_create(struct pins *pins, struct chip *chip, struct devices *devices);
 
-// To be called after every reset of the chip: its pins no longer drive anything, and it reads its inputs
-// anew.
+// Call it after every reset of the chip: its pins drive nothing then, and it reads its inputs again.
 void pins_reset(struct pins *pins);
 
-// Puts what the detectors and the battery show onto the chip's inputs.
-void pins_show(struct pins *pins);
+// Puts the values of detectors and battery onto the chip's inputs.
+void pins_update_inputs(struct pins *pins);
 
 #endif

@@ -14,7 +14,7 @@
 
 #define FIRST_BAUD 115200
 
-// Until the host sets it up, it must not echo what the board says.
+// Without this it would echo the board's output until the host sets it up.
 static bool make_raw(int master) {
   struct termios2 settings;
   if (ioctl(master, TCGETS2, &settings)) {
@@ -32,7 +32,7 @@ static bool open_pair(struct pty *pty) {
       ptsname_r(pty->master, pty->device, sizeof pty->device)) {
     return false;
   }
-  // Only once it has been open can be seen that it is closed.
+  // Only after it was open once can a close be detected.
   int device = open(pty->device, O_RDWR | O_NOCTTY | O_CLOEXEC);
   return device >= 0 && close(device) == 0;
 }
@@ -40,12 +40,12 @@ static bool open_pair(struct pty *pty) {
 static bool make_link(const struct pty *pty, char *reason, size_t size) {
   struct stat status;
   if (lstat(pty->link, &status) == 0 && !S_ISLNK(status.st_mode)) {
-    snprintf(reason, size, "%s is in the way: it is not a link", pty->link);
+    snprintf(reason, size, "%s exists and is not a link", pty->link);
     return false;
   }
   unlink(pty->link);
   if (symlink(pty->device, pty->link)) {
-    snprintf(reason, size, "cannot make %s: %s", pty->link, strerror(errno));
+    snprintf(reason, size, "cannot create %s: %s", pty->link, strerror(errno));
     return false;
   }
   return true;
@@ -81,7 +81,7 @@ bool pty_check(struct pty *pty) {
   struct pollfd state = {.fd = pty->master, .events = POLLIN};
   poll(&state, 1, 0);
   bool before = pty->open;
-  // What was written before closing can still be read.
+  // Bytes written before closing can still be read.
   pty->open = !(state.revents & POLLHUP) || state.revents & POLLIN;
   return pty->open && !before;
 }

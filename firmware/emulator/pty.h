@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pseudo-terminal that the host opens as its serial port, under a name of our choice.
+// The pseudo-terminal that the host opens as its serial port, under a chosen name.
 #ifndef PTY_H
 #define PTY_H
 
@@ -13,19 +13,19 @@ struct pty {
   int master;
   char device[64];
   char link[PATH_MAX];
-  bool open;  // whether the host has it open
+  bool open;  // true if the host has it open
 };
 
-// False with a reason where the link cannot be made.
+// False with a reason if the link cannot be created.
 bool pty_create(struct pty *pty, const char *link, char *reason, size_t reason_size);
 void pty_remove(struct pty *pty);
 
-// Looks whether the host has opened or closed it; true where it has just been opened.
+// Checks if the host has opened or closed it; true if it has just been opened.
 bool pty_check(struct pty *pty);
 
 unsigned pty_baud(const struct pty *pty);
 
-// Both return the number of bytes, 0 where nothing can be had or given at the moment.
+// Both return the number of bytes; 0 if none can be read or written at the moment.
 size_t pty_read(struct pty *pty, uint8_t *bytes, size_t size);
 size_t pty_write(struct pty *pty, const uint8_t *bytes, size_t size);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Addresses of the ATmega328P's registers in data memory, and the bits of theirs that matter here.
+// Addresses of the ATmega328P's registers in data memory, and some of their bits.
 #ifndef REGISTERS_H
 #define REGISTERS_H
 

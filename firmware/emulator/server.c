@@ -5,17 +5,17 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#define LOOK_PERIOD 0.5  // s
+#define CHECK_PERIOD 0.5  // s
 
 void server_watch(struct server *server, const char *lock, double linger, double now) {
-  *server = (struct server){.lock = lock, .linger = linger, .seen = now, .look_at = now};
+  *server = (struct server){.lock = lock, .linger = linger, .seen = now, .check_at = now};
 }
 
 bool server_gone(struct server *server, double now) {
-  if (!server->lock || now < server->look_at) {
+  if (!server->lock || now < server->check_at) {
     return false;
   }
-  server->look_at = now + LOOK_PERIOD;
+  server->check_at = now + CHECK_PERIOD;
   int file = open(server->lock, O_RDONLY | O_CLOEXEC);
   if (file < 0) {
     return true;

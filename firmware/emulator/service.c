@@ -10,10 +10,10 @@
 
 #include "commands.h"
 
-#define SLICE 1e-3            // s of real time between two looks at the clock
-#define LINE_SLICE 0.2e-3     // the same while there is something on the serial line
-#define UNPACED_SLICE 5e-3    // s of emulated time between two looks at port and socket
-#define WATER_PATIENCE 50e-3  // s
+#define SLICE 1e-3           // s of real time between two checks of the clock
+#define LINE_SLICE 0.2e-3    // the same while bytes are on the serial line
+#define UNPACED_SLICE 5e-3   // s of emulated time between two checks of port and socket
+#define WATER_TIMEOUT 50e-3  // s
 
 enum { POLL_SIGNALS, POLL_PTY, POLL_CLIENTS, POLL_COUNT = POLL_CLIENTS + CLIENTS_POLLS };
 
@@ -31,9 +31,9 @@ static int open_signals(void) {
   return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-static void on_gone(void *owner, struct client *client) {
+static void on_disconnect(void *owner, struct client *client) {
   struct service *service = owner;
-  water_gone(&service->water, client);
+  water_disconnect(&service->water, client);
   if (client == service->runner) {
     service->runner = NULL;
   }
@@ -43,8 +43,8 @@ bool service_create(struct service *service, const struct options *options, char
                     size_t reason_size) {
   service->options = options;
   service->signals = open_signals();
-  service->clients.on_line = commands_do;
-  service->clients.on_gone = on_gone;
+  service->clients.on_line = commands_run;
+  service->clients.on_disconnect = on_disconnect;
   service->clients.owner = service;
   if (!clients_listen(&service->clients, options->socket, reason, reason_size)) {
     return false;
@@ -64,7 +64,7 @@ bool service_create(struct service *service, const struct options *options, char
     service_remove(service);
     return false;
   }
-  water_create(&service->water, board, &service->clients, paced(service) ? WATER_PATIENCE : INFINITY);
+  water_create(&service->water, board, &service->clients, paced(service) ? WATER_TIMEOUT : INFINITY);
   chip_reset(&board->chip, CHIP_POWER_ON);
   pace_start(&service->pace, options->speed, pace_clock(), chip_now(&board->chip));
   server_watch(&service->server, options->server_lock, options->linger, pace_clock());
@@ -76,11 +76,11 @@ void service_power(struct service *service) {
   struct water *water = &service->water;
   struct client *client = water->client;
   double period = chip_seconds(water->period);
-  if (!board_renew(board)) {
+  if (!board_power_cycle(board)) {
     service->quitting = true;
     return;
   }
-  water_create(water, board, &service->clients, water->patience);
+  water_create(water, board, &service->clients, water->timeout);
   if (client) {
     water_attach(water, client, period, chip_now(&board->chip));
   }
@@ -114,7 +114,7 @@ static avr_cycle_count_t target(struct service *service, double now) {
 static void advance(struct service *service) {
   struct chip *chip = &service->board.chip;
   double start = pace_clock();
-  if (water_awaited(&service->water, start)) {
+  if (water_waiting(&service->water, start)) {
     return;
   }
   avr_cycle_count_t until = target(service, start);
@@ -122,21 +122,21 @@ static void advance(struct service *service) {
     chip_run(chip, until);
     double end = pace_clock();
     service->busy += end - start;
-    water_ask(&service->water, end);
+    water_request(&service->water, end);
   }
   bool done = !service->water.waiting && service->runner && chip_now(chip) >= service->run_until;
   if (done) {
     struct client *runner = service->runner;
     service->runner = NULL;
-    clients_tell(&service->clients, runner, "ok %.6f", chip_seconds(chip_now(chip)));
+    clients_send(&service->clients, runner, "ok %.6f", chip_seconds(chip_now(chip)));
   }
 }
 
-// How long nothing need be done, s; infinity where only others can bring something to do.
+// s until the next work; infinity if only an event can bring work.
 static double idle_time(const struct service *service) {
   double idle = INFINITY;
   if (service->water.waiting) {
-    idle = service->water.waiting_until - pace_clock();
+    idle = service->water.wait_until - pace_clock();
   } else if (paced(service)) {
     idle = host_port_busy(&service->board.host) ? LINE_SLICE : SLICE;
   } else if (!service->options->paused || service->runner) {
@@ -186,7 +186,7 @@ void service_run(struct service *service) {
     struct pollfd polls[POLL_COUNT];
     wait_for_events(service, polls);
     if (paced(service)) {
-      advance(service);  // what has just come, has come now and not a slice ago
+      advance(service);  // so that new input arrives now and not a slice ago
     }
     if (polls[POLL_SIGNALS].revents) {
       serve_signals(service);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board as a process: lets time pass for the chip and serves the serial port and the socket meanwhile.
+// The board as a process: runs the chip, and serves the serial port and the socket.
 #ifndef SERVICE_H
 #define SERVICE_H
 
@@ -18,23 +18,23 @@ struct service {
   struct water water;
   struct pace pace;
   struct server server;
-  int signals;            // a file descriptor that tells of SIGTERM, SIGINT and SIGUSR1
-  struct client *runner;  // who waits for the end of a `run`
+  int signals;            // a file descriptor for SIGTERM, SIGINT and SIGUSR1
+  struct client *runner;  // the client that waits for the end of a `run`
   avr_cycle_count_t run_until;
   double busy;  // s of the host's time spent emulating
   bool quitting;
 };
 
-// False with a reason where something cannot be had.
+// False with a reason on failure.
 bool service_create(struct service *service, const struct options *options, char *reason, size_t reason_size);
 
-// Takes the board's power away and gives it back. Time begins anew; the water stays.
+// Switches the board's power off and on. Time begins at 0; the water stays connected.
 void service_power(struct service *service);
 
-// Serves until it is asked to quit.
+// Runs until `quit` or a signal.
 void service_run(struct service *service);
 
-// Takes away the link and the socket.
+// Removes the link and the socket.
 void service_remove(struct service *service);
 
 #endif

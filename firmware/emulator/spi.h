@@ -16,7 +16,7 @@ struct spi {
   void *owner;
 };
 
-// `exchange` is called with every byte that has been sent and returns what the line to the chip held.
+// `exchange` is called with every byte sent and returns the byte received.
 void spi_create(struct spi *spi, struct chip *chip, uint8_t (*exchange)(void *owner, uint8_t sent),
                 void *owner);
 

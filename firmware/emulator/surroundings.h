@@ -12,7 +12,7 @@ struct surroundings {
   double rate[3];      // rad/s
   bool beacon_right, beacon_left;
   double battery;           // V
-  double encoder_error[4];  // rad by which a fin's encoder shows too much; NAN: it shows what it last showed
+  double encoder_error[4];  // rad, error of each fin's encoder; NAN: it repeats its last reading
 };
 
 // At the surface of still water, level and at rest, with a charged battery.
@@ -22,10 +22,10 @@ struct surroundings {
 // PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3
 #define SURROUNDINGS_NUMBERS 15
 
-// Takes over what these numbers tell; false, and nothing taken over, where that cannot be.
+// Sets the surroundings to these numbers; false, without a change, if they are impossible.
 bool surroundings_read(struct surroundings *surroundings, const double numbers[SURROUNDINGS_NUMBERS]);
 
-// What may be wrong with a device: it does not answer, or it goes on showing what it last showed.
+// Fault of a device: it does not answer, or it repeats its last reading.
 enum fault { FAULT_NONE, FAULT_ABSENT, FAULT_STUCK };
 
 #endif

@@ -81,7 +81,7 @@ static uint8_t corrected_status(struct twi *twi, uint8_t status) {
 static void on_control_written(void *owner, uint8_t value) {
   struct twi *twi = owner;
   if (value & TWCR_TWINT) {
-    // Writing a 1 clears the flag, which libsimavr lets a program that polls find set.
+    // Writing a 1 clears the flag; libsimavr leaves it set for a program that polls.
     twi->chip->avr->data[REGISTER_TWCR] &= (uint8_t)~TWCR_TWINT;
   }
   avr_cycle_timer_slot_p slot = chip_module_timer(twi->chip, twi->module);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The I2C bus: gives it the speed that the program has chosen, and passes what happens on it to the devices.
+// The I2C bus, at the speed that the program has set, with its devices.
 //
-// libsimavr takes 9 µs for every character whatever the bus clock is, and tells of an absent device as if it
-// had refused a data byte. Both are set right here.
+// libsimavr takes 9 µs for every character at any bus clock, and reports an absent device like a refused data
+// byte. Both are corrected here.
 #ifndef TWI_H
 #define TWI_H
 
@@ -21,8 +21,8 @@ struct twi {
   unsigned device_count;
   struct i2c_device *selected;
   unsigned index;
-  bool addressed;                // the address has gone out, and its outcome has not been put right yet
-  avr_cycle_count_t timer_when;  // of the timer that has been put right
+  bool addressed;                // the address was sent, and its status is not corrected yet
+  avr_cycle_count_t timer_when;  // of the corrected timer
 };
 
 void twi_create(struct twi *twi, struct chip *chip);

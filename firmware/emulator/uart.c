@@ -32,7 +32,7 @@ static void on_received(void *owner, uint8_t byte, bool framing_error) {
     avr_regbit_set(avr, module->dor);
     return;
   }
-  // The character has taken its time on the line already; libsimavr would wait for it once more.
+  // The character's time on the line has already passed; libsimavr would wait for it again.
   avr_cycle_count_t cycles_per_byte = module->cycles_per_byte;
   module->cycles_per_byte = 1;
   avr_raise_irq(module->io.irq + UART_IRQ_INPUT, byte | (framing_error ? UART_INPUT_FE : 0u));
@@ -44,7 +44,7 @@ static uint8_t on_read(avr_t *avr, avr_io_addr_t address, void *param) {
   struct uart *uart = param;
   avr_uart_t *module = uart->module;
   uint8_t byte = uart->inner_read(avr, address, uart->inner_read_param);
-  // libsimavr holds back the next one, and tells of it only a character's time later.
+  // libsimavr would report the next one only a character's time later.
   if (characters_waiting(module)) {
     avr_raise_interrupt(avr, &module->rxc);
   }
@@ -73,7 +73,7 @@ static void on_data_written(void *owner, uint8_t value) {
     return;
   }
   uart->written = false;
-  uart->module->tx_cnt = 0;  // or else libsimavr says TXC, too early
+  uart->module->tx_cnt = 0;  // otherwise libsimavr sets TXC too early
   double delay = uart->buffer_free - (double)chip_now(uart->chip);
   avr_cycle_timer_register(uart->chip->avr, delay > 2 ? (avr_cycle_count_t)delay : 2, uart->buffer_timer,
                            uart->module);
@@ -95,7 +95,7 @@ static void on_baud_written(void *owner, uint8_t value) {
   follow_baud(owner);
 }
 
-// libsimavr names its timer nowhere; writing a character shows it.
+// libsimavr does not expose its timer; writing a character reveals it.
 static avr_cycle_timer_t find_buffer_timer(struct chip *chip, avr_uart_t *module) {
   avr_t *avr = chip->avr;
   avr_regbit_set(avr, module->txen);

@@ -8,16 +8,16 @@
 #define PERIOD_MAX 1.0
 #define NUMBERS_WITHOUT_ENCODERS 11
 
-static void on_due(void *owner) {
+static void on_period(void *owner) {
   struct water *water = owner;
   chip_timer_start(&water->due, water->due.when + water->period);
   water->fins_due = true;
   chip_interrupt(&water->board->chip);
 }
 
-void water_create(struct water *water, struct board *board, struct clients *clients, double patience) {
-  *water = (struct water){.board = board, .clients = clients, .patience = patience};
-  chip_timer_add(&board->chip, &water->due, on_due, water);
+void water_create(struct water *water, struct board *board, struct clients *clients, double timeout) {
+  *water = (struct water){.board = board, .clients = clients, .timeout = timeout};
+  chip_timer_add(&board->chip, &water->due, on_period, water);
 }
 
 bool water_attach(struct water *water, struct client *client, double period, avr_cycle_count_t start) {
@@ -31,7 +31,7 @@ bool water_attach(struct water *water, struct client *client, double period, avr
   return true;
 }
 
-void water_gone(struct water *water, const struct client *client) {
+void water_disconnect(struct water *water, const struct client *client) {
   if (client == water->client) {
     water->client = NULL;
     water->waiting = water->fins_due = false;
@@ -39,7 +39,7 @@ void water_gone(struct water *water, const struct client *client) {
   }
 }
 
-void water_tell_fins(struct water *water, struct client *client, const char *word) {
+void water_send_fins(struct water *water, struct client *client, const char *word) {
   const struct board *board = water->board;
   const struct devices *devices = &board->devices;
   double angle[FIN_COUNT], speed[FIN_COUNT];
@@ -49,30 +49,30 @@ void water_tell_fins(struct water *water, struct client *client, const char *wor
     speed[fin] = motors_fin_speed(&devices->motors, fin);
     drive[fin] = drv8830_drive(&devices->bridges[fin]);
   }
-  clients_tell(water->clients, client, "%s %.6f %.5f %.5f %.5f %.5f %.4f %.4f %.4f %.4f %d %d %d %d %d %d",
+  clients_send(water->clients, client, "%s %.6f %.5f %.5f %.5f %.5f %.4f %.4f %.4f %.4f %d %d %d %d %d %d",
                word, chip_seconds(chip_now(&board->chip)), angle[0], angle[1], angle[2], angle[3], speed[0],
                speed[1], speed[2], speed[3], drive[0], drive[1], drive[2], drive[3], devices->motor_power,
                board->pins.led);
 }
 
-void water_ask(struct water *water, double now) {
+void water_request(struct water *water, double now) {
   if (water->fins_due) {
     water->fins_due = false;
     water->waiting = true;
-    water->waiting_until = now + water->patience;
-    water_tell_fins(water, water->client, "fins");
+    water->wait_until = now + water->timeout;
+    water_send_fins(water, water->client, "fins");
   }
 }
 
-bool water_awaited(struct water *water, double now) {
-  if (water->waiting && now >= water->waiting_until) {
+bool water_waiting(struct water *water, double now) {
+  if (water->waiting && now >= water->wait_until) {
     water->waiting = false;
     water->late++;
   }
   return water->waiting;
 }
 
-// How many numbers the text is; -1 where it is something else, or they are more than `most`.
+// Count of the numbers in the text; -1 if there is anything else, or more than `most`.
 static int read_numbers(const char *text, double *numbers, int most) {
   for (int count = 0;; count++) {
     char *end;

@@ -15,7 +15,7 @@ constexpr uint64_t kByteUs = 10 * 1000000ULL / kBaud;
 
 }  // namespace
 
-void pass(uint32_t us) {
+void advance(uint32_t us) {
   Board& board = the_board;
   board.now_us += us;
   while (!board.waiting.empty() && board.line_free_us + kByteUs <= board.now_us) {

@@ -1,5 +1,4 @@
-// A board that exists in memory only: the other side of the seam, for tests on a computer. Time passes when
-// told to.
+// A board in memory, for tests on a computer: it implements board/board.h. Time passes only by `advance`.
 #pragma once
 #include <stdint.h>
 
@@ -11,7 +10,7 @@
 namespace mucat {
 namespace host {
 
-// Answers an I2C transfer; 0 where no device answers.
+// Answers an I2C transfer; 0 if no device answers.
 using I2cBus = uint8_t (*)(uint8_t address, const uint8_t* out, uint8_t out_size, uint8_t* in,
                            uint8_t in_size);
 
@@ -26,7 +25,7 @@ struct Board {
   std::deque<uint8_t> waiting;  // written by the firmware, not yet on the line
   std::vector<uint8_t> to_host;
   uint64_t line_free_us = 0;
-  uint32_t overwritten = 0;  // bytes that were written without asking for room
+  uint32_t overwritten = 0;  // bytes that were written without room
 
   I2cBus i2c = nullptr;
   uint16_t encoders[kFinCount] = {};  // the AS5040's 16 bits
@@ -40,9 +39,9 @@ struct Board {
 
 extern Board the_board;
 
-// Lets time pass: the line carries what waits, at its baud.
-void pass(uint32_t us);
-// What a reset clears is cleared; the counter of boots, kept memory and the surroundings stay.
+// Lets time pass: the line sends waiting bytes at its baud.
+void advance(uint32_t us);
+// Resets the board; the boot counter, retained memory and the surroundings stay.
 void reset(ResetCause cause);
 
 }  // namespace host

@@ -1,4 +1,4 @@
-// The firmware's parts by plain C names, for tests in Python.
+// The firmware's parts with plain C names, for tests in Python.
 #include <string.h>
 
 #include "board.h"
@@ -38,7 +38,7 @@ void decoder_set_key(FrameDecoder* decoder, uint32_t key) { decoder->set_key(key
 bool decoder_open(const FrameDecoder* decoder) { return decoder->open(); }
 uint16_t decoder_invalid(const FrameDecoder* decoder) { return decoder->invalid(); }
 
-// The next message as its type and its payload in `out`; the payload's size, or -1 after the last message.
+// Writes the next message's type and payload; returns the payload's size, or -1 after the last message.
 int decoder_next(FrameDecoder* decoder, uint8_t* type, uint8_t* out) {
   Message message;
   if (!decoder->next(&message)) return -1;
@@ -69,7 +69,7 @@ bool queue_push(MessageQueue* queue, uint8_t type, const uint8_t* payload, uint8
   return queue->push(type, payload, size);
 }
 
-// Takes the oldest message, its type first; its size, or 0 where there is none.
+// Removes the oldest message, its type first; returns its size, or 0 if there is none.
 uint8_t queue_pop(MessageQueue* queue, uint8_t* out) {
   uint8_t message[kReliableBytesMax];
   const uint8_t size = queue->peek(0, message);
@@ -78,7 +78,7 @@ uint8_t queue_pop(MessageQueue* queue, uint8_t* out) {
   return size;
 }
 
-// A number as a line of text writes it, with that many digits, or with as many as it takes where they are 0.
+// Writes a number like a debug line, with that many digits, or with as many as needed if `digits` is 0.
 uint8_t debug_number(uint16_t number, uint8_t digits, char* text) {
   DebugLine line(DebugLevel::kInfo);
   if (digits) {
@@ -92,7 +92,7 @@ uint8_t debug_number(uint16_t number, uint8_t digits, char* text) {
 
 // ---- fins ----
 
-// x, y, z, roll, pitch, yaw; directions are taken in and given back.
+// `command` is x, y, z, roll, pitch, yaw; `directions` are input and output.
 void firmware_mix(const int8_t* command, float* directions, float* amplitudes) {
   Navigation navigation;
   memcpy(&navigation, command, sizeof navigation);
@@ -134,7 +134,7 @@ int8_t loop_step(PositionLoop* loop, uint8_t fin, int16_t set_point, int16_t mea
 
 // ---- sensors ----
 
-// The counts of fin 0's encoder where it sends this word; -1 where the word is refused.
+// Fin 0's encoder counts for this word; -1 if the word is refused.
 int firmware_encoder_counts(uint16_t word) {
   host::the_board.encoders[0] = word;
   int16_t counts;
@@ -183,7 +183,7 @@ void board_receive(const uint8_t* bytes, uint32_t size) {
   host::the_board.to_board.insert(host::the_board.to_board.end(), bytes, bytes + size);
 }
 
-// Takes what the board sent, up to `room` bytes; returns how many.
+// Reads up to `room` bytes that the board sent; returns their count.
 uint32_t board_take(uint8_t* bytes, uint32_t room) {
   std::vector<uint8_t>& sent = host::the_board.to_host;
   const uint32_t size = sent.size() < room ? sent.size() : room;
@@ -192,7 +192,7 @@ uint32_t board_take(uint8_t* bytes, uint32_t room) {
   return size;
 }
 
-// A new board: nothing is remembered.
+// Creates a new board without any memory.
 void board_power_up() { host::the_board = host::Board(); }
 
 Robot* robot_start(uint8_t reset_cause) {
@@ -203,10 +203,10 @@ Robot* robot_start(uint8_t reset_cause) {
 }
 void robot_destroy(Robot* robot) { delete robot; }
 
-// Runs the main loop for that long, a pass a millisecond.
+// Runs the main loop for this time, one pass a millisecond.
 void robot_run(Robot* robot, uint32_t milliseconds) {
   while (milliseconds--) {
-    host::pass(1000);
+    host::advance(1000);
     robot->step();
   }
 }

@@ -168,9 +168,9 @@ def test_two_boards_cannot_share_a_socket(tmp_path: Path) -> None:
     [
         ("/nowhere.elf", "tty", "board", "board: cannot read /nowhere.elf: No such file or directory"),
         (__file__, "tty", "board", f"board: {__file__} is not an ELF file for an AVR"),
-        (ECHO, "no/tty", "board", "board: cannot make .*/no/tty: No such file or directory"),
-        (ECHO, "file", "board", "board: .*/file is in the way: it is not a link"),
-        (ECHO, "tty", "file", "board: .*/file is in the way: it is not a socket"),
+        (ECHO, "no/tty", "board", "board: cannot create .*/no/tty: No such file or directory"),
+        (ECHO, "file", "board", "board: .*/file exists and is not a link"),
+        (ECHO, "tty", "file", "board: .*/file exists and is not a socket"),
         (ECHO, "tty", "no/board", "board: cannot listen at .*/no/board: No such file or directory"),
         (ECHO, "tty", "b" * 120, "board: the socket's path is longer than 107 bytes"),
     ],
@@ -201,7 +201,7 @@ def test_a_file_that_is_no_eeprom_is_refused_and_kept(tmp_path: Path) -> None:
         (["--speed", "fast"], "--speed takes a number from 0 to 1000"),
         (["--speed", "-1"], "--speed takes a number from 0 to 1000"),
         (["--tempo", "1"], "unrecognized option '--tempo'"),
-        (["more"], "an argument too many"),
+        (["more"], "unexpected argument"),
     ],
 )
 def test_bad_command_lines_are_refused(arguments: list[str], message: str) -> None:

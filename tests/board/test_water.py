@@ -130,8 +130,8 @@ def test_a_living_board_waits_50_ms_and_then_goes_on(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("dance", "there is no such command"),
-        ("", "there is no such command"),
+        ("dance", "unknown command"),
+        ("", "unknown command"),
         ("attach", "attach takes a period"),
         ("attach 0", "attach takes a period"),
         ("attach 0.005x", "attach takes a period"),

@@ -1,7 +1,7 @@
 """Corrupted frames by the million, through the chip's decoder and the host's, over the same bytes.
 
-`firmware/host/proofs/corruption.h` says how lines harm frames and what counts as corrupted and as undetected:
-a frame that was believed and is not one that was sent in this session, in order and at most once.
+`firmware/host/proofs/corruption.h` defines the damage. An undetected corruption is an accepted frame that was not
+sent in this session, in order and at most once.
 """
 
 import ctypes
@@ -16,14 +16,14 @@ from tests.board.rig import ROOT, build
 Checksum = Literal["crc32", "crc16", "xor8"]
 End = Literal["chip", "host"]
 ENDS: tuple[End, ...] = ("chip", "host")
-STRETCH = 2000
-"""Harmed frames that are read at once."""
+BATCH = 2000
+"""Damaged frames that are read at once."""
 
 
 class Model(NamedTuple):
-    """A way to harm frames: its number in corruption.h, and the rate of bit errors where that matters."""
+    """A kind of damage: its number in corruption.h, and the rate of bit errors."""
 
-    harm: int
+    damage: int
     rate: float = 0.0
 
 
@@ -48,22 +48,22 @@ MODELS = {
 
 @dataclass
 class Counts:
-    """Frames that were not whole, whole ones that were believed, and believed ones that were never sent."""
+    """Damaged frames, accepted frames that were sent, and accepted frames that were never sent."""
 
     corrupted: int = 0
-    believed: int = 0
+    accepted: int = 0
     undetected: int = 0
 
     def __add__(self, other: Self) -> "Counts":
         return Counts(
             self.corrupted + other.corrupted,
-            self.believed + other.believed,
+            self.accepted + other.accepted,
             self.undetected + other.undetected,
         )
 
 
-class HarmfulLine:
-    """A line of firmware/host/proofs, whose frames have this checksum."""
+class DamagingLine:
+    """A line of firmware/host/proofs whose frames have this checksum."""
 
     def __init__(self, checksum: Checksum, model: str, seed: int) -> None:
         self._library = _load(checksum)
@@ -76,22 +76,22 @@ class HarmfulLine:
     def __exit__(self, *_: object) -> None:
         self._library.corruption_destroy(self._line)
 
-    def stretches(self, frames: int) -> Iterator[None]:
-        """Carry at least so many harmed frames, a stretch at a time, to be read by `chip` and `host`."""
-        for start in range(0, frames, STRETCH):
-            self._library.corruption_carry(self._line, min(STRETCH, frames - start))
+    def batches(self, frames: int) -> Iterator[None]:
+        """Makes at least `frames` damaged frames, a batch at a time, to be read by `chip` and `host`."""
+        for start in range(0, frames, BATCH):
+            self._library.corruption_carry(self._line, min(BATCH, frames - start))
             yield
 
     def chip(self) -> Counts:
-        """What the chip's decoder makes of the stretch."""
+        """Counts of the batch by the chip's decoder."""
         counts = (ctypes.c_uint32 * 3)()
         self._library.corruption_read(self._line, counts)
         return Counts(*counts)
 
     def host(self) -> Counts:
-        """What the host's decoder makes of the same bytes."""
-        harmed = self._bytes("harmed")
-        counts = Counts(corrupted=sum(harmed) + int(self._library.corruption_strangers(self._line)))
+        """Counts of the same bytes by the host's decoder."""
+        damaged = self._bytes("damaged")
+        counts = Counts(corrupted=sum(damaged) + int(self._library.corruption_foreign(self._line)))
         sent = [frame + b"\0" for frame in self._bytes("sent").split(b"\0")[:-1]]
         decoder = Decoder()
         decoder.key = self.key
@@ -106,8 +106,8 @@ class HarmfulLine:
             except ValueError:
                 counts.undetected += 1
                 continue
-            counts.believed += 1
-            counts.corrupted -= harmed[found]
+            counts.accepted += 1
+            counts.corrupted -= damaged[found]
             at = found + 1
         return counts
 
@@ -117,21 +117,21 @@ class HarmfulLine:
 
 
 def prepare() -> None:
-    """Compile the lines."""
+    """Compiles the lines."""
     build(ROOT / "firmware", "proofs")
 
 
 def measure(end: End, model: str, frames: int, checksum: Checksum = "crc32", seed: int = 0) -> Counts:
-    """Let one end read at least so many harmed frames; the same for the same seed."""
-    with HarmfulLine(checksum, model, seed * len(MODELS) + list(MODELS).index(model)) as line:
+    """Counts of one end that reads at least `frames` damaged frames; the same for the same seed."""
+    with DamagingLine(checksum, model, seed * len(MODELS) + list(MODELS).index(model)) as line:
         read: Callable[[], Counts] = getattr(line, end)
-        return sum((read() for _ in line.stretches(frames)), Counts())
+        return sum((read() for _ in line.batches(frames)), Counts())
 
 
 def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
-    """By end and model: each end reads at least so many harmed frames, the models in equal shares."""
+    """Counts by end and model: each end reads at least `frames` damaged frames, equally of each model."""
     prepare()
-    share = -(-frames // len(MODELS) // STRETCH) * STRETCH
+    share = -(-frames // len(MODELS) // BATCH) * BATCH
     tasks: list[tuple[End, str]] = [(end, model) for end in ENDS for model in MODELS]
     with ProcessPoolExecutor(2) as processes:
         futures = [processes.submit(measure, end, model, share) for end, model in tasks]
@@ -139,7 +139,7 @@ def measure_all(frames: int) -> dict[tuple[End, str], Counts]:
 
 
 def table(counts: Mapping[tuple[End, str], Counts]) -> str:
-    """For people: undetected of corrupted frames, by model and end."""
+    """A text table: undetected of corrupted frames, by model and end."""
     lines = [f"{'undetected of corrupted':<28}" + "".join(f"{end:>22}" for end in ENDS)]
     for model in MODELS:
         cells = (counts[end, model] for end in ENDS)
@@ -159,14 +159,14 @@ def _load(checksum: Checksum) -> ctypes.CDLL:
     library.corruption_destroy.argtypes = [pointer]
     library.corruption_carry.argtypes = [pointer, number]
     library.corruption_read.argtypes = [pointer, pointer]
-    for name in ("line", "sent", "harmed"):
+    for name in ("line", "sent", "damaged"):
         getattr(library, f"corruption_{name}").restype = pointer
-    for name in ("key", "line_size", "sent_size", "harmed_size", "strangers"):
+    for name in ("key", "line_size", "sent_size", "damaged_size", "foreign"):
         getattr(library, f"corruption_{name}").restype = number
     for name in (
         "key",
-        "strangers",
-        *(f"{it}{of}" for it in ("line", "sent", "harmed") for of in ("", "_size")),
+        "foreign",
+        *(f"{it}{of}" for it in ("line", "sent", "damaged") for of in ("", "_size")),
     ):
         getattr(library, f"corruption_{name}").argtypes = [pointer]
     return library

@@ -14,7 +14,7 @@ constexpr uint64_t kTickUs = 10000;
 constexpr double kFullScaleVolts = 5;
 constexpr double kBatteryDivider = 2;  // two equal resistors
 constexpr uint16_t kCountsMax = 1023;
-constexpr size_t kPortBytesMax = 4096;  // as much as Linux keeps for a serial port
+constexpr size_t kPortBytesMax = 4096;  // as much as Linux buffers for a serial port
 
 double seconds(const void* owner) { return static_cast<const Board*>(owner)->now_us * 1e-6; }
 
@@ -35,7 +35,7 @@ void Board::reset(ResetCause why) {
   robot->start();
 }
 
-void Board::pass() {
+void Board::advance() {
   current = this;
   now_us += 1000;
   motors_step(&parts.motors);

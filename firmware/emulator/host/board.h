@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board that is this computer: the firmware itself, compiled for it, with the emulated board's own devices
-// on its buses. Time passes when told to, and what the firmware computes takes none of it.
+// The firmware compiled for this computer, with the emulated board's devices on its buses. Time passes only
+// by `advance`; the firmware's computing takes none of it.
 #ifndef HOST_BOARD_H
 #define HOST_BOARD_H
 
@@ -22,10 +22,10 @@ struct Board {
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
-  // As the reset pin does it: devices, EEPROM and what memory keeps stay.
+  // Resets like the reset pin: devices, EEPROM and retained memory stay.
   void reset(ResetCause cause);
-  // A millisecond passes.
-  void pass();
+  // Lets a millisecond pass.
+  void advance();
 
   uint64_t now_us = 0;
   uint64_t ticks_taken = 0;
@@ -34,7 +34,7 @@ struct Board {
   board::RetainedMemory retained = {};
   devices parts;
   Wire to_board, from_board;
-  std::deque<uint8_t> received;  // by the board, not read yet
+  std::deque<uint8_t> received;  // received by the board, not read yet
   uint16_t bytes_lost = 0;
   std::vector<uint8_t> for_host;
   uint16_t battery_counts = 0;
@@ -43,7 +43,7 @@ struct Board {
   std::unique_ptr<Robot> robot;
 };
 
-// The board whose firmware runs now: what it calls has no argument that would say so.
+// The board whose firmware runs now; the firmware's calls have no argument for it.
 extern Board* current;
 
 }  // namespace host

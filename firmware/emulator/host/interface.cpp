@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board by plain C names, for robot_runtime/simulation/boards/host_board.py.
+// The host board with plain C names, for robot_runtime/simulation/boards/host_board.py.
 #include <string.h>
 
 #include "board.h"
@@ -19,7 +19,7 @@ Wire* wire(Board* board, int direction) {
 
 extern "C" {
 
-// Powered, its main loop at its beginning.
+// Creates a powered board, before the first pass of its main loop.
 Board* board_create() {
   Board* const board = new Board;
   board->reset(mucat::ResetCause::kPowerOn);
@@ -34,9 +34,9 @@ void board_send(Board* board, const uint8_t* bytes, uint32_t size) {
   board->to_board.waiting.insert(board->to_board.waiting.end(), bytes, bytes + size);
 }
 
-// Lets that much time pass, and puts what has come for the host into `bytes`; how much that is.
+// Lets time pass and writes the bytes for the host into `bytes`; returns their count.
 uint32_t board_run(Board* board, uint32_t milliseconds, uint8_t* bytes, uint32_t room) {
-  while (milliseconds--) board->pass();
+  while (milliseconds--) board->advance();
   if (board->now_us <= board->from_board.stalled_until) return 0;
   const uint32_t size = board->for_host.size() < room ? board->for_host.size() : room;
   memcpy(bytes, board->for_host.data(), size);
@@ -54,7 +54,7 @@ void board_fins(const Board* board, double* numbers) {
   numbers[3 * FIN_COUNT] = board->parts.motor_power;
 }
 
-// The numbers of the emulated board's line `sense`; false where they cannot be.
+// Sets the numbers of the emulated board's line `sense`; false if they are impossible.
 bool board_sense(Board* board, const double* numbers) {
   return surroundings_read(&board->parts.surroundings, numbers);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One direction of the serial line, a character at a time, with its faults. Where a start
-// bit is disturbed the character is lost; a receiver that takes another edge for it is left to the emulated
-// board.
+// One direction of the serial line, a character at a time, with its faults. With a wrong
+// start bit the character is lost; only the emulated board has receivers that take another edge for it.
 #ifndef HOST_WIRE_H
 #define HOST_WIRE_H
 
@@ -20,11 +19,11 @@ namespace host {
 struct Wire {
   using Deliver = std::function<void(uint8_t byte)>;
 
-  // Carries what waits and has time to arrive until `now` (us).
+  // Delivers the waiting characters that arrive until `now` (us).
   void carry(double now, const Deliver& deliver);
 
   std::deque<uint8_t> waiting;
-  double free = 0;           // us at which the last character has gone
+  double free = 0;           // us, end of the last character
   double stalled_until = 0;  // us
   line_faults faults = {};
 

@@ -14,11 +14,11 @@ constexpr uint8_t kTypes[] = {Start::kType,     Navigation::kType, Imu::kType,  
 constexpr uint32_t kBurstBits = 64;
 constexpr uint32_t kGarbageBytes = 200;
 
-// A frame that was understood: the bytes that it came as, and what the decoder says that it says.
-struct Understood {
+// An accepted frame: its bytes on the line, and its decoded contents.
+struct AcceptedFrame {
   std::vector<uint8_t> bytes;
   std::vector<uint8_t> contents;
-  bool operator==(const Understood& other) const {
+  bool operator==(const AcceptedFrame& other) const {
     return bytes == other.bytes && contents == other.contents;
   }
 };
@@ -32,10 +32,10 @@ std::vector<uint8_t> contents(FrameDecoder* decoder) {
   return all;
 }
 
-std::vector<Understood> read_all(const std::vector<uint8_t>& line, uint32_t key) {
+std::vector<AcceptedFrame> read_all(const std::vector<uint8_t>& line, uint32_t key) {
   FrameDecoder decoder;
   decoder.set_key(key);
-  std::vector<Understood> frames;
+  std::vector<AcceptedFrame> frames;
   auto start = line.begin();
   for (auto at = line.begin(); at != line.end(); ++at) {
     if (decoder.feed(*at)) frames.push_back({{start, at}, contents(&decoder)});
@@ -46,8 +46,8 @@ std::vector<Understood> read_all(const std::vector<uint8_t>& line, uint32_t key)
 
 }  // namespace
 
-Corruption::Corruption(Harm harm, double rate, uint64_t seed)
-    : harm_(harm),
+Corruption::Corruption(Damage damage, double rate, uint64_t seed)
+    : damage_(damage),
       rate_(rate),
       random_(seed),
       host_epoch_(static_cast<uint16_t>(random_())),
@@ -57,34 +57,34 @@ Corruption::Corruption(Harm harm, double rate, uint64_t seed)
 void Corruption::carry(uint32_t frames) {
   line_.clear();
   sent_bytes_.clear();
-  harmed_.clear();
-  harmed_frames_ = 0;
-  strangers_ = 0;
-  while (harmed_frames_ + strangers_ < frames) harm_one();
+  damaged_.clear();
+  damaged_frames_ = 0;
+  foreign_ = 0;
+  while (damaged_frames_ + foreign_ < frames) damage_one();
 }
 
 Counts Corruption::read() const {
-  const std::vector<Understood> sent = read_all(sent_bytes_, key_);
-  Counts counts = {harmed_frames_ + strangers_, 0, 0};
+  const std::vector<AcceptedFrame> sent = read_all(sent_bytes_, key_);
+  Counts counts = {damaged_frames_ + foreign_, 0, 0};
   size_t next = 0;
-  for (const Understood& frame : read_all(line_, key_)) {
+  for (const AcceptedFrame& frame : read_all(line_, key_)) {
     const auto found = std::find(sent.begin() + next, sent.end(), frame);
     if (found == sent.end()) {
       ++counts.undetected;
       continue;
     }
-    ++counts.believed;
+    ++counts.accepted;
     const size_t at = found - sent.begin();
-    if (harmed_[at]) --counts.corrupted;
+    if (damaged_[at]) --counts.corrupted;
     next = at + 1;
   }
   return counts;
 }
 
-// In (0, 1].
-double Corruption::share() { return (static_cast<double>(random_() >> 11) + 1) / 9007199254740992.0; }
+// A random number in (0, 1].
+double Corruption::uniform() { return (static_cast<double>(random_() >> 11) + 1) / 9007199254740992.0; }
 
-// Any frame of a session, of one to five packets. Every other one is rich in zeros, which COBS is about.
+// A random frame of a session, of one to five packets. Every other one has many zeros, for COBS.
 Corruption::Bytes Corruption::frame(uint32_t key) {
   const uint32_t zeros = chance(2) ? 3 : 256;
   FramePacker packer;
@@ -126,7 +126,7 @@ Corruption::Bytes Corruption::open_frame() {
   return Bytes(bytes, bytes + size);
 }
 
-// The key of a session before or after this one, of one whose epochs look alike, or of any.
+// The key of a neighbouring session, of one with similar epochs, or of any.
 uint32_t Corruption::neighbour() {
   uint16_t host = host_epoch_, board = board_epoch_;
   switch (below(4)) {
@@ -147,17 +147,17 @@ uint32_t Corruption::neighbour() {
   return key == key_ || key == kOpen ? neighbour() : key;
 }
 
-void Corruption::send(const Bytes& frame, bool harmed) {
+void Corruption::send(const Bytes& frame, bool damaged) {
   sent_bytes_.insert(sent_bytes_.end(), frame.begin(), frame.end());
-  harmed_.push_back(harmed);
-  harmed_frames_ += harmed;
+  damaged_.push_back(damaged);
+  damaged_frames_ += damaged;
 }
 
 void Corruption::put(const Bytes& bytes) { line_.insert(line_.end(), bytes.begin(), bytes.end()); }
 
-void Corruption::stranger(Bytes bytes) {
+void Corruption::send_foreign(Bytes bytes) {
   put(bytes);
-  ++strangers_;
+  ++foreign_;
 }
 
 void Corruption::flip_some(Bytes* bytes) {
@@ -172,37 +172,37 @@ void Corruption::flip_some(Bytes* bytes) {
   }
 }
 
-void Corruption::harm_one() {
-  switch (harm_) {
-    case Harm::kBitErrors:
+void Corruption::damage_one() {
+  switch (damage_) {
+    case Damage::kBitErrors:
       bit_errors();
       break;
-    case Harm::kBurst:
+    case Damage::kBurst:
       burst();
-      return;  // the next frame is in it
-    case Harm::kTruncated:
+      return;  // contains the next frame
+    case Damage::kTruncated:
       truncate();
       break;
-    case Harm::kJoined:
+    case Damage::kJoined:
       join();
       break;
-    case Harm::kGarbage:
+    case Damage::kGarbage:
       garbage();
       break;
-    case Harm::kWrongChecksum:
+    case Damage::kWrongChecksum:
       wrong_checksum();
       break;
-    case Harm::kOtherSession:
-      stranger(frame(neighbour()));
+    case Damage::kOtherSession:
+      send_foreign(frame(neighbour()));
       break;
-    case Harm::kOtherSessionBits: {
+    case Damage::kOtherSessionBits: {
       Bytes bytes = frame(neighbour());
       flip_some(&bytes);
-      stranger(bytes);
+      send_foreign(bytes);
       break;
     }
     default:
-      harm_bytes();
+      damage_bytes();
   }
   const Bytes whole = frame(key_);
   send(whole, false);
@@ -215,11 +215,11 @@ void Corruption::bit_errors() {
   const double bits = 8.0 * static_cast<double>(bytes.size());
   // Distances between errors are geometrically distributed; the first one is known to lie in the frame.
   const double none = log1p(-rate_);
-  double at = floor(log1p(share() * expm1(bits * none)) / none);
+  double at = floor(log1p(uniform() * expm1(bits * none)) / none);
   while (at < bits) {
     const uint32_t bit = static_cast<uint32_t>(at);
     bytes[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
-    at += 1 + floor(log(share()) / none);
+    at += 1 + floor(log(uniform()) / none);
   }
   put(bytes);
 }
@@ -241,22 +241,22 @@ void Corruption::burst() {
   put(both);
 }
 
-void Corruption::harm_bytes() {
+void Corruption::damage_bytes() {
   Bytes bytes = chance(8) ? open_frame() : frame(key_);
   send(bytes, true);
-  const uint32_t count = harm_ == Harm::kMoved ? 1 : 1 + below(3);
+  const uint32_t count = damage_ == Damage::kMoved ? 1 : 1 + below(3);
   for (uint32_t i = 0; i < count && !bytes.empty(); ++i) {
     const auto at = bytes.begin() + below(static_cast<uint32_t>(bytes.size()));
-    if (harm_ == Harm::kInserted) {
+    if (damage_ == Damage::kInserted) {
       bytes.insert(at, static_cast<uint8_t>(random_()));
-    } else if (harm_ == Harm::kDoubled) {
+    } else if (damage_ == Damage::kDoubled) {
       const uint8_t byte = *at;
       bytes.insert(at, byte);
     } else {
       bytes.erase(at);
     }
   }
-  if (harm_ == Harm::kMoved) {
+  if (damage_ == Damage::kMoved) {
     const Bytes& whole = bytes;
     const uint32_t at = below(static_cast<uint32_t>(whole.size()) + 1);
     bytes.insert(bytes.begin() + at, static_cast<uint8_t>(random_()));
@@ -290,7 +290,7 @@ void Corruption::garbage() {
   Bytes bytes(1 + below(kGarbageBytes));
   for (uint8_t& byte : bytes) byte = chance(zeros) ? 0 : static_cast<uint8_t>(random_());
   bytes.push_back(0);
-  for (size_t i = 1; i < bytes.size(); ++i) strangers_ += bytes[i] == 0 && bytes[i - 1] != 0;
+  for (size_t i = 1; i < bytes.size(); ++i) foreign_ += bytes[i] == 0 && bytes[i - 1] != 0;
   put(bytes);
 }
 
@@ -302,7 +302,7 @@ void Corruption::wrong_checksum() {
   Bytes stuffed(content[0].size() + kCobsOverhead);
   encode_cobs(content[0].data(), static_cast<uint8_t>(content[0].size()), stuffed.data());
   stuffed.push_back(0);
-  stranger(stuffed);
+  send_foreign(stuffed);
 }
 
 }  // namespace host

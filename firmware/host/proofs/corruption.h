@@ -1,10 +1,10 @@
-// A line that harms every frame it carries in one chosen way, and the count of what a decoder believes of it.
+// A line that damages frames in one chosen way, and the count of frames that a decoder accepts.
 //
-// Harm comes upon one frame at a time; a whole one follows, which shows that the decoder still listens. What
-// is believed must be a frame that was sent: the same session, number, acknowledgement and messages, in the
-// order of sending and at most once. Anything else that is believed is an undetected corruption. Where harm
-// falls between frames, as a zero put before one, the frame itself is whole: it may be believed, and does not
-// count as corrupted. Frames of other sessions were never sent in this one.
+// One frame at a time is damaged. A whole one follows, which shows that the decoder still accepts frames. An
+// accepted frame must be one that was sent: the same session, number, acknowledgement and messages, in the
+// order of sending and at most once. Any other accepted frame is an undetected corruption. Damage between
+// frames, such as a zero before one, leaves the frame whole: it may be accepted and does not count as
+// corrupted. Frames of other sessions were never sent in this one.
 #pragma once
 #include <stdint.h>
 
@@ -16,7 +16,7 @@
 namespace mucat {
 namespace host {
 
-enum class Harm : uint8_t {
+enum class Damage : uint8_t {
   kBitErrors,         // independent, at a rate, and at least one in the frame
   kBurst,             // 2 to 64 bits, of which half are wrong; may reach into the next frame
   kDeleted,           // 1 to 3 bytes
@@ -33,26 +33,26 @@ enum class Harm : uint8_t {
 
 struct Counts {
   uint32_t corrupted;   // frames that were not whole when they arrived
-  uint32_t believed;    // frames that were sent, and understood
-  uint32_t undetected;  // frames that were understood, and never sent
+  uint32_t accepted;    // accepted frames that were sent
+  uint32_t undetected;  // accepted frames that were never sent
 };
 
 class Corruption {
  public:
-  // `rate` is that of bit errors, of which the other harms know nothing.
-  Corruption(Harm harm, double rate, uint64_t seed);
-  // Makes another stretch of line, with at least so many harmed frames.
+  // `rate` is used for bit errors only.
+  Corruption(Damage damage, double rate, uint64_t seed);
+  // Makes the next batch, with at least this many damaged frames.
   void carry(uint32_t frames);
-  // Reads the stretch with the chip's decoder.
+  // Reads the batch with the chip's decoder.
   Counts read() const;
 
   const std::vector<uint8_t>& line() const { return line_; }
   // The stretch's frames as they were sent, one after the other, closing zeros included.
   const std::vector<uint8_t>& sent() const { return sent_bytes_; }
-  // For each of these whether it was harmed.
-  const std::vector<uint8_t>& harmed() const { return harmed_; }
-  // Harmed pieces of line that were never sent as frames of this session.
-  uint32_t strangers() const { return strangers_; }
+  // For each sent frame, 1 if it was damaged.
+  const std::vector<uint8_t>& damaged() const { return damaged_; }
+  // Damaged frames that were never sent in this session.
+  uint32_t foreign() const { return foreign_; }
   uint32_t key() const { return key_; }
 
  private:
@@ -60,24 +60,24 @@ class Corruption {
 
   uint32_t below(uint32_t bound) { return static_cast<uint32_t>(random_() % bound); }
   bool chance(uint32_t one_in) { return below(one_in) == 0; }
-  double share();
+  double uniform();
   Bytes frame(uint32_t key);
   Bytes open_frame();
   uint32_t neighbour();
-  void send(const Bytes& frame, bool harmed);
+  void send(const Bytes& frame, bool damaged);
   void put(const Bytes& bytes);
-  void stranger(Bytes bytes);
+  void send_foreign(Bytes bytes);
   void flip_some(Bytes* bytes);
-  void harm_one();
+  void damage_one();
   void bit_errors();
   void burst();
-  void harm_bytes();
+  void damage_bytes();
   void truncate();
   void join();
   void garbage();
   void wrong_checksum();
 
-  Harm harm_;
+  Damage damage_;
   double rate_;
   std::mt19937_64 random_;
   uint16_t host_epoch_;
@@ -85,9 +85,9 @@ class Corruption {
   uint32_t key_;
   Bytes line_;
   Bytes sent_bytes_;
-  Bytes harmed_;
-  uint32_t harmed_frames_ = 0;
-  uint32_t strangers_ = 0;
+  Bytes damaged_;
+  uint32_t damaged_frames_ = 0;
+  uint32_t foreign_ = 0;
 };
 
 }  // namespace host

@@ -1,5 +1,4 @@
-// In place of the CRC-32, for tests that must see corruptions pass: CRC-16/CCITT, of which the upper half is
-// 0.
+// Replaces the CRC-32 in tests that must see corruptions pass: CRC-16/CCITT, with the upper half 0.
 #include "link/crc32.h"
 
 namespace mucat {

@@ -1,15 +1,17 @@
-// What anybody may put on the line, for libFuzzer: the whole robot on the board in memory, and what must hold
-// of it whatever it hears. Address and undefined-behaviour sanitisers watch over the rest.
+// The fuzz target for libFuzzer: the whole firmware on the board in memory, and the properties that must hold
+// for any input on the line. Address and undefined-behaviour sanitisers check the rest.
 //
-// An input is a list of deeds, each a byte (modulo 8) and what belongs to it. Frames get their checksum and
-// stuffing here, so that what is mutated reaches the code behind these; a control byte of 0 is the right one.
+// An input is a list of actions, each a byte (modulo 8) and its arguments. Frames get their checksum and
+// stuffing here, so that mutated content reaches the code behind these. A control byte of 0 is the right one.
 //
-//   0 MS                              that much time passes, and 1 ms
-//   1 SIZE bytes                      these bytes come over the line
-//   2 CONTROL NUMBER COUNT packets    a frame of the session; each packet is the index of its type and its
-//   payload 3 CONTROL NUMBER COUNT packets    an open frame 4 SIZE bytes                      a frame of the
-//   session with any content 5 EPOCH                           a HELLO with the right definitions 6 CONTROL
-//   a START that is meant for this boot 7 CAUSE                           the board resets
+// - 0 MS: MS + 1 milliseconds pass
+// - 1 SIZE bytes: these bytes come over the line
+// - 2 CONTROL NUMBER COUNT packets: a frame of the session; a packet is the index of its type and its payload
+// - 3 CONTROL NUMBER COUNT packets: an open frame
+// - 4 SIZE bytes: a frame of the session with any content
+// - 5 EPOCH: a HELLO with the right definitions
+// - 6 CONTROL: a START for this boot
+// - 7 CAUSE: the board resets
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,8 +35,8 @@ constexpr uint32_t kLongestMs = 3000;
 constexpr uint32_t kStepUs = 1000;
 constexpr uint16_t kBatteryFull = 818;
 
-void insist(bool holds) {
-  if (!holds) abort();
+void require(bool condition) {
+  if (!condition) abort();
 }
 
 class Input {
@@ -42,13 +44,13 @@ class Input {
   Input(const uint8_t* bytes, size_t size) : at_(bytes), end_(bytes + size) {}
   bool empty() const { return at_ == end_; }
   uint8_t byte() { return empty() ? 0 : *at_++; }
-  std::vector<uint8_t> bytes(size_t most) {
-    const size_t size = std::min<size_t>(most, end_ - at_);
+  std::vector<uint8_t> bytes(size_t maximum) {
+    const size_t size = std::min<size_t>(maximum, end_ - at_);
     at_ += size;
-    std::vector<uint8_t> taken;
-    taken.reserve(most + 1);  // never a null pointer
-    taken.assign(at_ - size, at_);
-    return taken;
+    std::vector<uint8_t> bytes;
+    bytes.reserve(maximum + 1);  // never a null pointer
+    bytes.assign(at_ - size, at_);
+    return bytes;
   }
 
  private:
@@ -56,70 +58,70 @@ class Input {
   const uint8_t* end_;
 };
 
-// Hears what the board says: whole frames, and lines of text in the order in which they were said.
+// Checks the board's output: whole frames, and lines of text in order.
 class Listener {
  public:
   void begin(uint32_t key) {
     in_session_ = true;
     decoder_.set_key(key);
     expected_ = 0;
-    said_us_ = 0;
+    line_us_ = 0;
   }
   uint8_t expected() const { return expected_; }
 
   void receive(uint8_t byte) {
     const uint16_t invalid = decoder_.invalid();
     if (decoder_.feed(byte)) take();
-    insist(decoder_.invalid() == invalid);
+    require(decoder_.invalid() == invalid);
   }
 
  private:
   void take() {
-    insist(!decoder_.reliable() || decoder_.open() != in_session_);
+    require(!decoder_.reliable() || decoder_.open() != in_session_);
     const bool next = decoder_.number() == expected_;
     if (decoder_.reliable() && next) expected_ = (expected_ + 1) & 15;
     for (Message message; decoder_.next(&message);) {
       if (message.type != Debug::kType) continue;
       Debug line;
       memcpy(&line, message.payload, message.size);
-      for (uint8_t i = 0; i < line.text_size; ++i) insist(line.text[i] >= ' ' && line.text[i] <= '~');
+      for (uint8_t i = 0; i < line.text_size; ++i) require(line.text[i] >= ' ' && line.text[i] <= '~');
       if (!next) continue;
-      insist(line.time >= said_us_);
-      said_us_ = line.time;
+      require(line.time >= line_us_);
+      line_us_ = line.time;
     }
   }
 
   FrameDecoder decoder_;
   bool in_session_ = false;
-  uint32_t said_us_ = 0;
+  uint32_t line_us_ = 0;
   uint8_t expected_ = 0;
 };
 
-class Play {
+class FuzzRun {
  public:
-  Play() {
+  FuzzRun() {
     host::the_board = host::Board();
     host::the_board.battery = kBatteryFull;
     reset(ResetCause::kPowerOn);
   }
 
-  void deed(Input* input) {
+  void act(Input* input) {
     switch (input->byte() % 8) {
       case 0:
-        pass(1 + input->byte());
+        advance(1 + input->byte());
         break;
       case 1:
-        tell(input->bytes(input->byte()));
+        deliver(input->bytes(input->byte()));
         break;
       case 2:
-        tell(packets(input, key_));
+        deliver(packets(input, key_));
         break;
       case 3:
-        tell(packets(input, kOpen));
+        deliver(packets(input, kOpen));
         break;
       case 4: {
         std::vector<uint8_t> content = input->bytes(input->byte() % (kBlockBytesMax - kCrcBytes + 1));
-        if (!content.empty()) tell(frame(content, key_));
+        if (!content.empty()) deliver(frame(content, key_));
         break;
       }
       case 5:
@@ -133,7 +135,7 @@ class Play {
     }
   }
 
-  bool over() const { return passed_ms_ >= kLongestMs; }
+  bool over() const { return elapsed_ms_ >= kLongestMs; }
 
  private:
   void reset(ResetCause cause) {
@@ -141,35 +143,35 @@ class Play {
     robot_.reset(new Robot);
     robot_->start();
     host::the_board.to_host.clear();
-    // The board's own decoder starts anew, and so does ours of what it hears.
+    // The board's decoder restarts, and so does this copy of it.
     at_board_ = FrameDecoder();
     key_ = kOpen;
     number_ = 0;
     listener_ = Listener();
-    insist(!robot_->armed() && !host::the_board.motor_power);
+    require(!robot_->armed() && !host::the_board.motor_power);
   }
 
-  void pass(uint32_t ms) {
-    passed_ms_ += ms;
+  void advance(uint32_t ms) {
+    elapsed_ms_ += ms;
     while (ms--) {
-      host::pass(kStepUs);
+      host::advance(kStepUs);
       const bool armed = robot_->armed();
       robot_->step();
-      insist(armed || !robot_->armed());
+      require(armed || !robot_->armed());
       check();
     }
   }
 
-  // The board hears all of it at once, so that what it does shows what it was told.
-  void tell(const std::vector<uint8_t>& bytes) {
+  // Delivers bytes and runs the board at once, so that its state shows the effect of each frame.
+  void deliver(const std::vector<uint8_t>& bytes) {
     host::Board& board = host::the_board;
     for (uint8_t byte : bytes) {
       board.to_board.push_back(byte);
       if (byte != 0) continue;
       const bool armed = robot_->armed();
       receive();
-      insist(armed || !robot_->armed() || started_);
-      insist(!stopped_ || started_ || !robot_->armed());
+      require(armed || !robot_->armed() || started_);
+      require(!stopped_ || started_ || !robot_->armed());
     }
     receive();
   }
@@ -186,19 +188,19 @@ class Play {
     }
   }
 
-  // What the board is about to hear.
+  // Notes the content of the frame that the board reads next.
   void note() {
     const bool in_session = at_board_.open() == (key_ == kOpen);
     if (in_session && at_board_.reliable() && at_board_.number() == (number_ & 15)) ++number_;
     uint32_t key = key_;
     for (Message message; at_board_.next(&message);) {
-      if (message.type == Debug::kType) insist(message.size <= sizeof(Debug));
+      if (message.type == Debug::kType) require(message.size <= sizeof(Debug));
       if (message.type == Stop::kType) stopped_ = true;
       if (message.type == Start::kType) started_ |= read<Start>(message).epoch == host::the_board.epoch;
       if (message.type == Hello::kType) key = session_key(read<Hello>(message).epoch, host::the_board.epoch);
     }
     if (key == key_) return;
-    // What waits belongs to the session before.
+    // Waiting bytes belong to the previous session.
     for (uint8_t byte : host::the_board.waiting) host::the_board.to_host.push_back(byte);
     host::the_board.waiting.clear();
     check();
@@ -217,8 +219,8 @@ class Play {
 
   void check() {
     host::Board& board = host::the_board;
-    insist(board.overwritten == 0);
-    insist(board.waiting.size() <= board::kLineRoom);
+    require(board.overwritten == 0);
+    require(board.waiting.size() <= board::kLineRoom);
     for (uint8_t byte : board.to_host) listener_.receive(byte);
     board.to_host.clear();
   }
@@ -227,14 +229,14 @@ class Play {
     FramePacker packer;
     const Hello hello = {kDefinitionsHash, epoch, board::kLineRoom};
     packer.add(Hello::kType, &hello, sizeof hello);
-    tell(close(&packer, 0, 0, kOpen));
+    deliver(close(&packer, 0, 0, kOpen));
   }
 
   void start(uint8_t control) {
     FramePacker packer;
     const Start start = {host::the_board.epoch};
     packer.add(Start::kType, &start, sizeof start);
-    tell(close(&packer, control, number_, key_));
+    deliver(close(&packer, control, number_, key_));
   }
 
   std::vector<uint8_t> packets(Input* input, uint32_t key) {
@@ -287,7 +289,7 @@ class Play {
   Listener listener_;
   uint32_t key_ = kOpen;
   uint16_t number_ = 0;
-  uint32_t passed_ms_ = 0;
+  uint32_t elapsed_ms_ = 0;
 };
 
 }  // namespace
@@ -295,7 +297,7 @@ class Play {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   mucat::Input input(bytes, size);
-  mucat::Play play;
-  while (!input.empty() && !play.over()) play.deed(&input);
+  mucat::FuzzRun run;
+  while (!input.empty() && !run.over()) run.act(&input);
   return 0;
 }

@@ -1,26 +1,26 @@
-// The harmful line by plain C names, for Python.
+// The damaging line with plain C names, for Python.
 #include <string.h>
 
 #include "corruption.h"
 
 using mucat::host::Corruption;
 using mucat::host::Counts;
-using mucat::host::Harm;
+using mucat::host::Damage;
 
 extern "C" {
 
-Corruption* corruption_create(uint8_t harm, double rate, uint64_t seed) {
-  return new Corruption(static_cast<Harm>(harm), rate, seed);
+Corruption* corruption_create(uint8_t damage, double rate, uint64_t seed) {
+  return new Corruption(static_cast<Damage>(damage), rate, seed);
 }
 void corruption_destroy(Corruption* corruption) { delete corruption; }
 uint32_t corruption_key(const Corruption* corruption) { return corruption->key(); }
 void corruption_carry(Corruption* corruption, uint32_t frames) { corruption->carry(frames); }
 
-// corrupted, believed and undetected, by the chip's decoder.
+// Writes corrupted, accepted and undetected frames, by the chip's decoder.
 void corruption_read(const Corruption* corruption, uint32_t* counts) {
   const Counts read = corruption->read();
   counts[0] = read.corrupted;
-  counts[1] = read.believed;
+  counts[1] = read.accepted;
   counts[2] = read.undetected;
 }
 
@@ -32,9 +32,9 @@ const uint8_t* corruption_sent(const Corruption* corruption) { return corruption
 uint32_t corruption_sent_size(const Corruption* corruption) {
   return static_cast<uint32_t>(corruption->sent().size());
 }
-const uint8_t* corruption_harmed(const Corruption* corruption) { return corruption->harmed().data(); }
-uint32_t corruption_harmed_size(const Corruption* corruption) {
-  return static_cast<uint32_t>(corruption->harmed().size());
+const uint8_t* corruption_damaged(const Corruption* corruption) { return corruption->damaged().data(); }
+uint32_t corruption_damaged_size(const Corruption* corruption) {
+  return static_cast<uint32_t>(corruption->damaged().size());
 }
-uint32_t corruption_strangers(const Corruption* corruption) { return corruption->strangers(); }
+uint32_t corruption_foreign(const Corruption* corruption) { return corruption->foreign(); }
 }

@@ -1,4 +1,4 @@
-// In place of the CRC-32, for tests that must see corruptions pass: the thesis's checksum, an exclusive or.
+// Replaces the CRC-32 in tests that must see corruptions pass: the thesis's checksum, an exclusive or.
 #include "link/crc32.h"
 
 namespace mucat {

@@ -88,7 +88,7 @@ class HostBoard(SteppedBoard):
                 self._board, _DIRECTIONS[direction], kind.encode(), value.encode()
             )
         if not done:
-            raise BoardError(f"there is no such command: {command}")
+            raise BoardError(f"unknown command: {command}")
 
     def seed_line(self, seed: int) -> None:
         """Seeds the faults of the line."""
