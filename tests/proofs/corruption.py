@@ -1,7 +1,7 @@
 """Corrupted frames by the million, through the chip's decoder and the host's, over the same bytes.
 
-`firmware/host/proofs/corruption.h` defines the damage. An undetected corruption is an accepted frame that was not
-sent in this session, in order and at most once.
+`firmware/host/proofs/corruption.h` defines the damage. An undetected corruption is an accepted frame
+that was not sent in this session, in order and at most once.
 """
 
 import ctypes
