@@ -4304,7 +4304,9 @@ export interface components {
         };
         /**
          * TuningCurve
-         * @description The loop's ticks, in its unit. Times in s: since the step, or since the relay took over.
+         * @description The ticks of a loop, in order: times in s, values in the loop's unit (m, rad), outputs -1 to 1.
+         *
+         *     Times of a stored curve count from the step, or from when the relay took over.
          */
         TuningCurve: {
             /** Outputs */
@@ -5515,10 +5517,10 @@ export interface operations {
                 by?: string;
                 number?: number;
                 marker?: string;
-                /** @description what the figures are taken over */
+                /** @description start of the range for the figures */
                 start?: number | null;
                 end?: number | null;
-                /** @description what the charts show at first */
+                /** @description start of the part that the charts show first */
                 view_start?: number | null;
                 view_end?: number | null;
             };

@@ -7,8 +7,6 @@ import click
 from server.platform.command_line import FILE, RowCommand, with_settings
 from server.platform.settings import Settings, SetupError
 
-POINTS = 2000
-
 
 @click.command(cls=RowCommand)
 @click.argument("sessions", type=int, nargs=-1, required=True, metavar="SESSION...")
@@ -43,6 +41,7 @@ def report(
     from server.features.comparison.report import write_report
     from server.features.comparison.schemas import (
         DEFAULT_SIGNALS,
+        REPORT_POINTS,
         SESSIONS_MAX,
         ComparisonQuery,
     )
@@ -56,7 +55,7 @@ def report(
             sessions=list(sessions),
             signals=list(signals or DEFAULT_SIGNALS),
             align=Align.model_validate(moment),
-            points=POINTS,
+            points=REPORT_POINTS,
         )
         with open_reader(settings.data) as store:
             text = write_report(Comparer(store).compare(query))

@@ -22,11 +22,7 @@ from server.features.comparison.figures import (
     count,
     measure,
 )
-from server.features.comparison.history import (
-    read_history,
-    read_markers,
-    set_point_steps,
-)
+from server.features.comparison.history import read_history, read_markers, set_point_steps
 from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.result_cache import ResultCache
 from server.features.comparison.samples import Samples
@@ -102,14 +98,11 @@ class Comparer:
     def lines(self, query: LinesQuery) -> Lines:
         """The lines alone, for a part of the time."""
         aligned = self._align(query)
-        return Lines(
-            sessions=[
-                Drawn(
-                    id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, query)
-                )
-                for one in aligned
-            ]
-        )
+        drawn = [
+            Drawn(id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, query))
+            for one in aligned
+        ]
+        return Lines(sessions=drawn)
 
     def _open(self, session: int) -> Recording:
         return Recording(self._store, find_row(self._store, session))
@@ -121,11 +114,7 @@ class Comparer:
     def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
         # At once, since what is wanted of one topic is read together.
         found = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
-        key = (recording.row.identifier,)
-        history = self._histories.get(key)
-        if history is None:
-            history = read_history(recording, self._samples)
-            self._histories.put(key, history, recording.row)
+        history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
         set_point = found.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         markers = read_markers(self._store, recording)
@@ -161,16 +150,14 @@ class Comparer:
         band = query.band
         if query.range is not None and one.offset is None:
             return complete({}, one.problem)
-        key = (one.row.identifier, taken, band)
-        measured = self._measured.get(key)
-        if measured is None:
-            measured = measure(one.recording, self._samples, one.history, taken, band)
-            self._measured.put(key, measured, one.row)
-        place = (one.row.identifier, taken.spans)
-        counted = self._counted.get(place)
-        if counted is None:
-            counted = count(self._store, one.recording, taken.spans)
-            self._counted.put(place, counted, one.row)
+        measured = self._measured.compute(
+            one.row,
+            (taken, band),
+            lambda: measure(one.recording, self._samples, one.history, taken, band),
+        )
+        counted = self._counted.compute(
+            one.row, taken.spans, lambda: count(self._store, one.recording, taken.spans)
+        )
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
     def _draw(self, one: _AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:

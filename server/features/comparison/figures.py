@@ -11,10 +11,9 @@ from server.features.comparison.moments import ControlHistory, Span
 from server.features.comparison.samples import Samples, read_topic
 from server.features.metrics.figure import Figure, FigureMark
 from server.features.metrics.limit_cycle import LimitCycle, find_limit_cycle
-from server.features.metrics.series import Series
+from server.features.metrics.series import Series, effort, rms
 from server.features.metrics.step_response import StepResponse, measure_step
 from server.features.metrics.strokes import count_strokes
-from server.features.metrics.tracking import effort, rms
 from server.features.sessions.recording import Recording
 from server.platform.store import Reader
 

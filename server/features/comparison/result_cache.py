@@ -1,6 +1,7 @@
 """Cache of results about sessions that no longer change."""
 
 from collections import OrderedDict
+from collections.abc import Callable
 from threading import Lock
 from typing import Generic, TypeVar
 
@@ -8,28 +9,44 @@ from server.platform.models import SessionRow
 
 T = TypeVar("T")
 
-RESULTS_MOST = 64
+RESULTS_MAX = 64
 
 
 class ResultCache(Generic[T]):
-    """The newest results about complete sessions; may be used from several threads."""
+    """The newest results about complete sessions, of a limited total size; several threads may use it."""
 
-    def __init__(self) -> None:
-        self._results: OrderedDict[tuple[object, ...], T] = OrderedDict()
+    def __init__(self, most: int = RESULTS_MAX, size: Callable[[T], int] = lambda _: 1) -> None:
+        self._most = most
+        self._size = size
+        self._total = 0
+        self._results: OrderedDict[tuple[str, object], T] = OrderedDict()
         self._lock = Lock()
 
-    def get(self, key: tuple[object, ...]) -> T | None:
-        """The result stored under this key; None where there is none or it was dropped."""
+    def get(self, row: SessionRow, key: object) -> T | None:
+        """The stored result about a session; None if there is none or it was dropped."""
+        place = row.identifier, key
         with self._lock:
-            if key in self._results:
-                self._results.move_to_end(key)
-            return self._results.get(key)
+            if place in self._results:
+                self._results.move_to_end(place)
+            return self._results.get(place)
 
-    def put(self, key: tuple[object, ...], result: T, row: SessionRow) -> None:
-        """Store a result."""
-        if row.state == "recording":
+    def put(self, row: SessionRow, key: object, result: T) -> None:
+        """Store a result, in place of the oldest ones; none about a session that is still recording."""
+        if row.state == "recording" or self._size(result) > self._most:
             return
+        place = row.identifier, key
         with self._lock:
-            self._results[key] = result
-            while len(self._results) > RESULTS_MOST:
-                self._results.popitem(last=False)
+            if place in self._results:
+                self._total -= self._size(self._results.pop(place))
+            self._results[place] = result
+            self._total += self._size(result)
+            while self._total > self._most:
+                self._total -= self._size(self._results.popitem(last=False)[1])
+
+    def compute(self, row: SessionRow, key: object, function: Callable[[], T]) -> T:
+        """The stored result, or else the function's, which is stored."""
+        result = self.get(row, key)
+        if result is None:
+            result = function()
+            self.put(row, key, result)
+        return result

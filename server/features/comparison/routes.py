@@ -5,10 +5,10 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, Response
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 
 from server.features.comparison.comparisons import Comparisons
-from server.features.comparison.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, TimeRange
+from server.features.comparison.schemas import Comparison, ComparisonQuery, Lines, LinesQuery, ReportQuery
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
@@ -18,43 +18,11 @@ from server.http.sign_in.policy import Need, needs
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.store import StoreError
 
-REPORT_POINTS = 2000
 UNKNOWN = answers(UnknownSessionError, StoreError)
 
 router = APIRouter(prefix="/api", tags=["comparison"], route_class=Operation)
 
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
-
-
-class ReportQuery(BaseModel):
-    """A comparison as a query: lists with commas, moments in s on the common time axis."""
-
-    model_config = ConfigDict(extra="forbid")
-    sessions: Annotated[str, Field(pattern=r"^\d+(,\d+)*$", max_length=200)]
-    signals: Annotated[str, Field(max_length=2500)] = "depth.depth,control.set_point"
-    by: str = "start"
-    number: int = 1
-    marker: str = ""
-    start: float | None = Field(default=None, description="what the figures are taken over")
-    end: float | None = None
-    view_start: float | None = Field(default=None, description="what the charts show at first")
-    view_end: float | None = None
-
-    def parse(self) -> ComparisonQuery:
-        """The comparison asked for. Raises ValidationError."""
-        return ComparisonQuery.model_validate(
-            {
-                "sessions": self.sessions.split(","),
-                "signals": [name for name in self.signals.split(",") if name],
-                "align": {"by": self.by, "number": self.number, "marker": self.marker},
-                "points": REPORT_POINTS,
-                "range": _range(self.start, self.end),
-            }
-        )
-
-
-def _range(start: float | None, end: float | None) -> TimeRange | None:
-    return None if start is None or end is None else TimeRange(start=start, end=end)
 
 
 @router.get(
@@ -76,7 +44,7 @@ def get_comparison_report(
     comparison = comparisons.comparer.compare(body)
     name = "_".join(str(one.id) for one in comparison.sessions)
     return HTMLResponse(
-        write_report(comparison, _range(query.view_start, query.view_end)),
+        write_report(comparison, query.shown),
         headers={"content-disposition": f'attachment; filename="comparison_{name}.html"'},
     )
 

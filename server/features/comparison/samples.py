@@ -1,14 +1,13 @@
 """Reads signals, with a cache for those of complete sessions."""
 
-from collections import OrderedDict
 from collections.abc import Iterable
-from threading import Lock
-from typing import Any
 
 import numpy as np
 
+from server.features.comparison.result_cache import ResultCache
 from server.features.comparison.signals import DOCUMENT_COLUMNS, split
 from server.features.metrics.series import Floats, Series
+from server.features.sessions.chunks import row_layout
 from server.features.sessions.recording import Recording
 
 CACHE_BYTES = 32_000_000
@@ -18,9 +17,7 @@ class Samples:
     """The signals of sessions; may be asked from several threads."""
 
     def __init__(self) -> None:
-        self._cache: OrderedDict[tuple[str, str], Series] = OrderedDict()
-        self._bytes = 0
-        self._lock = Lock()
+        self._cache: ResultCache[Series] = ResultCache(CACHE_BYTES, lambda series: series.bytes)
 
     def read(self, recording: Recording, names: Iterable[str]) -> dict[str, Series]:
         """These signals, as far as the session has them.
@@ -28,7 +25,8 @@ class Samples:
         Raises ValueError on what is no signal's name, StoreError, RecordingError.
         """
         chosen = {name: split(name) for name in names}
-        found = {name: series for name in chosen if (series := self._recall(recording, name))}
+        row = recording.row
+        found = {name: series for name in chosen if (series := self._cache.get(row, name))}
         missing: dict[str, list[str]] = {}
         for name, (topic, column) in chosen.items():
             if name not in found:
@@ -36,27 +34,8 @@ class Samples:
         for topic, columns in missing.items():
             for column, series in read_topic(recording, topic, columns).items():
                 found[f"{topic}.{column}"] = series
-                self._keep(recording, f"{topic}.{column}", series)
+                self._cache.put(row, f"{topic}.{column}", series)
         return found
-
-    def _recall(self, recording: Recording, name: str) -> Series | None:
-        key = recording.row.identifier, name
-        with self._lock:
-            if key in self._cache:
-                self._cache.move_to_end(key)
-            return self._cache.get(key)
-
-    def _keep(self, recording: Recording, name: str, series: Series) -> None:
-        if recording.row.state == "recording" or series.bytes > CACHE_BYTES:
-            return
-        with self._lock:
-            self._bytes += series.bytes
-            replaced = self._cache.pop((recording.row.identifier, name), None)
-            self._bytes -= replaced.bytes if replaced else 0
-            self._cache[recording.row.identifier, name] = series
-            while self._bytes > CACHE_BYTES:
-                _, oldest = self._cache.popitem(last=False)
-                self._bytes -= oldest.bytes
 
 
 def read_topic(recording: Recording, topic: str, columns: Iterable[str]) -> dict[str, Series]:
@@ -65,17 +44,9 @@ def read_topic(recording: Recording, topic: str, columns: Iterable[str]) -> dict
     if described is None:
         return {}
     if described["kind"] == "rows":
-        return _read_rows(recording, topic, _columns_there(described, columns))
+        there = row_layout(described).names
+        return _read_rows(recording, topic, [column for column in columns if column in there])
     return _read_documents(recording, topic, columns)
-
-
-def _columns_there(described: dict[str, Any], columns: Iterable[str]) -> list[str]:
-    there = {
-        f"{field['name']}_{place}" if field["count"] > 1 else field["name"]
-        for field in described["fields"]
-        for place in range(field["count"])
-    }
-    return [column for column in columns if column in there]
 
 
 def _read_rows(recording: Recording, topic: str, columns: list[str]) -> dict[str, Series]:

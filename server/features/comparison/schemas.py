@@ -13,6 +13,8 @@ from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
 SIGNALS_MAX = 24
+REPORT_POINTS = 2000
+"""Columns of a report's charts; each has its least and its most value."""
 DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
 """What the thesis's Figures 14 to 16 show."""
 
@@ -44,6 +46,42 @@ class ComparisonQuery(LinesQuery):
 
     range: TimeRange | None = Field(default=None, description="for the figures; the time armed without")
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
+
+
+class ReportQuery(BaseModel):
+    """A comparison as a query: lists with commas, moments in s on the common time axis."""
+
+    model_config = ConfigDict(extra="forbid")
+    sessions: Annotated[str, Field(pattern=r"^\d+(,\d+)*$", max_length=200)]
+    signals: Annotated[str, Field(max_length=2500)] = "depth.depth,control.set_point"
+    by: str = "start"
+    number: int = 1
+    marker: str = ""
+    start: float | None = Field(default=None, description="start of the range for the figures")
+    end: float | None = None
+    view_start: float | None = Field(default=None, description="start of the part that the charts show first")
+    view_end: float | None = None
+
+    def parse(self) -> ComparisonQuery:
+        """The comparison asked for. Raises ValidationError."""
+        return ComparisonQuery.model_validate(
+            {
+                "sessions": self.sessions.split(","),
+                "signals": [name for name in self.signals.split(",") if name],
+                "align": {"by": self.by, "number": self.number, "marker": self.marker},
+                "points": REPORT_POINTS,
+                "range": _range(self.start, self.end),
+            }
+        )
+
+    @property
+    def shown(self) -> TimeRange | None:
+        """The part of the time that the charts show first; all of it if None."""
+        return _range(self.view_start, self.view_end)
+
+
+def _range(start: float | None, end: float | None) -> TimeRange | None:
+    return None if start is None or end is None else TimeRange(start=start, end=end)
 
 
 class SignalLine(BaseModel):

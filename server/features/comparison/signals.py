@@ -61,10 +61,8 @@ def list_signals(recording: Recording, topics: Container[str] | None = None) -> 
         if described["kind"] == "rows":
             found += _row_signals(topic, described)
         else:
-            found += [
-                Signal(name=f"{topic}.{name}", topic=topic, column=name, unit=one.unit, meaning=one.meaning)
-                for name, one in DOCUMENT_COLUMNS.get(topic, {}).items()
-            ]
+            known = DOCUMENT_COLUMNS.get(topic, {})
+            found += [_signal(topic, name, one.unit, one.meaning) for name, one in known.items()]
     return found
 
 
@@ -78,14 +76,11 @@ def split(name: str) -> tuple[str, str]:
 
 def _row_signals(topic: str, described: dict[str, Any]) -> list[Signal]:
     fields = [field for field in described["fields"] for _ in range(field["count"])]
-    columns = [column.partition(" [")[0] for column in row_layout(described).columns]
     return [
-        Signal(
-            name=f"{topic}.{column}",
-            topic=topic,
-            column=column,
-            unit=field["unit"],
-            meaning=field["meaning"],
-        )
-        for column, field in zip(columns, fields, strict=True)
+        _signal(topic, column, field["unit"], field["meaning"])
+        for column, field in zip(row_layout(described).names, fields, strict=True)
     ]
+
+
+def _signal(topic: str, column: str, unit: str, meaning: str) -> Signal:
+    return Signal(name=f"{topic}.{column}", topic=topic, column=column, unit=unit, meaning=meaning)

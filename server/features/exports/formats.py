@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple
 
+from server.features.comparison.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
 from server.features.exports.archive import write_archive
 from server.features.exports.grid import write_grid
 from server.features.exports.json_lines import write_lines
 from server.features.exports.mcap_file import check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
-from server.features.exports.report import write_session_report
 from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
@@ -27,6 +27,17 @@ class ExportFormat(NamedTuple):
     """Raises ExportRequestError where it cannot be written here."""
 
 
+def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
+    """Write the figures and charts of a whole session as HTML. Raises StoreError, RecordingError."""
+    from server.features.comparison import report  # Plotly and NumPy, only for this format
+    from server.features.comparison.comparer import Comparer
+
+    query = ComparisonQuery(
+        sessions=[source.row.id or 0], signals=list(DEFAULT_SIGNALS), points=REPORT_POINTS
+    )
+    output.write(report.write_report(Comparer(store).compare(query)).encode())
+
+
 ZIP = "application/zip"
 KINDS: dict[Format, ExportFormat] = {
     "csv": ExportFormat(write_tables, ".csv.zip", ZIP),
@@ -35,7 +46,7 @@ KINDS: dict[Format, ExportFormat] = {
     "parquet": ExportFormat(write_parquet, ".parquet.zip", ZIP, check_parquet),
     "mcap": ExportFormat(write_mcap, ".mcap", "application/octet-stream", check_mcap),
     "archive": ExportFormat(write_archive, ".mucat.zip", ZIP),
-    "report": ExportFormat(write_session_report, ".html", "text/html"),
+    "report": ExportFormat(write_report, ".html", "text/html"),
 }
 
 WHOLE_ONLY = ("archive", "report")

@@ -67,9 +67,9 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
 def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
     """By topic, in the order wanted: the column's name and its title, such as "depth.depth [m]"."""
     there = {
-        name: {column.partition(" [")[0]: f"{name}.{column}" for column in row_layout(topic).columns}
+        name: {plain: f"{name}.{column}" for plain, column in zip(layout.names, layout.columns, strict=True)}
         for name, topic in source.topics.items()
-        if topic["kind"] == "rows" and name in source.names
+        if topic["kind"] == "rows" and name in source.names and (layout := row_layout(topic))
     }
     if source.options.columns is None:
         if not there:
@@ -133,5 +133,4 @@ def _cells(values: "Floats", fresh: "NDArray[np.bool_]", digits: str) -> list[st
 
 def _digits(topic: dict[str, Any]) -> dict[str, str]:
     layout = row_layout(topic)
-    names = [column.partition(" [")[0] for column in layout.columns]
-    return dict(zip(names, layout.line.split(","), strict=True))
+    return dict(zip(layout.names, layout.line.split(","), strict=True))

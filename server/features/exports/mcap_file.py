@@ -15,7 +15,7 @@ from sqlmodel import col, select
 from robot_runtime.contract.topics import LINES
 from server.features.exports.description import as_text, describe_session
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
-from server.features.exports.pose import Pose, level, stamp
+from server.features.exports.pose import Pose, dump, level, stamp
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.sessions.recording import depth_loop
@@ -27,7 +27,6 @@ LOG, TRANSFORMS, FRAMES, POSE, CAMERA = "/log", "/tf", "/tf_static", "/pose", "/
 IMAGE = "foxglove.CompressedImage"
 SEVERITIES = {"info": 2, "caution": 3, "alarm": 4}
 INFO = 2
-ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 DEBUG_LEVEL_OFFSET = 1
 """From DebugLevel to foxglove.LogLevel, which begins with UNKNOWN."""
 
@@ -152,7 +151,7 @@ def _rows(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
 def _documents(source: ExportSelection, name: str, place: int) -> Iterator[_Sample]:
     for document in source.documents(name, source.start, source.end):
         time = source.utc_ns(document["time"])
-        data = _dump({**document, "time": round(source.since_start(document["time"]), 6)})
+        data = dump({**document, "time": round(source.since_start(document["time"]), 6)})
         yield (time, place, data, {**document, "topic": name} if name in LINES else None)
 
 
@@ -165,7 +164,7 @@ def _pictures(source: ExportSelection, name: str, place: int) -> Iterator[_Sampl
             "data": base64.b64encode(jpeg).decode(),
             "format": "jpeg",
         }
-        yield (time, place, _dump(image), None)
+        yield (time, place, dump(image), None)
 
 
 def _markers(store: Reader, source: ExportSelection) -> Iterator[_Sample]:
@@ -195,8 +194,4 @@ def _log(document: dict[str, Any], time: int) -> bytes:
         "file": document["topic"],
         "line": 0,
     }
-    return _dump(message)
-
-
-def _dump(message: dict[str, Any]) -> bytes:
-    return ENCODE(message).encode()
+    return dump(message)

@@ -7,7 +7,7 @@ from server.features.exports.selection import ExportSelection
 
 PERIOD_NS = 100_000_000
 """Between two poses: 3-D panels interpolate, and more would only cost time and room."""
-ENCODE = json.JSONEncoder(separators=(",", ":")).encode
+ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 WORLD, LEVEL, BODY = "world", "ned", "turtle"
 
 
@@ -45,7 +45,7 @@ class Pose:
         pose = {"position": place, "orientation": turn}
         return (
             transform(time, LEVEL, BODY, place, turn),
-            _dump({"timestamp": stamp(time), "frame_id": LEVEL, "pose": pose}),
+            dump({"timestamp": stamp(time), "frame_id": LEVEL, "pose": pose}),
         )
 
     def _where(self) -> list[float] | None:
@@ -69,7 +69,7 @@ def transform(
     time: int, parent: str, child: str, translation: dict[str, float], rotation: dict[str, float]
 ) -> bytes:
     """A foxglove.FrameTransform."""
-    return _dump(
+    return dump(
         {
             "timestamp": stamp(time),
             "parent_frame_id": parent,
@@ -81,10 +81,11 @@ def transform(
 
 
 def stamp(time: int) -> dict[str, int]:
-    """ns since 1970 as Foxglove has it."""
+    """A time (ns since 1970) as a Foxglove timestamp."""
     seconds, rest = divmod(time, 1_000_000_000)
     return {"sec": seconds, "nsec": rest}
 
 
-def _dump(message: dict[str, Any]) -> bytes:
+def dump(message: dict[str, Any]) -> bytes:
+    """The JSON of a message."""
     return ENCODE(message).encode()

@@ -10,11 +10,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from server.features.metrics.series import Series
-
-Floats = NDArray[np.float64]
+from server.features.metrics.series import Floats, Series
 
 CORRELATION_LEAST = 0.5
 PERIODS_LEAST = 3

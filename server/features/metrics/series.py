@@ -1,4 +1,4 @@
-"""A signal over time, as arrays."""
+"""A signal over time, as arrays, and its tracking error and effort."""
 
 from dataclasses import dataclass
 
@@ -25,3 +25,23 @@ class Series:
     def bytes(self) -> int:
         """Memory that it takes."""
         return self.times.nbytes + self.values.nbytes
+
+
+def rms(errors: Floats) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(errors**2)))
+
+
+def integral_absolute(times: Floats, errors: Floats) -> float:
+    """Of the size of the error over time (s), by the trapezoidal rule."""
+    return float(np.trapezoid(np.abs(errors), times))
+
+
+def effort(outputs: Floats) -> float:
+    """Mean size of the command, as a share of the most."""
+    return float(np.mean(np.abs(outputs)))
+
+
+def travel(outputs: Floats) -> float:
+    """Sum of the command's changes, as a share of full command."""
+    return float(np.abs(np.diff(outputs)).sum())

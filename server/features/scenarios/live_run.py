@@ -14,7 +14,6 @@ from server.features.parameters.changes import Changes, Send
 from server.features.scenarios.live_setup import LiveSetup, SavedState
 from server.features.scenarios.recording import begin, describe_session, mark
 from server.features.scenarios.run import RunCancelledError, RunFailedError, RunRecord
-from server.features.scenarios.snapshot import ScenarioSnapshot
 from server.features.sessions.recorder import Recorder
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
@@ -52,7 +51,7 @@ class LiveExecutor:
         self._processes = processes
         self._clock = clock
         self._notify = notify
-        self._snapshot = ScenarioSnapshot(settings.data.scenario_before)
+        self._snapshot = settings.data.scenario_before
         self._recovering = False
         self._surroundings = LiveSetup(
             bridge, settings.data.board_socket if settings.emulated_board else None
@@ -68,7 +67,7 @@ class LiveExecutor:
         self.check(run.scenario)
         run.phase = "preparing"
         before = await self._surroundings.read(self._state())
-        await asyncio.to_thread(self._snapshot.save, before)
+        await asyncio.to_thread(before.write, self._snapshot)
         async with self._changes.together(run.who, f"Scenario “{run.scenario.title}”") as send:
             try:
                 await self._surroundings.prepare(run.scenario, before, send)
@@ -80,7 +79,7 @@ class LiveExecutor:
 
     async def recover(self) -> None:
         """End what a killed server has left running: disarm, close the recording, put everything back."""
-        before = await asyncio.to_thread(self._snapshot.read)
+        before = await asyncio.to_thread(SavedState.read, self._snapshot)
         recording = self._recorder.session
         session = recording.id if recording is not None and recording.origin == "scenario" else None
         if before is None and session is None:
@@ -96,7 +95,7 @@ class LiveExecutor:
             # A runtime that has started since is as robot.toml says.
             if before is not None and state["run"] == before.robot["run"]:
                 await self._put_back(before, self._changes.put_back)
-            await asyncio.to_thread(self._snapshot.forget)
+            await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
         finally:
             self._recovering = False
         words = (
@@ -169,7 +168,7 @@ class LiveExecutor:
         if problems := await self._surroundings.put_back(before, send):
             text = " ".join(problems)
             self._notify("scenario", "caution", f"Not everything is as before the scenario. {text}")
-        await asyncio.to_thread(self._snapshot.forget)
+        await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
 
     def _occupied(self) -> list[str]:
         recording = self._recorder.session

@@ -1,6 +1,7 @@
 """Sets up the running robot and its water for a scenario, and puts back what was there before."""
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from robot_runtime.contract.commands import (
 )
 from robot_runtime.contract.limits import SET_POINTS, LoopName
 from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent
@@ -42,6 +44,18 @@ class SavedState:
     robot: Question
     water: Question
     sight: Question | None
+
+    def write(self, path: Path) -> None:
+        """Write it to the disk, where it survives a power cut. Raises OSError."""
+        write_whole(path, json.dumps(asdict(self)).encode())
+
+    @classmethod
+    def read(cls, path: Path) -> "SavedState | None":
+        """The state that a killed server has left; None if there is none or it is not readable."""
+        try:
+            return cls(**json.loads(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            return None
 
 
 class LiveSetup:

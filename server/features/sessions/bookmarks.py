@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from time import time
 
-from sqlalchemy import Connection, delete, insert, update
+from sqlalchemy import Connection, delete, update
 from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
@@ -13,7 +13,7 @@ from server.features.sessions.schemas import Bookmark
 from server.features.sessions.session import SessionStateError, require
 from server.platform.errors import NotFoundError
 from server.platform.models import BookmarkRow, SessionRow
-from server.platform.store import Store
+from server.platform.store import Store, insert_row
 
 
 class UnknownBookmarkError(NotFoundError):
@@ -37,15 +37,10 @@ class Bookmarks:
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
-            require(connection, session)
             start, duration = _span(connection, session)
             steady = _place(moment, start, duration, now)
             row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
-            key = connection.execute(
-                insert(BookmarkRow).values(row.model_dump(exclude={"id"}))
-            ).inserted_primary_key
-            assert key is not None
-            row.id = int(key[0])
+            row.id = insert_row(connection, BookmarkRow, row.model_dump(exclude={"id"}))
             return show_marks([row], start)[0]
 
         return await self._store.write(write)
@@ -55,8 +50,8 @@ class Bookmarks:
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
-            row = _require_mark(connection, session, mark)
             start, duration = _span(connection, session)
+            row = _find_mark(connection, session, mark)
             if moment is not None:
                 row.time = _place(moment, start, duration, now)
             if text is not None:
@@ -72,7 +67,8 @@ class Bookmarks:
         """Take a mark away."""
 
         def write(connection: Connection) -> None:
-            _require_mark(connection, session, mark)
+            require(connection, session)
+            _find_mark(connection, session, mark)
             connection.execute(delete(BookmarkRow).where(col(BookmarkRow.id) == mark))
 
         await self._store.write(write)
@@ -96,8 +92,7 @@ def show_marks(markers: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
     ]
 
 
-def _require_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
-    require(connection, session)
+def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     query = select(BookmarkRow.time, BookmarkRow.text, BookmarkRow.made).where(
         BookmarkRow.id == mark, BookmarkRow.session_id == session
     )
@@ -108,6 +103,8 @@ def _require_mark(connection: Connection, session: int, mark: int) -> BookmarkRo
 
 
 def _span(connection: Connection, session: int) -> tuple[float, float]:
+    """The start (s, steady clock) and the duration (s) of a session. Raises UnknownSessionError."""
+    require(connection, session)
     query = select(SessionRow.started_steady, SessionRow.duration).where(SessionRow.id == session)
     start, duration = connection.execute(query).one()
     return start, duration

@@ -214,9 +214,8 @@ def _topics(
 def _columns(topic: dict[str, Any]) -> list[RecordedColumn]:
     if topic["kind"] != "rows":
         return [RecordedColumn(name=field["name"], unit="", meaning="") for field in topic["fields"]]
-    names = iter(row_layout(topic).columns)
+    fields = [field for field in topic["fields"] for _ in range(field["count"])]
     return [
-        RecordedColumn(name=next(names).partition(" [")[0], unit=field["unit"], meaning=field["meaning"])
-        for field in topic["fields"]
-        for _ in range(field["count"])
+        RecordedColumn(name=name, unit=field["unit"], meaning=field["meaning"])
+        for name, field in zip(row_layout(topic).names, fields, strict=True)
     ]

@@ -39,7 +39,10 @@ class RowLayout:
     row: Struct
     scales: tuple[float, ...]
     line: str
+    names: tuple[str, ...]
+    """Of the columns, such as "position_2"."""
     columns: tuple[str, ...]
+    """Their names with units, such as "position_2 [m]"."""
 
 
 def shuffle(rows: bytes, size: int) -> bytes:
@@ -149,6 +152,7 @@ def row_layout(topic: dict[str, Any]) -> RowLayout:
     codes = "<d"
     scales: list[float] = []
     formats: list[str] = []
+    names: list[str] = []
     columns: list[str] = []
     for field in topic["fields"]:
         name, code, count, scale = field["name"], field["code"], field["count"], field["scale"]
@@ -156,8 +160,10 @@ def row_layout(topic: dict[str, Any]) -> RowLayout:
         codes += code * count
         scales += [scale] * count
         formats += [DIGITS.get(code, "%d" if scale == 1 else SCALED_DIGITS)] * count
-        columns += [f"{name}_{place}{unit}" for place in range(count)] if count > 1 else [name + unit]
-    return RowLayout(Struct(codes), tuple(scales), ",".join(formats), tuple(columns))
+        own = [f"{name}_{place}" for place in range(count)] if count > 1 else [name]
+        names += own
+        columns += [one + unit for one in own]
+    return RowLayout(Struct(codes), tuple(scales), ",".join(formats), tuple(names), tuple(columns))
 
 
 def _describe(topic: Topic) -> dict[str, Any]:

@@ -147,11 +147,10 @@ class Recording:
         # Struct's codes mean the same to NumPy.
         types = [np.dtype("<" + code) for code in codes]
         ends = np.cumsum([8, *(one.itemsize for one in types)]).tolist()
-        plain = [column.partition(" [")[0] for column in layout.columns]
         for name in names:
-            if name not in plain:
-                raise KeyError(f"{topic} has no column {name}; it has {', '.join(plain)}")
-        places = [plain.index(name) for name in names]
+            if name not in layout.names:
+                raise KeyError(f"{topic} has no column {name}; it has {', '.join(layout.names)}")
+        places = [layout.names.index(name) for name in names]
         # A chunk holds the first bytes of all its rows, then the second ones; only wanted ones are joined.
         offsets = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
         pieces = [
@@ -176,17 +175,13 @@ class Recording:
     def changes(self, topic: str) -> Iterator[dict[str, Any]]:
         """The documents that say something else than the one before, but for their time."""
         before = b""
-        for number, encoding, data in self._data(topic, -inf, inf):
-            if encoding != DOCUMENTS_ENCODING:
-                raise _foreign(topic, number, encoding)
-            try:
-                for line in zlib.decompress(data).splitlines():
-                    says = line.partition(b",")[2]
-                    if says != before:
-                        before = says
+        for chunk in self._data(topic, -inf, inf):
+            with _reading(chunk, topic, DOCUMENTS_ENCODING):
+                for line in zlib.decompress(chunk.data).splitlines():
+                    content = line.partition(b",")[2]
+                    if content != before:
+                        before = content
                         yield json.loads(line)
-            except (ValueError, zlib.error) as problem:
-                raise _damaged(topic, number, problem) from problem
 
     def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
         """The bytes of rows in the shape (chunks, size of a row, samples), of chunks of one length.
@@ -202,15 +197,11 @@ class Recording:
 
     def _shuffled(self, topic: str, size: int, start: float, end: float) -> Iterator[bytes]:
         """The rows of each chunk, of `size` bytes each, as `chunks.shuffle` left them."""
-        for number, encoding, data in self._data(topic, start, end):
-            if encoding != ROWS_ENCODING:
-                raise _foreign(topic, number, encoding)
-            try:
-                shuffled = zlib.decompress(data)
-            except zlib.error as problem:
-                raise _damaged(topic, number, problem) from problem
-            if len(shuffled) % size:
-                raise _damaged(topic, number, f"{len(shuffled)} bytes are not whole rows of {size}")
+        for chunk in self._data(topic, start, end):
+            with _reading(chunk, topic, ROWS_ENCODING):
+                shuffled = zlib.decompress(chunk.data)
+                if len(shuffled) % size:
+                    raise ValueError(f"{len(shuffled)} bytes are not whole rows of {size}")
             yield shuffled
 
     def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
@@ -257,16 +248,8 @@ def depth_loop(state: Mapping[str, Any]) -> Mapping[str, Any]:
 @contextmanager
 def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:
-        raise _foreign(topic, chunk.number, chunk.encoding)
+        raise RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
     try:
         yield
     except (ValueError, KeyError, zlib.error) as problem:
-        raise _damaged(topic, chunk.number, problem) from problem
-
-
-def _foreign(topic: str, number: int, encoding: str) -> RecordingError:
-    return RecordingError(f"chunk {number} of {topic} is encoded as {encoding!r}")
-
-
-def _damaged(topic: str, number: int, problem: object) -> RecordingError:
-    return RecordingError(f"chunk {number} of {topic} is damaged: {problem}")
+        raise RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}") from problem

@@ -7,7 +7,7 @@ charts and lists show of the time before.
 import json
 import logging
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from math import inf
 from typing import Any
@@ -43,10 +43,6 @@ COUNT_MAX = 65_535
 
 
 log = logging.getLogger(__name__)
-
-
-class TooMuchDataError(InvalidError):
-    """More was asked for than one answer holds"""
 
 
 @dataclass(slots=True)
@@ -86,10 +82,10 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
     before it, of what charts need at most so much time before it, of lines the last ones. Raises
-    TooMuchDataError, StoreError.
+    InvalidError, StoreError.
     """
     if end - start > RANGE_MAX:
-        raise TooMuchDataError(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
+        raise InvalidError(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
     ranges = {name: _range(name, start, end, history) for name in recording.topics}
     found = _find(recording, ranges)
     described = describe_topics()
@@ -105,7 +101,7 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
         for time, block in reader.read(pieces, ranges[name]):
             size += len(block.data)
             if size > BYTES_MAX:
-                raise TooMuchDataError(
+                raise InvalidError(
                     f"One answer holds at most {BYTES_MAX / 1e6:g} MB; ask for a shorter time."
                 )
             timed.append((time, block))
@@ -152,57 +148,38 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Pi
     return found
 
 
-class _Rows:
-    """The rows of one chunk; `most` of them make a block."""
+@dataclass(frozen=True, slots=True)
+class _Samples:
+    """The samples of one chunk: the time of the one at a place, and the number and bytes of some in a row."""
 
-    most = COUNT_MAX
-
-    def __init__(self, rows: bytes, size: int) -> None:
-        self._rows = rows
-        self._size = size
-
-    def time(self, place: int) -> float:
-        return float(TIME.unpack_from(self._rows, place * self._size)[0])
-
-    def payload(self, first: int, last: int) -> tuple[int, bytes]:
-        return last - first, self._rows[first * self._size : last * self._size]
+    time: Callable[[int], float]
+    payload: Callable[[int, int], tuple[int, bytes]]
+    most: int = COUNT_MAX
+    """Samples in a block."""
 
 
-class _Lines:
-    """The documents of one chunk, as lines of JSON; rewritten to `topic` where one is given."""
-
-    most = COUNT_MAX
-
-    def __init__(self, lines: list[bytes], topic: Topic | None) -> None:
-        self._lines = lines
-        self._topic = topic
-
-    def time(self, place: int) -> float:
-        return float(json.loads(self._lines[place])["time"])
-
-    def payload(self, first: int, last: int) -> tuple[int, bytes]:
-        lines = self._lines[first:last]
-        if self._topic is not None:
-            lines = list(_rewrite_lines(lines, self._topic))
-        return len(lines), b"[" + b",".join(lines) + b"]"
+def _rows(rows: bytes, size: int) -> _Samples:
+    return _Samples(
+        lambda place: float(TIME.unpack_from(rows, place * size)[0]),
+        lambda first, last: (last - first, rows[first * size : last * size]),
+    )
 
 
-class _Pictures:
-    """The pictures of one chunk."""
+def _documents(lines: list[bytes], topic: Topic | None) -> _Samples:
+    """Lines of JSON, rewritten to `topic` if one is given."""
 
-    most = 1
+    def payload(first: int, last: int) -> tuple[int, bytes]:
+        some = lines[first:last] if topic is None else list(_rewrite_lines(lines[first:last], topic))
+        return len(some), b"[" + b",".join(some) + b"]"
 
-    def __init__(self, pictures: list[tuple[float, bytes]]) -> None:
-        self._pictures = pictures
-
-    def time(self, place: int) -> float:
-        return self._pictures[place][0]
-
-    def payload(self, first: int, last: int) -> tuple[int, bytes]:
-        return last - first, b"".join(TIME.pack(time) + jpeg for time, jpeg in self._pictures[first:last])
+    return _Samples(lambda place: float(json.loads(lines[place])["time"]), payload)
 
 
-_Samples = _Rows | _Lines | _Pictures
+def _pictures(pictures: list[tuple[float, bytes]]) -> _Samples:
+    def payload(first: int, last: int) -> tuple[int, bytes]:
+        return last - first, b"".join(TIME.pack(time) + jpeg for time, jpeg in pictures[first:last])
+
+    return _Samples(lambda place: pictures[place][0], payload, most=1)
 
 
 class _Reader:
@@ -248,12 +225,12 @@ class _Reader:
                 rows = decode_rows(piece.data, size)
                 if recorded is not None:
                     rows = rewrite_rows(rows, recorded, self._topic)
-                return _Rows(rows, self._topic.row_bytes)
+                return _rows(rows, self._topic.row_bytes)
             if piece.encoding == DOCUMENTS_ENCODING:
                 lines = zlib.decompress(piece.data).splitlines()
-                return _Lines(lines, None if self._recorded is None else self._topic)
+                return _documents(lines, None if self._recorded is None else self._topic)
             if piece.encoding == PICTURES_ENCODING:
-                return _Pictures(list(decode_pictures(piece.data)))
+                return _pictures(list(decode_pictures(piece.data)))
         except (ValueError, KeyError, zlib.error) as problem:
             log.warning("a chunk of %s cannot be read: %s", self._topic.name, problem)
         self.left_out += piece.count

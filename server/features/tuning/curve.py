@@ -3,7 +3,7 @@
 import json
 import zlib
 from array import array
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import isnan
 from typing import Any
 
@@ -18,13 +18,16 @@ FINS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
-    """The ticks of a loop, in order: times in s, values in the loop's unit (m, rad), outputs -1 to 1."""
+class TuningCurve:
+    """The ticks of a loop, in order: times in s, values in the loop's unit (m, rad), outputs -1 to 1.
 
-    times: list[float] = field(default_factory=list)
-    set_points: list[float] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
-    outputs: list[float] = field(default_factory=list)
+    Times of a stored curve count from the step, or from when the relay took over.
+    """
+
+    times: list[float]
+    set_points: list[float]
+    values: list[float]
+    outputs: list[float]
 
     def add(self, time: float, set_point: float, value: float, output: float) -> None:
         """One tick, where the loop was steered and its value known."""
@@ -33,21 +36,21 @@ class Curve:
         for column, number in zip(self._columns(), (time, set_point, value, output), strict=True):
             column.append(number)
 
-    def between(self, start: float, end: float, zero: float) -> "Curve":
+    def between(self, start: float, end: float, zero: float) -> "TuningCurve":
         """The ticks from `start` until before `end`, counted from `zero` on."""
         inside = [place for place, time in enumerate(self.times) if start <= time < end]
         times = [round(self.times[place] - zero, DIGITS) for place in inside]
         rest = ([round(column[place], DIGITS) for place in inside] for column in self._columns()[1:])
-        return Curve(times, *rest)
+        return TuningCurve(times, *rest)
 
     def to_bytes(self) -> bytes:
-        """To be kept."""
+        """The curve as it is stored."""
         return zlib.compress(json.dumps(self._columns()).encode())
 
     @classmethod
-    def from_bytes(cls, data: bytes) -> "Curve":
+    def from_bytes(cls, data: bytes) -> "TuningCurve":
         """The stored curve; empty where none was stored."""
-        return cls(*json.loads(zlib.decompress(data))) if data else cls()
+        return cls(*json.loads(zlib.decompress(data))) if data else cls([], [], [], [])
 
     def _columns(self) -> tuple[list[float], list[float], list[float], list[float]]:
         return self.times, self.set_points, self.values, self.outputs
@@ -57,7 +60,7 @@ class Gathering:
     """Takes in, block by block, what a run on this loop needs."""
 
     def __init__(self, loop: str) -> None:
-        self.curve = Curve()
+        self.curve = TuningCurve([], [], [], [])
         self.fin_times = array("d")
         self.fins = tuple(array("f") for _ in range(FINS))
         """Angles, rad."""

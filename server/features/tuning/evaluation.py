@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.curve import Gathering, TuningCurve
 from server.features.tuning.figures import measure_response
 from server.features.tuning.relay import SAME, find_ultimate
 from server.features.tuning.schemas import RelayStart, RunState, StepStart
@@ -18,7 +18,7 @@ def measure_run(
     starts: Mapping[str, float],
     state: RunState,
     problem: str,
-) -> tuple[dict[str, Any], Curve, str]:
+) -> tuple[dict[str, Any], TuningCurve, str]:
     """The results, the curve, and the reason where there are no results.
 
     `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
@@ -43,7 +43,7 @@ def _relay(
     began: float,
     ended: float,
     problem: str,
-) -> tuple[dict[str, Any], Curve, str]:
+) -> tuple[dict[str, Any], TuningCurve, str]:
     # The relay ends in its last tick, a step before the tick in which the set point is the usual one again.
     curve = gathering.curve.between(began, ended + SAME, began)
     if problem or "running" not in starts:

@@ -5,11 +5,10 @@ from math import degrees
 import numpy as np
 
 from server.features.metrics.figure import Figure
-from server.features.metrics.series import Floats, Series
+from server.features.metrics.series import Floats, Series, effort, integral_absolute, rms, travel
 from server.features.metrics.step_response import StepResponse, measure_step
 from server.features.metrics.strokes import count_strokes
-from server.features.metrics.tracking import effort, integral_absolute, rms, travel
-from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.curve import Gathering, TuningCurve
 from server.features.tuning.figure_definitions import is_angle, near
 
 STEADY = 0.5
@@ -17,7 +16,7 @@ STEADY = 0.5
 
 
 def measure_response(
-    curve: Curve, gathering: Gathering, loop: str, began: float, ended: float
+    curve: TuningCurve, gathering: Gathering, loop: str, began: float, ended: float
 ) -> dict[str, Figure]:
     """All figures of a step at 0 s of the curve; fins count from `began` to `ended` (s, steady clock)."""
     series, set_points, outputs = _after_step(curve, loop)
@@ -41,7 +40,7 @@ def measure_response(
     }
 
 
-def _after_step(curve: Curve, loop: str) -> tuple[Series, Floats, Floats]:
+def _after_step(curve: TuningCurve, loop: str) -> tuple[Series, Floats, Floats]:
     times = np.array(curve.times)
     after = times >= 0
     values, set_points = _shown(curve.values, loop), _shown(curve.set_points, loop)

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from server.features.metrics.series import Floats
-from server.features.tuning.curve import Curve
+from server.features.tuning.curve import TuningCurve
 from server.features.tuning.rules import ultimate_gain
 from server.features.tuning.schemas import MeasuredLimitCycle
 
@@ -15,7 +15,7 @@ UNLIKE = 0.2
 """Share by which cycles may differ from each other, and the halves of one, before that is remarked on."""
 
 
-def find_ultimate(curve: Curve, began: float, hysteresis: float) -> MeasuredLimitCycle:
+def find_ultimate(curve: TuningCurve, began: float, hysteresis: float) -> MeasuredLimitCycle:
     """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
 
     Each is the median over whole cycles, from one time that the relay turns to its greater command to the

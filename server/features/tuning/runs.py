@@ -12,14 +12,13 @@ from sqlmodel import select as select_rows
 
 from robot_runtime.contract.limits import LoopName
 from server.features.sessions.session import SessionStateError
-from server.features.tuning.curve import Curve
+from server.features.tuning.curve import TuningCurve
 from server.features.tuning.proposals import propose
 from server.features.tuning.schemas import (
     Force,
     RelayStart,
     RunState,
     StepStart,
-    TuningCurve,
     TuningRun,
     TuningRunDetail,
 )
@@ -59,14 +58,11 @@ class TuningStore:
         if row is None:
             raise UnknownTuningRunError(run)
         shown = TuningRun(**_shown(row))
-        curve = Curve.from_bytes(row.curve)
         limits = json.loads(row.parameters)["limits"]
         proposals = [] if shown.cycle is None else propose(shown.loop, shown.cycle, limits)
         return TuningRunDetail(
             **dict(shown),
-            curve=TuningCurve(
-                times=curve.times, set_points=curve.set_points, values=curve.values, outputs=curve.outputs
-            ),
+            curve=TuningCurve.from_bytes(row.curve),
             proposals=proposals,
         )
 
@@ -86,7 +82,9 @@ class TuningStore:
         }
         return await self._store.write(lambda connection: insert_row(connection, TuningRunRow, values))
 
-    async def end(self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: Curve) -> None:
+    async def end(
+        self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: TuningCurve
+    ) -> None:
         """The run is over; with all that came of it, or nothing of it is kept."""
         values = {
             "state": state,

@@ -21,6 +21,7 @@ from robot_runtime.contract.limits import (
 )
 from robot_runtime.errors import RefusedError
 from server.features.metrics.figure import Figure, FigureMeaning
+from server.features.tuning.curve import TuningCurve
 
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
 RunName = Annotated[str, Field(min_length=1, max_length=100)]
@@ -125,15 +126,6 @@ class TuningRun(BaseModel):
     force: Force
     figures: dict[str, Figure] = Field(description="of a step response, by name")
     cycle: MeasuredLimitCycle | None = Field(description="of a relay experiment")
-
-
-class TuningCurve(BaseModel):
-    """The loop's ticks, in its unit. Times in s: since the step, or since the relay took over."""
-
-    times: list[float]
-    set_points: list[float]
-    values: list[float]
-    outputs: list[float]
 
 
 class TuningRunDetail(TuningRun):

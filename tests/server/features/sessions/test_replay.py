@@ -18,9 +18,10 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, read_blocks, read_rows, row
 from server.features.sessions.chunks import encode_rows
 from server.features.sessions.recording import Recording
-from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, TooMuchDataError, read_stretch
+from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, read_stretch
 from server.features.sessions.session import find_row
 from server.features.sessions.timeline import Hole, read_timeline
+from server.platform.errors import InvalidError
 from server.platform.models import BookmarkRow
 from server.platform.schema import prepare
 from server.platform.settings import Settings
@@ -172,7 +173,7 @@ def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
 
 
 def test_too_long_a_range_is_refused_with_its_limit(dive: Recording) -> None:
-    with pytest.raises(TooMuchDataError, match="at most 120 s"):
+    with pytest.raises(InvalidError, match="at most 120 s"):
         read_stretch(dive, 100.0, 100.1 + RANGE_MAX)
 
 

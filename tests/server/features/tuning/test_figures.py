@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.features.tuning.curve import Curve, Gathering
+from server.features.tuning.curve import Gathering, TuningCurve
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.figures import measure_response
 from server.features.tuning.proposals import propose
@@ -17,9 +17,9 @@ from server.features.tuning.rules import RULES, ultimate_gain
 FROM, TO, SECONDS, RATE = 0.4, 0.7, 20.0, 10.0
 
 
-def second_order(damping: float, frequency: float) -> Curve:
+def second_order(damping: float, frequency: float) -> TuningCurve:
     """From FROM to TO at 0 s; wn² / (s² + 2 ζ wn s + wn²)."""
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     ringing = frequency * sqrt(1 - damping**2)
     for tick in range(-20, round(SECONDS * RATE) + 1):
         time = tick / RATE
@@ -31,7 +31,7 @@ def second_order(damping: float, frequency: float) -> Curve:
     return curve
 
 
-def figures(curve: Curve, loop: str = "depth") -> dict[str, float | None]:
+def figures(curve: TuningCurve, loop: str = "depth") -> dict[str, float | None]:
     measured = measure_response(curve, Gathering(loop), loop, 100.0, 100.0 + SECONDS)
     return {name: figure.value for name, figure in measured.items()}
 
@@ -54,7 +54,7 @@ def test_second_order_systems(damping: float, frequency: float) -> None:
 
 
 def test_what_follows_by_arithmetic() -> None:
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.4 if tick < 0 else 0.9, 0.4 if tick < 50 else 0.86, 0.5 if tick % 2 else -0.5)
     found = figures(curve)
@@ -69,7 +69,7 @@ def test_what_follows_by_arithmetic() -> None:
 
 
 def test_angles_are_told_in_degrees() -> None:
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     for tick in range(-10, 101):
         curve.add(tick / 10, 0.0 if tick < 0 else 0.5, 0.0 if tick < 10 else 0.49, 0.0)
     found = figures(curve, "heading")
@@ -85,11 +85,11 @@ def test_every_figure_has_a_meaning(loop: str) -> None:
     assert {one.name for one in meanings(loop)} == set(figures(second_order(0.5, 1.0), loop))
 
 
-def relayed(gain: float, lag: float, delay: float, hysteresis: float, amplitude: float) -> Curve:
+def relayed(gain: float, lag: float, delay: float, hysteresis: float, amplitude: float) -> TuningCurve:
     """A relay on gain e^(-delay s) / (s (lag s + 1)), simulated finely and sampled at 10 Hz."""
     step, value, speed, side = 0.002, 0.0, 0.0, 1.0
     waiting = [1.0] * round(delay / step)
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     for tick in range(round(60.0 / step)):
         error = -value
         side = 1.0 if error > hysteresis else -1.0 if error < -hysteresis else side
@@ -118,7 +118,7 @@ def test_the_ultimate_point_of_an_integrator_with_lag_and_delay(lag: float, dela
 
 
 def test_a_load_shows_as_asymmetry() -> None:
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     for tick in range(400):
         side = 1.0 if (tick + 20) % 40 < 28 else -1.0
         curve.add(tick / 10, 0.6, 0.6 + 0.05 * np.sin(tick / 40 * 2 * pi), 0.1 + 0.5 * side)
@@ -132,7 +132,7 @@ def test_a_load_shows_as_asymmetry() -> None:
 
 def test_what_is_no_cycle_is_told() -> None:
     with pytest.raises(ValueError, match="no whole cycle"):
-        find_ultimate(Curve(), 0.0, 0.01)
+        find_ultimate(TuningCurve([], [], [], []), 0.0, 0.01)
     with pytest.raises(ValueError, match="beyond the hysteresis"):
         ultimate_gain(0.5, 0.01, 0.01)
 
@@ -160,8 +160,8 @@ def test_proposals_say_what_cannot_be_set() -> None:
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.tuples(*[st.floats(-1e3, 1e3)] * 4), max_size=50))
 def test_curves_are_kept_as_they_are(ticks: list[tuple[float, float, float, float]]) -> None:
-    curve = Curve()
+    curve = TuningCurve([], [], [], [])
     for tick in ticks:
         curve.add(*tick)
-    assert Curve.from_bytes(curve.to_bytes()) == curve
-    assert Curve.from_bytes(b"") == Curve()
+    assert TuningCurve.from_bytes(curve.to_bytes()) == curve
+    assert TuningCurve.from_bytes(b"") == TuningCurve([], [], [], [])
