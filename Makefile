@@ -77,7 +77,7 @@ control: setup-test host-firmware ## remake the table of docs/develop/proofs/con
 	$(PYTHON) -m bench.control
 
 samples: setup ## run the thesis's grid again, for the runs that ship (five times a few minutes)
-	$(PYTHON) -m server.features.comm_tests.samples
+	$(PYTHON) -m bench.samples
 
 fuzz: setup-test ## fuzz the firmware's end of the line for FUZZ_SECONDS=600, on from what earlier runs found
 	@nice $(PYTHON) -m tests.proofs.fuzz $(FUZZ_SECONDS)

@@ -7,7 +7,7 @@ tables of docs/develop/proofs/tuning.md.
 from collections.abc import Mapping
 
 from robot_runtime.control.controllers import CONTROLLERS
-from server.features.tuning.proposals import propose
+from server.features.tuning.rules import propose
 from server.features.tuning.schemas import MeasuredLimitCycle
 from tests.runtime.control.flight import Flight
 from tests.server.features.tuning.rig import Rig

@@ -152,7 +152,7 @@ class Work:
         job = jobs.add(found, NewExport(session=session, format="archive"))
         while job.state in ("waiting", "running"):
             await asyncio.sleep(0.01)
-            job = jobs.find(job.id) or job
+            job = jobs.find(job.id)
         assert job.state == "done", job.problem
         assert self.file(jobs.path(job)) == job.sha256
         self.file(jobs._description(job))

@@ -2579,7 +2579,7 @@ export interface components {
             decimals: number;
             /**
              * Meaning
-             * @description a sentence for who asks
+             * @description its definition in a sentence
              */
             meaning: string;
             /** Name */

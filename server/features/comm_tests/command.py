@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from robot_runtime.experiments.comm_test.document import CommTest
     from server.features.comm_tests.reference import Place as Cell
     from server.features.comm_tests.runs import CommTestRuns
-    from server.platform.models import CommTestRun
 
 RUN = click.argument("run", type=int)
 
@@ -72,7 +71,7 @@ def show(settings: Settings, run: int) -> None:
     from server.features.comm_tests import tables
 
     with _open_runs(settings) as runs:
-        click.echo(tables.show_run(_find(runs, run), runs.cells(run)))
+        click.echo(tables.show_run(runs.find(run), runs.cells(run)))
 
 
 @commtest.command()
@@ -99,7 +98,7 @@ def export(settings: Settings, run: int, format: str) -> None:  # noqa: A002 - t
 
     write = tables.write_csv if format == "csv" else tables.write_json
     with _open_runs(settings) as runs:
-        click.echo(write(_find(runs, run), runs.cells(run)), nl=False)
+        click.echo(write(runs.find(run), runs.cells(run)), nl=False)
 
 
 @contextmanager
@@ -119,15 +118,8 @@ def _rates(runs: "CommTestRuns", name: str) -> "dict[Cell, float]":
         return read_table(name)
     if not name.isdecimal():
         raise SetupError(f"{name!r} is neither the number of a run nor one of {', '.join(TABLES)}.")
-    _find(runs, int(name))
+    runs.find(int(name))
     return tables.places(runs.cells(int(name)))
-
-
-def _find(runs: "CommTestRuns", number: int) -> "CommTestRun":
-    run = runs.find(number)
-    if run is None:
-        raise SetupError(f"There is no run {number}; `mucat commtest list` shows those that there are.")
-    return run
 
 
 def _read(file: Path) -> "tuple[str, list[CommTest]]":

@@ -10,7 +10,7 @@ from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
 from server.features.comm_tests.runner import CommTestRunner, read_limited
-from server.features.comm_tests.runs import CommTestStore
+from server.features.comm_tests.runs import UnknownCommTestRunError
 from server.features.comm_tests.schemas import (
     Check,
     CheckedTest,
@@ -30,10 +30,9 @@ from server.http.dependencies import Provided
 from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
-from server.platform.errors import NotFoundError
-from server.platform.models import IDENTIFIER_MAX, CommTestRun
+from server.platform.models import IDENTIFIER_MAX
 
-UNKNOWN = answers(_404="There is no such run")
+UNKNOWN = answers(UnknownCommTestRunError)
 
 router = APIRouter(prefix="/api/comm-tests", tags=["communication tests"], route_class=Operation)
 
@@ -94,7 +93,7 @@ def list_test_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
 @router.get("/runs/{run}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
 def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommTestRunDetails:
     """Return a run with its configuration and its cells."""
-    return comm_tests.runs.whole(_find(comm_tests.runs, run))
+    return comm_tests.runs.whole(comm_tests.runs.find(run))
 
 
 @router.get(
@@ -105,7 +104,7 @@ def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommT
 )
 def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download a run as CSV, a line for each cell."""
-    found = _find(comm_tests.runs, run)
+    found = comm_tests.runs.find(run)
     return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
@@ -120,7 +119,7 @@ def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier)
 )
 def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download everything that is known of a run, with its cells, as JSON."""
-    found = _find(comm_tests.runs, run)
+    found = comm_tests.runs.find(run)
     text = tables.write_json(found, comm_tests.runs.cells(run))
     return _file(text, "application/json", f"comm_test_{run}.json")
 
@@ -154,13 +153,6 @@ def _describe(test: CommTest) -> CheckedTest:
         pi_delays=list(test.delay),
         seconds=sum(estimate_seconds(test, cell) for cell in test.cells),
     )
-
-
-def _find(runs: CommTestStore, run: int) -> CommTestRun:
-    found = runs.find(run)
-    if found is None:
-        raise NotFoundError(f"There is no run {run}; GET /api/comm-tests/runs lists those there are.")
-    return found
 
 
 def _file(text: str, media_type: str, name: str) -> Response:

@@ -14,10 +14,15 @@ from sqlmodel import col, desc, func, select
 from robot_runtime.experiments.comm_test.document import CommTest
 from server import VERSION
 from server.features.comm_tests.schemas import Cell, CommTestRunDetails, Place, RunSummary
+from server.platform.errors import NotFoundError
 from server.platform.models import CommTestCell, CommTestRun
 from server.platform.store import Reader, Store, insert_row
 
 End = Literal["complete", "cancelled", "failed"]
+
+
+class UnknownCommTestRunError(NotFoundError):
+    """There is no such run"""
 
 
 class CommTestRuns:
@@ -31,10 +36,15 @@ class CommTestRuns:
         with self._reader.read() as database:
             return database.exec(select(CommTestRun).order_by(desc(col(CommTestRun.id)))).all()
 
-    def find(self, run: int) -> CommTestRun | None:
-        """A run; None where there is none of this number."""
+    def find(self, run: int) -> CommTestRun:
+        """A run. Raises UnknownCommTestRunError."""
         with self._reader.read() as database:
-            return database.get(CommTestRun, run)
+            found = database.get(CommTestRun, run)
+        if found is None:
+            raise UnknownCommTestRunError(
+                f"There is no run {run}; the list of runs has those that there are."
+            )
+        return found
 
     def cells(self, run: int) -> Sequence[CommTestCell]:
         """The cells of a run, in the order in which they were run."""

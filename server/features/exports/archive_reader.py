@@ -154,17 +154,15 @@ class Archive:
     def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
         self._zipped = zipped
         self._names = self._look_at_members(size)
-        self.sums = self._checksums()
-        self.content, self._topics = self._session()
+        self._sums = self._read_json(CHECKSUMS)
+        if not isinstance(self._sums, dict):
+            raise ArchiveError(f"{CHECKSUMS} is not an object.")
+        self.content, self.described_topics = self._session()
+        """The content of `session.json`, and its descriptions of topics word for word."""
         self.topics = [name.removeprefix(CHUNKS) for name in self._names if name.startswith(CHUNKS)]
         strange = [name for name in self.topics if name not in self.content.session.topics]
         if strange:
             raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
-
-    @property
-    def described_topics(self) -> dict[str, Any]:
-        """The topics as they were described, word for word."""
-        return self._topics
 
     def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
         """The chunks of a topic, with plausible numbers; their data is not checked yet."""
@@ -202,7 +200,7 @@ class Archive:
                     checksum.update(piece)
                     done += len(piece)
                     tell(0.5 * done / total)
-            if self.sums.get(name) != checksum.hexdigest():
+            if self._sums.get(name) != checksum.hexdigest():
                 raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
         for place, topic in enumerate(self.topics):
             for chunk in self.chunks(topic):
@@ -236,12 +234,6 @@ class Archive:
             return json.loads(text)
         except (ValueError, RecursionError) as problem:
             raise ArchiveError(f"{name} is not JSON: {problem}") from problem
-
-    def _checksums(self) -> dict[str, str]:
-        sums = self._read_json(CHECKSUMS)
-        if not isinstance(sums, dict):
-            raise ArchiveError(f"{CHECKSUMS} is not an object.")
-        return sums
 
     def _session(self) -> tuple[ArchivedDocument, dict[str, Any]]:
         document = self._read_json(SESSION)

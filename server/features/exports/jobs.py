@@ -21,6 +21,7 @@ from server.features.exports.files import FileWriteError, explain, put_in_place
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.features.exports.selection import ExportSelection
+from server.platform.errors import NotFoundError
 from server.platform.models import SessionRow
 from server.platform.settings import DataFolder
 from server.platform.store import Reader
@@ -32,6 +33,10 @@ JOBS_MAX = 200
 """Waiting, running and kept."""
 CLEAN_SECONDS = 3600.0
 DESCRIBED = ".json"
+
+
+class UnknownExportError(NotFoundError):
+    """There is no such export"""
 
 
 class Jobs:
@@ -62,9 +67,13 @@ class Jobs:
         """All, newest first."""
         return sorted(self._jobs.values(), key=lambda job: job.made, reverse=True)
 
-    def find(self, job: str) -> Job | None:
-        """One; None where there is none of this name."""
-        return self._jobs.get(job)
+    def find(self, job: str) -> Job:
+        """The job of this name. Raises UnknownExportError."""
+        if job not in self._jobs:
+            raise UnknownExportError(
+                f"There is no export {job}; the list of exports has those that there are."
+            )
+        return self._jobs[job]
 
     def path(self, job: Job) -> Path:
         """Where the file of a job is, or will be."""
@@ -122,13 +131,8 @@ class Jobs:
     async def _make(self, job: str) -> None:
         options = self._jobs[job]
         part = self._folder / (job + PART)
-        arguments = [
-            "write",
-            str(self._database),
-            str(options.session),
-            options.wanted.model_dump_json(),
-            str(part),
-        ]
+        place = str(self._database), str(options.session)
+        arguments = ["write", *place, options.wanted.model_dump_json(), str(part)]
         child = ExportProcess(arguments, lambda share: self._change(job, progress=share))
         self._running = job, child
         self._change(job, state="running")

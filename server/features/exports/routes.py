@@ -10,7 +10,7 @@ from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.files import FileWriteError
 from server.features.exports.formats import KINDS
 from server.features.exports.imports import Imports
-from server.features.exports.jobs import Jobs
+from server.features.exports.jobs import Jobs, UnknownExportError
 from server.features.exports.schemas import Job, NewExport
 from server.features.exports.selection import ExportRequestError
 from server.features.sessions.schemas import Session
@@ -20,10 +20,10 @@ from server.http.dependencies import Provided
 from server.http.operation import Operation
 from server.http.problems import answers
 from server.http.sign_in.policy import Need, needs
-from server.platform.errors import ConflictError, NotFoundError
+from server.platform.errors import ConflictError
 from server.platform.store import Store, StoreError
 
-UNKNOWN = answers(_404="There is no such export")
+UNKNOWN = answers(UnknownExportError)
 
 router = APIRouter(prefix="/api", tags=["exports"], route_class=Operation)
 
@@ -50,7 +50,7 @@ async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewEx
 @router.get("/exports/{export}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
 async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
     """Return the progress of an export, and its size and checksum when it is done."""
-    return _find(jobs, export)
+    return jobs.find(export)
 
 
 @router.delete(
@@ -61,7 +61,7 @@ async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
 )
 async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
     """Cancel an export, or delete its file."""
-    jobs.remove(_find(jobs, export))
+    jobs.remove(jobs.find(export))
 
 
 @router.get(
@@ -83,7 +83,7 @@ async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileRespo
 
     An interrupted download continues with Range, and If-Range with its ETag.
     """
-    job = _find(jobs, export)
+    job = jobs.find(export)
     if job.state != "done":
         raise ConflictError(job.problem or "The file is not finished yet. Wait until its state is done.")
     return FileResponse(
@@ -116,10 +116,3 @@ async def import_session(
     length = request.headers.get("content-length")
     number = await imports.receive(request.stream(), int(length) if length else None)
     return from_row(await run_in_threadpool(find_row, store, number))
-
-
-def _find(jobs: Jobs, export: str) -> Job:
-    found = jobs.find(export)
-    if found is None:
-        raise NotFoundError(f"There is no export {export}; GET /api/exports lists those there are.")
-    return found

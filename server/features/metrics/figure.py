@@ -4,6 +4,8 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
+Better = Literal["less", "zero", "neither"]
+
 
 class FigureMeaning(BaseModel):
     """Name, unit and definition of a figure."""
@@ -12,10 +14,15 @@ class FigureMeaning(BaseModel):
     title: str
     unit: str
     decimals: int
-    better: Literal["less", "zero", "neither"] = Field(
-        description="the better value: the least, the nearest to 0"
-    )
-    meaning: str = Field(description="a sentence for who asks")
+    better: Better = Field(description="the better value: the least, the nearest to 0")
+    meaning: str = Field(description="its definition in a sentence")
+
+
+def describe(
+    name: str, title: str, unit: str, decimals: int, meaning: str, better: Better = "less"
+) -> FigureMeaning:
+    """The meaning of a figure, of which less is better unless `better` says otherwise."""
+    return FigureMeaning(name=name, title=title, unit=unit, decimals=decimals, better=better, meaning=meaning)
 
 
 class FigureMark(BaseModel):

@@ -157,12 +157,8 @@ class Catalogue(Listing):
 
     async def restore(self, session: int) -> Session:
         """Take a session out of the bin."""
-
-        def write(connection: Connection) -> None:
-            require(connection, session)
-            connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(deleted=None))
-
-        await self._store.write(write)
+        there = col(SessionRow.id) == session, col(SessionRow.state).not_in(HIDDEN)
+        await self._store.execute(update(SessionRow).where(*there).values(deleted=None))
         return self.find(session)
 
     async def purge(self, session: int) -> None:

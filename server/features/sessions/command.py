@@ -5,7 +5,9 @@ none runs, they are made here.
 """
 
 import asyncio
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,6 +17,7 @@ from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 
 if TYPE_CHECKING:
+    from server.features.sessions.catalogue import Listing
     from server.features.sessions.schemas import Session, SessionDetail
 
 SESSION = click.argument("session", type=int)
@@ -40,11 +43,8 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
 
     With WORDS, only those that have each of them in name, note, tags or scenario.
     """
-    from server.features.sessions.catalogue import Listing
-    from server.platform.shell_store import open_reader
-
-    with open_reader(settings.data) as store:
-        click.echo(_tabulate(Listing(store).list(" ".join(words), tag, deleted=deleted)))
+    with _open_listing(settings) as listing:
+        click.echo(_tabulate(listing.list(" ".join(words), tag, deleted=deleted)))
 
 
 @sessions.command()
@@ -52,11 +52,8 @@ def list_sessions(settings: Settings, words: tuple[str, ...], tag: tuple[str, ..
 @with_settings
 def show(settings: Settings, session: int) -> None:
     """Show a session: contents, bookmarks, gaps."""
-    from server.features.sessions.catalogue import Listing
-    from server.platform.shell_store import open_reader
-
-    with open_reader(settings.data) as store:
-        click.echo(_describe(Listing(store).detail(session)))
+    with _open_listing(settings) as listing:
+        click.echo(_describe(listing.detail(session)))
 
 
 @sessions.command()
@@ -66,14 +63,10 @@ def show(settings: Settings, session: int) -> None:
 @with_settings
 def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
     """Add tags to a session, or remove some."""
-    from server.features.sessions.catalogue import Listing
-    from server.platform.shell_store import open_reader
-
-    with open_reader(settings.data) as store:
-        present = Listing(store).find(session).tags
-    _change(
-        settings.data, session, tags=[one for one in dict.fromkeys([*present, *tags]) if one not in remove]
-    )
+    with _open_listing(settings) as listing:
+        present = listing.find(session).tags
+    chosen = [one for one in dict.fromkeys([*present, *tags]) if one not in remove]
+    _change(settings.data, session, tags=chosen)
 
 
 @sessions.command()
@@ -120,15 +113,21 @@ def start(settings: Settings, name: str, note: str) -> None:
 @with_settings
 def stop(settings: Settings) -> None:
     """End the present recording."""
-    from server.features.sessions.catalogue import Listing
-    from server.platform.shell_store import open_reader
-
-    with open_reader(settings.data) as store:
-        recording = [one.id for one in Listing(store).list() if one.state == "recording"]
+    with _open_listing(settings) as listing:
+        recording = [one.id for one in listing.list() if one.state == "recording"]
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
     click.echo(f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s.")
+
+
+@contextmanager
+def _open_listing(settings: Settings) -> "Iterator[Listing]":
+    from server.features.sessions.catalogue import Listing
+    from server.platform.shell_store import open_reader
+
+    with open_reader(settings.data) as store:
+        yield Listing(store)
 
 
 def _change(folder: DataFolder, session: int, **values: Any) -> None:
@@ -140,32 +139,20 @@ def _change(folder: DataFolder, session: int, **values: Any) -> None:
         changes = SessionChanges(**values).model_dump(exclude_unset=True)
     except ValidationError as problem:
         raise SetupError("; ".join(error["msg"] for error in problem.errors())) from problem
-    _perform(folder, "change", session, "is changed", changes)
+    _perform(folder, "change", session, "is changed", **changes)
 
 
-def _perform(
-    folder: DataFolder,
-    action: Literal["change", "delete", "restore"],
-    session: int,
-    outcome: str,
-    changes: dict[str, Any] | None = None,
-) -> None:
-    if server_runs(folder):
-        method, path = REQUESTS[action]
-        name = ask(folder, method, path.format(session), changes)["name"]
-    else:
-        with claim(folder):
-            name = _perform_here(folder, action, session, changes or {})
-    click.echo(f"“{name}” {outcome}.")
-
-
-def _perform_here(folder: DataFolder, action: str, session: int, changes: dict[str, Any]) -> str:
+def _perform(folder: DataFolder, action: str, session: int, outcome: str, **changes: Any) -> None:
     from server.features.sessions.catalogue import Catalogue
     from server.platform.shell_store import open_writer
 
-    with open_writer(folder) as store:
-        changed = asyncio.run(getattr(Catalogue(store), action)(session, **changes))
-        return str(changed.name)
+    if server_runs(folder):
+        method, path = REQUESTS[action]
+        name = ask(folder, method, path.format(session), changes or None)["name"]
+    else:
+        with claim(folder), open_writer(folder) as store:
+            name = asyncio.run(getattr(Catalogue(store), action)(session, **changes)).name
+    click.echo(f"“{name}” {outcome}.")
 
 
 def _tabulate(found: "list[Session]") -> str:

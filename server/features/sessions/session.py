@@ -46,9 +46,6 @@ def new_row(
     robot_state: str,
     *,
     origin: Origin = "operator",
-    scenario: str = "",
-    scenario_name: str = "",
-    seed: int | None = None,
 ) -> SessionRow:
     """A session that begins now; without a name it is called after its moment. Raises OSError.
 
@@ -69,9 +66,6 @@ def new_row(
         topics=json.dumps(describe_topics(), ensure_ascii=False),
         boot=boot(),
         origin=origin,
-        scenario=scenario,
-        scenario_name=scenario_name,
-        seed=seed,
         firmware=hash_firmware(
             firmware_path(settings.build, settings.link.baud, ".hex", hil=settings.in_the_loop)
         ),

@@ -1,6 +1,6 @@
 """Definitions of a step response's figures, without the code that computes them."""
 
-from server.features.metrics.figure import FigureMeaning
+from server.features.metrics.figure import FigureMeaning, describe
 
 NEAR = 0.02
 """m, and 2 for angles in degrees: the band of one settling time, whatever the step."""
@@ -18,84 +18,42 @@ def near(loop: str) -> float:
 
 
 def meanings(loop: str) -> list[FigureMeaning]:
-    """The figures of a step response of this loop, in their order."""
+    """The figures of a step response of this loop, from the step on, in their order."""
     unit, decimals = ("°", 2) if is_angle(loop) else ("m", 3)
     band = f"{NEAR_DEGREES:g}°" if is_angle(loop) else f"{100 * NEAR:g} cm"
     return [
-        _less(
-            "rise_time",
-            "Rise time",
-            "s",
-            2,
-            "From 10 % to 90 % of the way from the value at the step to the set point.",
+        describe("rise_time", "Rise time", "s", 2, "Time from 10 % to 90 % of the step."),
+        describe(
+            "overshoot", "Overshoot", "%", 1, "Largest excess over the set point, as a share of the step."
         ),
-        _less(
-            "overshoot",
-            "Overshoot",
-            "%",
-            1,
-            "How far the value goes beyond the set point, as a share of the step.",
+        describe(
+            "settling_near", f"Settling to ±{band}", "s", 2, f"Time until the error stays within {band}."
         ),
-        _less(
-            "settling_near",
-            f"Settling to ±{band}",
-            "s",
-            2,
-            f"From the step until the value stays within {band} of the set point.",
+        describe(
+            "settling_share", "Settling to ±5 %", "s", 2, "Time until the error stays within 5 % of the step."
         ),
-        _less(
-            "settling_share",
-            "Settling to ±5 %",
-            "s",
-            2,
-            "From the step until the value stays within 5 % of the step about the set point.",
+        describe(
+            "steady_error",
+            "Steady error",
+            unit,
+            decimals,
+            "Mean error in the second half of the step.",
+            "zero",
         ),
-        FigureMeaning(
-            name="steady_error",
-            title="Steady error",
-            unit=unit,
-            decimals=decimals,
-            better="zero",
-            meaning="Mean of set point minus value over the second half of the time after the step.",
-        ),
-        _less(
+        describe(
             "steady_swing",
             "Steady peak to peak",
             unit,
             decimals,
-            "Highest minus lowest value in the second half of the time after the step.",
+            "Highest minus lowest value in the second half.",
         ),
-        _less(
-            "rmse",
-            "RMSE",
-            unit,
-            decimals,
-            "Root of the mean square of set point minus value from the step on.",
+        describe("rmse", "RMSE", unit, decimals, "Root of the mean square of set point minus value."),
+        describe("iae", "IAE", f"{unit} s", decimals, "Integral of the size of set point minus value."),
+        describe("effort", "Effort", "%", 1, "Mean size of the command."),
+        describe(
+            "travel", "Command travel", "", 1, "Sum of the command's changes; 1 is from rest to full command."
         ),
-        _less(
-            "iae",
-            "IAE",
-            f"{unit} s",
-            decimals,
-            "Integral of the size of set point minus value from the step on.",
-        ),
-        _less("effort", "Effort", "%", 1, "Mean size of the command from the step on."),
-        _less(
-            "travel",
-            "Command travel",
-            "",
-            1,
-            "How far the command went there and back from the step on; from rest to the most is 1.",
-        ),
-        _less(
-            "fin_strokes",
-            "Fin strokes",
-            "",
-            0,
-            "Swings of all four fins, there and back, by 0.2 rad or more, from the step on.",
+        describe(
+            "fin_strokes", "Fin strokes", "", 0, "Swings of all fins, there and back, by 0.2 rad or more."
         ),
     ]
-
-
-def _less(name: str, title: str, unit: str, decimals: int, meaning: str) -> FigureMeaning:
-    return FigureMeaning(name=name, title=title, unit=unit, decimals=decimals, better="less", meaning=meaning)

@@ -4,8 +4,15 @@ Each rule gives gain Kp, integral time Ti and derivative time Td of u = Kp (e + 
 robot's PID is the parallel form: kp = Kp, ki = Kp / Ti, kd = Kp Td.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
+
+from robot_runtime.contract.limits import LoopName
+from server.features.tuning.schemas import MeasuredLimitCycle, Proposal
+
+DIGITS = 4
+"""Significant digits of proposed gains: more than the limit cycle is known to, few enough to be read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +27,7 @@ class Rule:
     source: str
     known_for: str
     integrating: bool = False
-    """Whether it holds only where the value runs away under a constant command, as depth and heading do."""
+    """True if it holds only for a value that drifts under a constant command, as depth and heading do."""
 
     def gains(self, ultimate_gain: float, ultimate_period: float) -> dict[str, float]:
         """kp, ki and kd."""
@@ -73,7 +80,7 @@ RULES = (
 
 
 def ultimate_gain(amplitude: float, swing: float, hysteresis: float) -> float:
-    """Of a relay of ±`amplitude` that switches `hysteresis` late, whose limit cycle swings ±`swing`.
+    """The ultimate gain from a relay of ±`amplitude` with `hysteresis`, whose limit cycle swings ±`swing`.
 
     Åström and Hägglund, Automatica 20, 1984: 4 d / (π √(a² - ε²)), by the relay's describing function. Raises
     ValueError where the swing is no larger than the hysteresis.
@@ -81,3 +88,36 @@ def ultimate_gain(amplitude: float, swing: float, hysteresis: float) -> float:
     if swing <= hysteresis:
         raise ValueError(f"a swing of {swing:g} does not go beyond the hysteresis, {hysteresis:g}")
     return 4 * amplitude / (pi * sqrt(swing**2 - hysteresis**2))
+
+
+def propose(
+    loop: LoopName, cycle: MeasuredLimitCycle, limits: Mapping[str, tuple[float, float]]
+) -> list[Proposal]:
+    """The gains by each rule that holds for the loop. `limits` are those of each gain, by name."""
+    proposals = []
+    for rule in RULES:
+        # Pitch and roll have the hull's righting moment: a constant command holds them at an angle.
+        if rule.integrating and loop in ("pitch", "roll"):
+            continue
+        found = rule.gains(cycle.ultimate_gain, cycle.period)
+        gains = {name: float(f"{value:.{DIGITS}g}") for name, value in found.items()}
+        proposals.append(
+            Proposal(
+                rule=rule.name,
+                title=rule.title,
+                source=rule.source,
+                known_for=rule.known_for,
+                gains=gains,
+                problem=_problem(gains, limits),
+            )
+        )
+    return proposals
+
+
+def _problem(gains: Mapping[str, float], limits: Mapping[str, tuple[float, float]]) -> str:
+    wrong = [
+        f"{name} may be {limits[name][0]:g} to {limits[name][1]:g}"
+        for name, value in gains.items()
+        if name in limits and not limits[name][0] <= value <= limits[name][1]
+    ]
+    return f"{'; '.join(wrong)}." if wrong else ""

@@ -13,7 +13,7 @@ from sqlmodel import select as select_rows
 from robot_runtime.contract.limits import LoopName
 from server.features.sessions.session import SessionStateError
 from server.features.tuning.curve import TuningCurve
-from server.features.tuning.proposals import propose
+from server.features.tuning.rules import propose
 from server.features.tuning.schemas import (
     Force,
     RelayStart,

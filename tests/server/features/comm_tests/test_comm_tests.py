@@ -198,7 +198,6 @@ def test_a_lost_result_is_kept_as_such(store: Store) -> None:
     assert (kept.rate, kept.answered, kept.line_errors) == (0.0, False, 7)
     assert kept.causes == "lost result, line"
     run = runs.find(number)
-    assert run is not None
     assert "9600 baud, Arduino 0.5 s, Pi 1 s: lost result" in tables.show_run(run, [kept])
     whole = runs.whole(run)
     assert (whole.cells_done, whole.rate_mean, whole.rate_min) == (1, 0.0, 0.0)

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from bench.samples import FOLDER, SAMPLES
 from robot_runtime.experiments.comm_test.document import read_document
 from server.features.comm_tests.reference import Place
-from server.features.comm_tests.samples.__main__ import FOLDER, SAMPLES
 from tests.board.rig import ROOT
 
 DOCUMENT = ROOT / "docs/use/comm-tests.md"

@@ -38,7 +38,7 @@ async def start(api: AsyncClient, session: int, **wanted: Any) -> dict[str, Any]
 
 async def ended(served: Served, job: dict[str, Any]) -> dict[str, Any]:
     found = served.container.jobs.find
-    await until(lambda: (one := found(job["id"])) and one.state in ("done", "failed"), "the file", 60)
+    await until(lambda: found(job["id"]).state in ("done", "failed"), "the file", 60)
     answer: dict[str, Any] = (await served.api.get(f"/exports/{job['id']}")).json()
     return answer
 
@@ -162,7 +162,7 @@ def test_a_job_is_cancelled_and_the_next_one_comes(
     async def scenario(served: Served) -> None:
         jobs = served.container.jobs
         first, second = await start(served.api, session), await start(served.api, session, format="jsonl")
-        await until(lambda: (one := jobs.find(first["id"])) and one.progress == 0.25, "progress")
+        await until(lambda: jobs.find(first["id"]).progress == 0.25, "progress")
         assert (await served.api.get(f"/exports/{second['id']}")).json()["state"] == "waiting"
         monkeypatch.setattr(child_module, "sys", sys)
         assert (await served.api.delete(f"/exports/{first['id']}")).status_code == 204
@@ -181,7 +181,7 @@ def test_a_process_that_is_killed_leaves_nothing(
     async def scenario(served: Served) -> None:
         jobs = served.container.jobs
         job = await start(served.api, session)
-        await until(lambda: (one := jobs.find(job["id"])) and one.progress == 0.25, "progress")
+        await until(lambda: jobs.find(job["id"]).progress == 0.25, "progress")
         assert jobs._running is not None
         process = jobs._running[1]._process
         assert process is not None

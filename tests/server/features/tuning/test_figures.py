@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from server.features.tuning.curve import Gathering, TuningCurve
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.figures import measure_response
-from server.features.tuning.proposals import propose
 from server.features.tuning.relay import find_ultimate
-from server.features.tuning.rules import RULES, ultimate_gain
+from server.features.tuning.rules import RULES, propose, ultimate_gain
 
 FROM, TO, SECONDS, RATE = 0.4, 0.7, 20.0, 10.0
 

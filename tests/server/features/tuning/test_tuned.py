@@ -1,6 +1,6 @@
 """The whole way on the simulated robot: a relay, gains by a rule, and a step with them."""
 
-from server.features.tuning.proposals import propose
+from server.features.tuning.rules import propose
 from tests.runtime.control.flight import Flight
 from tests.server.features.tuning.rig import Rig
 

@@ -1,6 +1,4 @@
-"""`python -m server.features.comm_tests.samples [NAME...]`: run the thesis's grid again.
-
-It keeps the runs that ship.
+"""`python -m bench.samples [NAME...]`: runs the thesis's grid again and writes the runs that ship.
 
 Needs the emulated board of `make firmware`. Takes a few minutes a run.
 """
@@ -21,7 +19,7 @@ from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.results import Direction
 from server import VERSION
 
-FOLDER = Path(__file__).parent
+FOLDER = Path("server/features/comm_tests/samples")
 BUILD = Path("build")
 SAMPLES: dict[str, tuple[str, Direction, str]] = {
     "grid-thesis": ("thesis", "to_board", "The thesis's grid, its own packets"),
@@ -34,7 +32,7 @@ SAMPLES: dict[str, tuple[str, Direction, str]] = {
 
 def main() -> int:
     """Exit status 0 once all that was asked for is written."""
-    parser = argparse.ArgumentParser(prog="python -m server.features.comm_tests.samples", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m bench.samples", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"one of {', '.join(SAMPLES)}; all without")
     names = parser.parse_args().names
     unknown = [name for name in names if name not in SAMPLES]
@@ -47,7 +45,7 @@ def main() -> int:
         _write(FOLDER / f"{name}.json", run)
         rates = [cell["rate"] for cell in run["cells"]]
         took = time.monotonic() - began
-        print(  # noqa: T201 - a command line speaks
+        print(
             f"{name}: {len(rates)} cells, rates {min(rates):.2f} to {max(rates):.2f}, {took:.0f} s",
             file=sys.stderr,
             flush=True,
