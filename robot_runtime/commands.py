@@ -30,7 +30,7 @@ from robot_runtime.contract.commands import (
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.control.experiment import LoopExperiment, RelayExperiment, StepExperiment
+from robot_runtime.control.experiments import LoopExperiment, RelayExperiment, StepExperiment
 from robot_runtime.core import Core
 from robot_runtime.errors import RefusedError
 

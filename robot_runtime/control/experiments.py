@@ -1,21 +1,204 @@
 """Runs one experiment at a time: started by a command, advanced before each tick."""
 
 import threading
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import ClassVar
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Experiment, Mode
+from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
+from robot_runtime.contract.documents import Experiment, ExperimentKind, ExperimentPhase, Mode
 from robot_runtime.control.attitude import wrap_angle
-from robot_runtime.control.experiment import LoopExperiment
-from robot_runtime.control.loop import ControlLoop
+from robot_runtime.control.controllers import Controller
+from robot_runtime.control.controllers.base import GainLimits
+from robot_runtime.control.loop import ControlLoop, LoopOverride
 from robot_runtime.errors import RefusedError
 
+SETTLED_SECONDS = 2.0
+"""s for which the value has to have stayed about the start before the step."""
+MARGIN = 0.1
+"""Share of the way between the limits by which the value has to be within them before they count."""
+BALANCED = 0.1
+"""Share of a cycle by which its halves may differ for the relay to count as balanced."""
+BALANCING_MOST = 6
+"""Cycles after which it goes on unbalanced: the bias is at its limit then, or the water is not still."""
 REPORT_PERIOD = 0.5
 """s."""
 _LEFT: dict[Mode, str] = {
     "manual": "The pilot took over.",
     "failsafe": "The robot was stopped for a fault; see its alarms.",
 }
+
+
+class LoopExperiment(ABC):
+    """Base of both: call `observe` before each tick until it is `over`; `text` explains an early end."""
+
+    kind: ClassVar[ExperimentKind]
+
+    def __init__(self, clock: Clock, low: float, high: float) -> None:
+        self.phase: ExperimentPhase = "settling"
+        self.phase_since = self._began = clock.now()
+        self.progress = 0.0
+        """Share that is done, as far as that is known."""
+        self.text = ""
+        self.cycles = 0
+        """Of a relay, that count."""
+        self.bias = 0.0
+        """Of a relay: the mean command, which balances the load."""
+        self.middle = (low + high) / 2
+        self._clock = clock
+        self._low, self._high = low, high
+        self._inside = False
+
+    @property
+    @abstractmethod
+    def override(self) -> LoopOverride:
+        """Returns the override of the loop from now on."""
+
+    @property
+    def over(self) -> bool:
+        """True after the experiment has ended."""
+        return self.phase in ("complete", "stopped", "failed")
+
+    def observe(self, value: float) -> None:
+        """Takes the loop's measured value; ends the experiment beyond the limits."""
+        if self._inside and not self._low <= value <= self._high:
+            span = f"{self._low:g} to {self._high:g}"
+            self.end("failed", f"It ended at {value:.2f}, which is beyond the limits ({span}).")
+        # It may begin at a limit: at the surface, for one.
+        margin = MARGIN * (self._high - self._low)
+        self._inside = self._inside or self._low + margin <= value <= self._high - margin
+        self._observe(value)
+
+    def end(self, phase: ExperimentPhase, text: str = "") -> None:
+        """Ends the experiment; the first reason counts."""
+        if not self.over:
+            self.text = text
+            self._enter(phase)
+
+    @abstractmethod
+    def _observe(self, value: float) -> None:
+        """Takes the measured value; see `observe`."""
+
+    def _enter(self, phase: ExperimentPhase) -> None:
+        self.phase, self.phase_since = phase, self._clock.now()
+
+
+class StepExperiment(LoopExperiment):
+    """A step of the set point."""
+
+    kind = "step"
+
+    def __init__(self, settings: StepExperimentCommand, clock: Clock) -> None:
+        super().__init__(clock, settings.low, settings.high)
+        self._settings = settings
+        self._away = self._began
+
+    @property
+    def override(self) -> LoopOverride:
+        """Another set point for the loop's own controller."""
+        return LoopOverride(
+            set_point=self._settings.start if self.phase == "settling" else self._settings.target
+        )
+
+    def _observe(self, value: float) -> None:
+        settings, now = self._settings, self._clock.now()
+        if abs(value - settings.start) > settings.tolerance:
+            self._away = now
+        if self.phase == "settling":
+            waited = now - self._began
+            self.progress = 0.5 * min(waited / settings.settle, 1.0) if settings.settle else 0.5
+            if waited >= settings.settle or now - self._away >= SETTLED_SECONDS:
+                self._enter("running")
+        if self.phase == "running":
+            self.progress = 0.5 + 0.5 * min((now - self.phase_since) / settings.duration, 1.0)
+            if now - self.phase_since >= settings.duration:
+                self.end("complete")
+
+
+class RelayExperiment(LoopExperiment):
+    """A relay in the controller's place (Åström and Hägglund, Automatica 20, 1984).
+
+    A load, here buoyancy, makes one half of each cycle longer than the other, and period and amplitude wrong
+    (Hang, Åström and Ho, IEE Proceedings-D 140, 1993). The mean command over a cycle is what balances it: it
+    becomes the relay's bias, until the halves are alike. Only then cycles count.
+    """
+
+    kind = "relay"
+
+    def __init__(self, settings: RelayExperimentCommand, clock: Clock) -> None:
+        super().__init__(clock, settings.low, settings.high)
+        self._settings = settings
+        self._override = LoopOverride(_Relay(self), settings.set_point)
+        self._side = 0.0
+        self._switched = self._began
+        self._forth = 0.0
+        self._balancing = 0
+
+    @property
+    def override(self) -> LoopOverride:
+        """The relay, about its set point."""
+        return self._override
+
+    def command(self, error: float) -> float:
+        """The relay's command, -1 to 1, where the set point is so far away."""
+        side = self._side or (1.0 if error > 0 else -1.0)
+        if error * side < -self._settings.hysteresis:
+            side = -side
+        if self._side and side != self._side:
+            self._side = side
+            self._switch()
+        self._side = side
+        return self.bias + side * self._settings.amplitude
+
+    def _observe(self, value: float) -> None:  # noqa: ARG002 - the relay sees what is newer
+        settings = self._settings
+        if self._clock.now() - self._began >= settings.duration:
+            words = f"There were {self.cycles} of {settings.cycles} cycles within {settings.duration:g} s."
+            self.end("failed", words)
+
+    def _switch(self) -> None:
+        """It has turned over: after each second half a cycle is whole."""
+        now = self._clock.now()
+        half, self._switched = now - self._switched, now
+        if self.phase == "settling":
+            # The way there was no half.
+            self._enter("balancing")
+        elif self._side < 0:
+            self._forth = half
+        elif self._forth:
+            self._complete((self._forth - half) / (self._forth + half))
+            self._forth = 0.0
+
+    def _complete(self, asymmetry: float) -> None:
+        if self.phase == "balancing":
+            self._balancing += 1
+            if abs(asymmetry) <= BALANCED or self._balancing >= BALANCING_MOST:
+                self._enter("running")
+            else:
+                room = 1.0 - self._settings.amplitude
+                self.bias = min(max(self.bias + self._settings.amplitude * asymmetry, -room), room)
+        elif self.phase == "running":
+            self.cycles += 1
+            self.progress = self.cycles / self._settings.cycles
+            if self.cycles >= self._settings.cycles:
+                self.end("complete")
+
+
+class _Relay(Controller):
+    """An experiment's relay, as the loop knows controllers."""
+
+    name = "relay"
+    title = "Relay"
+    limits: ClassVar[Mapping[str, GainLimits]] = {}
+
+    def __init__(self, experiment: RelayExperiment) -> None:
+        super().__init__()
+        self._experiment = experiment
+
+    def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
+        """Full amplitude towards the set point, from the bias."""
+        return self._experiment.command(set_point - measured)
 
 
 class Experiments:

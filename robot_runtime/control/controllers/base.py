@@ -4,10 +4,10 @@ A controller is one small class: a name, a title, its gains with their limits, a
 docs/develop/add-a-controller.md says how one is added.
 """
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import copysign, isfinite, sqrt
 from typing import ClassVar
 
 
@@ -50,7 +50,7 @@ class Controller(ABC):
             if limits is None:
                 raise ValueError(f"{cls.title} has no gain {name!r}; it has {', '.join(cls.limits)}")
             number = isinstance(value, int | float) and not isinstance(value, bool)
-            if not number or not math.isfinite(value) or not limits.minimum <= value <= limits.maximum:
+            if not number or not isfinite(value) or not limits.minimum <= value <= limits.maximum:
                 span = f"{limits.minimum:g} and {limits.maximum:g} {limits.unit}".strip()
                 raise ValueError(f"{name} is {value!r}; it must be a number between {span}")
 
@@ -65,3 +65,30 @@ class Controller(ABC):
     @abstractmethod
     def step(self, set_point: float, measured: float, seconds: float) -> float:
         """The command, -1 to 1; `seconds` since the last step, 0 at the first."""
+
+
+class Rate:
+    """The rate of change of a value, low-pass filtered; 0 until two values were seen."""
+
+    def __init__(self, time_constant: float) -> None:
+        self.value = 0.0
+        self._time_constant = time_constant
+        self._last: float | None = None
+
+    def see(self, measured: float, seconds: float) -> None:
+        """The value is this, `seconds` after the one before."""
+        if self._last is not None and seconds > 0:
+            rate = (measured - self._last) / seconds
+            self.value += (rate - self.value) * seconds / (self._time_constant + seconds)
+        self._last = measured
+
+
+def braked(left: float, braking: float, slope: float) -> float:
+    """The speed that braking allows with so much left: √(2·a·left), linear where that is too steep.
+
+    A boundary layer: J.-J. Slotine and W. Li, Applied Nonlinear Control, 1991, 7.2.
+    """
+    linear = braking / slope**2
+    if abs(left) <= linear:
+        return slope * left
+    return copysign(sqrt(2 * braking * (abs(left) - linear / 2)), left)

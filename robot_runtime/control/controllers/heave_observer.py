@@ -1,18 +1,18 @@
-"""An extended Kalman filter of depth, speed and the parameters of the `Heave` model.
+"""Two Kalman filters of depth and speed: one learns the `Heave` model, one uses the accelerometer."""
 
-Its state is depth, speed, and four parameters of the model that no reading shows by itself: the strength of
-the fins, the resistance of blades and hull, and the drift (augmented state, A. Gelb, Applied Optimal
-Estimation, 1974, 9.4). What they may be at first is told by their covariance: another mass changes the first
-three together.
-"""
+from collections.abc import Sequence
+from operator import mul
 
 from robot_runtime.control.controllers.heave import Heave, Motion
-from robot_runtime.control.controllers.kalman import Matrix, dot, take_in
+
+Matrix = list[list[float]]
 
 LAG = 0.05
 """s from a command to when the fins have followed it."""
 AGE = 0.033
-"""s by which a reading is older than the tick that uses it."""
+"""s by which a reading of the depth is older than the tick that uses it."""
+ACCELERATION_AGE = 0.012
+"""s by which an acceleration is older than the tick that uses it."""
 _STEP = 0.02
 """s of the model's steps."""
 _AWASH = 0.008
@@ -29,10 +29,40 @@ _RANGE = (0.5, 1.6)
 """Of the three shares."""
 _DRIFT_MAX = 0.03
 """m/s²."""
+_BIAS = 0.1
+"""m/s²: standard deviation of the accelerometer's offset at the start."""
+_NOISE, _WANDER = 0.012, 0.0005
+"""m/s²: noise of the mean acceleration of a step; change of the offset in a step."""
+
+
+def dot(one: Sequence[float], other: Sequence[float]) -> float:
+    """The scalar product of two vectors of the same length."""
+    return sum(map(mul, one, other), start=0.0)
+
+
+def update(covariance: Matrix, row: Sequence[float], variance: float) -> tuple[list[float], Matrix]:
+    """Returns the gains for a scalar measurement of `row` times the state, and the covariance after it.
+
+    The caller adds to each state its gain times the innovation (A. Gelb, Applied Optimal Estimation, 1974,
+    table 4.2-1).
+    """
+    towards = [dot(line, row) for line in covariance]
+    total = dot(towards, row) + variance
+    gains = [one / total for one in towards]
+    after = [
+        [old - gain * one for old, one in zip(line, towards, strict=True)]
+        for line, gain in zip(covariance, gains, strict=True)
+    ]
+    return gains, after
 
 
 class HeaveObserver:
-    """Follows the motion of a hull; `heave` is the model with what is learnt."""
+    """An extended Kalman filter of depth, speed and four parameters of `heave`, the model that it corrects.
+
+    No reading shows these by itself: the strength of the fins, the resistance of blades and hull, and the
+    drift (augmented state, A. Gelb, Applied Optimal Estimation, 1974, 9.4). The initial covariance couples
+    the first three, as another mass changes them together.
+    """
 
     def __init__(self, heave: Heave) -> None:
         self.heave = heave
@@ -58,7 +88,7 @@ class HeaveObserver:
         # The mean is that of the middle of the time, and heard of late.
         age = seconds / 2 + AGE
         wrong = measured - (motion.depth - motion.speed * age)
-        gains, self._covariance = take_in(self._covariance, [1.0, -age, 0.0, 0.0, 0.0, 0.0], noise**2)
+        gains, self._covariance = update(self._covariance, [1.0, -age, 0.0, 0.0, 0.0, 0.0], noise**2)
         depth, speed, strength, blades, hull, drift = gains
         if measured > _AWASH:
             heave = self.heave
@@ -92,3 +122,44 @@ class HeaveObserver:
 
 def _within(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
+
+
+class InertialHeave:
+    """A Kalman filter of depth and speed from accelerometer and pressure, without a model of the craft.
+
+    It begins at a depth (m) and a speed (m/s, downwards). An accelerometer shows every stroke of the fins,
+    which no model does, but with an offset. The depth reveals that offset in the long run, so that it is a
+    third state (J. A. Farrell, Aided Navigation, 2008, 4.6).
+    """
+
+    def __init__(self, depth: float, speed: float) -> None:
+        self._depth, self._speed, self._bias = depth, speed, 0.0
+        self._covariance: Matrix = [[_DEPTH**2, 0.0, 0.0], [0.0, _SPEED**2, 0.0], [0.0, 0.0, _BIAS**2]]
+
+    def observe(
+        self, acceleration: float, measured: float, noise: float, seconds: float
+    ) -> tuple[float, float]:
+        """Depth and speed now, from the mean acceleration (m/s²) and depth (m) of the time since the last.
+
+        `noise` is the standard deviation of that depth.
+        """
+        self._predict(acceleration, seconds)
+        # The mean is that of the middle of the time.
+        row = [1.0, -(seconds / 2 + AGE - ACCELERATION_AGE), 0.0]
+        wrong = measured - dot(row, [self._depth, self._speed, self._bias])
+        (depth, speed, bias), self._covariance = update(self._covariance, row, noise**2)
+        self._depth += depth * wrong
+        self._speed += speed * wrong
+        self._bias += bias * wrong
+        now = self._speed + (acceleration - self._bias) * ACCELERATION_AGE
+        return self._depth + now * ACCELERATION_AGE, now
+
+    def _predict(self, acceleration: float, seconds: float) -> None:
+        gained = (acceleration - self._bias) * seconds
+        self._depth += (self._speed + gained / 2) * seconds
+        self._speed += gained
+        change = [1.0, seconds, -(seconds**2) / 2], [0.0, 1.0, -seconds], [0.0, 0.0, 1.0]
+        half = [[dot(row, column) for column in zip(*self._covariance, strict=True)] for row in change]
+        self._covariance = [[dot(line, row) for row in change] for line in half]
+        for place, deviation in enumerate((0.0, _NOISE * seconds, _WANDER)):
+            self._covariance[place][place] += deviation**2

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import ClassVar
 
-from robot_runtime.control.controllers.base import Controller, GainLimits
-from robot_runtime.control.controllers.shaping import Rate
+from robot_runtime.control.controllers.base import Controller, GainLimits, Rate
 
 
 class Pid(Controller):

@@ -4,11 +4,9 @@ from collections.abc import Mapping
 from math import copysign, exp, inf, sqrt
 from typing import ClassVar
 
-from robot_runtime.control.controllers.base import Controller, GainLimits
+from robot_runtime.control.controllers.base import Controller, GainLimits, braked
 from robot_runtime.control.controllers.heave import TINY, Heave, Motion
-from robot_runtime.control.controllers.heave_inertial import InertialHeave
-from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver
-from robot_runtime.control.controllers.shaping import braked
+from robot_runtime.control.controllers.heave_observer import LAG, HeaveObserver, InertialHeave
 
 _LOST = 1.0
 """s without a step after which what was known of the motion is worth nothing."""

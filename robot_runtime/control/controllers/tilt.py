@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from math import asin, cos, tan
 from typing import ClassVar
 
-from robot_runtime.control.controllers.base import Controller, GainLimits
-from robot_runtime.control.controllers.shaping import Rate, braked
+from robot_runtime.control.controllers.base import Controller, GainLimits, Rate, braked
 
 _AMPLITUDE = 1.6
 """rad; of fins at full command. Their thrust is ∝ 1 - cos of it."""

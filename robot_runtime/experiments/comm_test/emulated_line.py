@@ -12,8 +12,8 @@ from robot_runtime.experiments.comm_test.line import (
     check,
 )
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
+from robot_runtime.simulation.boards.emulated_board import PausedPort
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient, LineDirection
-from robot_runtime.simulation.boards.paused_port import PausedPort
 
 READ_STEP_BYTES = 1024
 DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)

@@ -58,18 +58,6 @@ class Targets:
 
 
 START_BEACONS = SimulationParameters().beacons
-START_BEACONS = SimulationParameters().beacons
-START_BASIN = Basin(SimulationParameters().floor)
-START_TARGETS = (
-    Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),
-    Target(colour="red", position=(2.8, -0.9, 0.8), size=0.26, shape="box"),
-    Target(colour="green", position=(4.2, 0.4, 1.6), size=0.3, shape="box"),
-    Target(colour="blue", position=(3.4, 1.4, 0.7), size=0.28),
-)
-"""Chosen: one of each colour, ahead."""
-
-
-START_BEACONS = SimulationParameters().beacons
 START_BASIN = Basin(SimulationParameters().floor)
 START_TARGETS = (
     Target(colour="yellow", position=(2.2, 0.5, 1.1), size=0.3),

@@ -54,14 +54,6 @@ def stone() -> Texture:
 
 
 @cache
-def weed() -> Texture:
-    """A leaf of a water plant: veins along it."""
-    _, across = _grid()
-    light = 1 + 0.16 * np.cos(2 * np.pi * across * 5) + 0.12 * _cloud(9, 2.5)
-    return _bytes(light[:, :, np.newaxis] * np.array((66, 70, 62)))
-
-
-@cache
 def surface_below(glow: tuple[int, int, int]) -> Texture:
     """The water's surface from below: it mirrors the water, broken by bright ripples of the sky."""
     crest = np.clip(1 - np.abs(_ripples(10, 7.0)) * 1.5, 0, 1) ** 2

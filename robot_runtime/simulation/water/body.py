@@ -12,7 +12,9 @@ forward, right, down; the world's north, east, down.
 from robot_runtime.simulation.water.contact import Contact
 from robot_runtime.simulation.water.fins import Four, Propulsion
 from robot_runtime.simulation.water.geometry import (
+    BodyState,
     Matrix,
+    at_rest,
     attitude_rate,
     cross,
     normalize,
@@ -21,7 +23,6 @@ from robot_runtime.simulation.water.geometry import (
     to_world,
 )
 from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
-from robot_runtime.simulation.water.state import BodyState, at_rest
 from robot_runtime.simulation.water.surroundings import FLOATING, StartPose, Trim
 from robot_runtime.simulation.water.world import World
 

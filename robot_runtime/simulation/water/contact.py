@@ -12,6 +12,7 @@ nothing.
 from math import sqrt
 
 from robot_runtime.simulation.water.geometry import (
+    BodyState,
     Matrix,
     attitude_rate,
     cross,
@@ -20,7 +21,6 @@ from robot_runtime.simulation.water.geometry import (
     to_world,
 )
 from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
-from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Basin
 
 RESTING = 0.01

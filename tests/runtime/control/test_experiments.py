@@ -7,7 +7,7 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, State
-from robot_runtime.control.experiment import RelayExperiment, StepExperiment
+from robot_runtime.control.experiments import RelayExperiment, StepExperiment
 from robot_runtime.errors import RefusedError
 from tests.runtime.control.flight import Flight
 

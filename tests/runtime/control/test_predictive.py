@@ -8,8 +8,13 @@ import pytest
 from bench.control import BEST, THESIS, crossing_ratio, perform, variants
 from robot_runtime.control.controllers import Predictive
 from robot_runtime.control.controllers.heave import DOWN, TURNING_ROUND, Heave, Motion
-from robot_runtime.control.controllers.heave_inertial import ACCELERATION_AGE, InertialHeave
-from robot_runtime.control.controllers.heave_observer import AGE, LAG, HeaveObserver
+from robot_runtime.control.controllers.heave_observer import (
+    ACCELERATION_AGE,
+    AGE,
+    LAG,
+    HeaveObserver,
+    InertialHeave,
+)
 
 SECONDS = 0.1
 

@@ -8,9 +8,8 @@ import pytest
 
 from robot_runtime.contract.vision_settings import COLOURS, MarkerDictionary, VisionSettings
 from robot_runtime.vision.balance import BALANCES, grey_world, underwater
-from robot_runtime.vision.detector import Detector, Sight
-from robot_runtime.vision.markers import DICTIONARIES
-from robot_runtime.vision.mask import COUNTED, DROPPED, GROUND, OUTLINE, OUTLINE_REFUSED, draw_mask
+from robot_runtime.vision.detector import DICTIONARIES, Detector, Sight
+from robot_runtime.vision.patches import COUNTED, DROPPED, GROUND, OUTLINE, OUTLINE_REFUSED, draw_mask
 from robot_runtime.vision.picture import Picture
 from tests.runtime.vision.harness import drawn, find
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.vision.rate_timer import RateTimer
+from robot_runtime.vision.node import RateTimer
 
 
 def count(

@@ -5,8 +5,8 @@ from math import cos, pi, sin
 
 from robot_runtime.simulation.water.body import Body
 from robot_runtime.simulation.water.fins import Fins, Four
+from robot_runtime.simulation.water.geometry import BodyState, at_rest
 from robot_runtime.simulation.water.parameters import SensorQuality, SimulationParameters, Six, Vector
-from robot_runtime.simulation.water.state import BodyState, at_rest
 from robot_runtime.simulation.water.world import World
 
 PERFECT = SensorQuality()

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_runtime.simulation.water.fins import Four
+from robot_runtime.simulation.water.geometry import BodyState
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
-from robot_runtime.simulation.water.state import BodyState
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from robot_runtime.simulation.water.body import Body
-from robot_runtime.simulation.water.geometry import normalize, rotation, to_body, to_world
+from robot_runtime.simulation.water.geometry import BodyState, normalize, rotation, to_body, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
-from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Current
 from tests.runtime.simulation.water.harness import NEUTRAL, STILL, UNDAMPED, drift, pushed
 from tests.runtime.simulation.water.reference import acceleration

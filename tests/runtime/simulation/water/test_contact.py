@@ -7,9 +7,8 @@ from random import Random
 import pytest
 
 from robot_runtime.simulation.water.body import Body
-from robot_runtime.simulation.water.geometry import normalize, rotation, to_world
+from robot_runtime.simulation.water.geometry import BodyState, normalize, rotation, to_world
 from robot_runtime.simulation.water.parameters import SimulationParameters
-from robot_runtime.simulation.water.state import BodyState
 from robot_runtime.simulation.water.surroundings import Basin, Trim
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import STILL, UNDAMPED, Flapping, drift, finned, pushed

@@ -8,7 +8,7 @@ import pytest
 
 from robot_runtime.simulation.water.faults import NO_FAULT, SimulatedFault
 from robot_runtime.simulation.water.parameters import SensorQuality
-from robot_runtime.simulation.water.sensor import Numbers, Sensor
+from robot_runtime.simulation.water.sensors import Numbers, Sensor
 
 PERIOD = 0.005
 

@@ -5,9 +5,9 @@ from math import cos, pi, sin
 
 import pytest
 
+from robot_runtime.simulation.water.geometry import BodyState, at_rest
 from robot_runtime.simulation.water.parameters import SimulationParameters, Vector
 from robot_runtime.simulation.water.sensors import Reading, Sensors
-from robot_runtime.simulation.water.state import BodyState, at_rest
 from robot_runtime.simulation.water.world import World
 from tests.runtime.simulation.water.harness import QUIET as PERFECT_SENSORS
 
