@@ -2,15 +2,13 @@
 
 import argparse
 import logging
-import signal
 import sys
 from pathlib import Path
 
-from robot_runtime.clock import SteadyClock
 from robot_runtime.config import load
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.robot import Robot
-from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from robot_runtime.vision.settings_file import VisionSettingsFile
 
@@ -30,10 +28,7 @@ def main() -> int:
             vision_file = VisionSettingsFile(options.data / "vision.json")
             robot = Robot(config, port, messages, heartbeat=options.heartbeat, vision_file=vision_file)
             robot.serve()
-            if options.server_lock is not None:
-                watch_server(options.server_lock, options.linger, SteadyClock(), robot.close)
-            for number in (signal.SIGINT, signal.SIGTERM):
-                signal.signal(number, lambda *_: robot.close())
+            end_on_request(options, robot.close)
             robot.run()
     except (ConfigError, OSError) as problem:
         logging.error("%s", problem)
@@ -46,7 +41,6 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
     parser.add_argument("--data", type=Path, default=Path("data"), help="the folder of all that is stored")
     parser.add_argument("--port", help="serial port, instead of the configuration's")
-    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     parser.add_argument(
         "--heartbeat",
         type=float,

@@ -110,10 +110,14 @@ class Commands:
         return {"left_out": left_out}
 
     def _controller(self, command: ControllerCommand) -> None:
-        self._robot.control.choose(command.name, command.gains)
+        self._robot.control.set_loop("depth", controller=command.name, gains=command.gains)
 
     def _loop(self, command: LoopCommand) -> None:
-        if command.on and command.name == "depth" and (reasons := self._depth_refusals()):
+        if (
+            command.on
+            and command.name == "depth"
+            and (reasons := self._robot.supervisor.detector.depth_refusals())
+        ):
             raise RefusedError(" ".join(reasons))
         self._robot.control.set_loop(
             command.name,
@@ -163,6 +167,3 @@ class Commands:
 
     def _end_experiment(self, _: EndExperimentCommand) -> None:
         self._robot.experiments.stop("It was stopped.")
-
-    def _depth_refusals(self) -> list[str]:
-        return self._robot.supervisor.detector.depth_refusals()

@@ -8,6 +8,7 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import asdict, replace
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -34,7 +35,6 @@ from robot_runtime.contract.packets import (
     Hello,
     Imu,
     Motor,
-    Navigation,
     Parameter,
     Status,
 )
@@ -117,7 +117,7 @@ class Core:
             on_mode=lambda mode: self.control.change_mode(mode),
             arming_obstacles=self.board_parameters.refusals,
         )
-        self.control = ControlNode(self.bus, clock, self._navigate, self.supervisor.pilot)
+        self.control = ControlNode(self.bus, clock, line.send, self.supervisor.pilot)
         self.experiments = Experiments(clock, self._publish_experiment)
         self.vision = VisionNode(
             config.vision,
@@ -128,7 +128,7 @@ class Core:
             self.publish_event,
             open_camera,
             messages,
-            on_thumbnail=self._take_thumbnail,
+            on_thumbnail=partial(outbox.add_picture, "thumbnail"),
         )
         self._every: list[tuple[float, Callable[[], None]]] = [
             (_STATE_EVERY, self.announce),
@@ -289,8 +289,8 @@ class Core:
     def _configure(self) -> None:
         settings = self.config.control
         for name, gains in settings.gains.items():
-            self.control.choose(name, gains)
-        self.control.choose(settings.controller)
+            self.control.set_loop("depth", controller=name, gains=gains)
+        self.control.set_loop("depth", controller=settings.controller)
         self.control.steer(settings.steering)
         self.control.set_points(settings.set_point, settings.set_point_detected)
         self.control.colour = self.config.vision.colour
@@ -331,9 +331,6 @@ class Core:
         else:
             self.control.command(command)
 
-    def _navigate(self, command: Navigation) -> None:
-        self.line.send(command)
-
     def take_messages(self, messages: list[BoardMessage]) -> None:
         """Handles and publishes the board's messages."""
         detector = self.supervisor.detector
@@ -372,9 +369,6 @@ class Core:
         self.publish_event(
             Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}.")
         )
-
-    def _take_thumbnail(self, time: float, jpeg: bytes) -> None:
-        self.outbox.add_picture("thumbnail", time, jpeg)
 
     def _take_detection(self, detection: Detection) -> None:
         self.supervisor.detector.see_picture(detection.taken)

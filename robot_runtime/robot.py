@@ -4,7 +4,7 @@ import threading
 import time
 from dataclasses import asdict
 
-from robot_runtime.clock import Clock, SteadyClock
+from robot_runtime.clock import SteadyClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
 from robot_runtime.contract.documents import Event
@@ -32,11 +32,10 @@ class Robot(Core):
         config: Config,
         port: str,
         messages: ZenohTransport,
-        clock: Clock | None = None,
         heartbeat: float | None = None,
         vision_file: VisionSettingsFile | None = None,
     ) -> None:
-        clock = clock or SteadyClock()
+        clock = SteadyClock()
         self.cache = ReplayCache(messages.run, clock)
         self._messages = messages
         self._closing = False

@@ -6,7 +6,7 @@ What the chip does by itself, and how each is tested, is in docs/reference/safet
 from dataclasses import dataclass
 from typing import Literal
 
-from robot_runtime.contract.documents import Mode
+from robot_runtime.contract.documents import Mode, Severity
 from robot_runtime.control.alarms import FaultText
 
 LOOK = 0.1
@@ -17,11 +17,12 @@ Action = Literal["all-stop", "neutral", "drop set points", "alarm only"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultRule(FaultText):
-    """One row of the table; `limit` is the s within which it is noticed, on a line of full speed."""
+    """A fault of the robot; most are alarms that stop it. `limit`: s to detection at the default baud."""
 
     name: str
     limit: float
-    action: Action
+    severity: Severity = "alarm"
+    action: Action = "all-stop"
     steered_by: bool = False
     """True if only depth control needs it: in manual and in the fin check it raises an alarm only."""
     always: bool = False
@@ -47,63 +48,49 @@ FAULTS = (
     ),
     FaultRule(
         name="pilot_lost",
-        severity="alarm",
         limit=3.0,
-        action="all-stop",
         what="No pilot input for 3 s.",
         cause="The page is hidden or closed, the gamepad is off, or the network is gone.",
         remedy="Check the network and the gamepad, then arm again.",
     ),
     FaultRule(
         name="server_silent",
-        severity="alarm",
         limit=5.0,
-        action="all-stop",
         what="The server sends no heartbeat; nobody could stop the robot.",
         cause="The server ended or hangs, or this computer is overloaded.",
         remedy="It restarts by itself. If this repeats, read its log.",
     ),
     FaultRule(
         name="board_silent",
-        severity="alarm",
         limit=1.0,
-        action="all-stop",
         what="The board sends nothing.",
         cause=_CABLE,
         remedy="The board stops the fins by itself. Check its power and cable.",
     ),
     FaultRule(
         name="board_restarted",
-        severity="alarm",
         limit=1.0,
-        action="all-stop",
         what="The board restarted; it is disarmed.",
         cause="Its watchdog restarted a program that hung, or its supply voltage dropped.",
         remedy="The console shows the reason. Check the battery, then arm again.",
     ),
     FaultRule(
         name="board_disarmed",
-        severity="alarm",
         limit=1.0,
-        action="all-stop",
         what="The board disarmed itself.",
         cause="It received nothing valid from this computer for 1 s, or its battery is low.",
         remedy="The console shows the reason. Check the serial line and the load of this computer.",
     ),
     FaultRule(
         name="runtime_stalled",
-        severity="alarm",
         limit=1.0,
-        action="all-stop",
         what="The robot's software stalled for longer than the board waits.",
         cause="This computer is overloaded, or the process was suspended.",
         remedy="The board has stopped the fins by itself. Check the load of this computer, then arm again.",
     ),
     FaultRule(
         name="depth_stale",
-        severity="alarm",
         limit=0.5,
-        action="all-stop",
         steered_by=True,
         what="The depth is too old for control.",
         cause="The pressure sensor does not answer, or the serial line loses too many frames.",
@@ -111,9 +98,7 @@ FAULTS = (
     ),
     FaultRule(
         name="depth_frozen",
-        severity="alarm",
         limit=0.5,
-        action="all-stop",
         steered_by=True,
         what="The pressure reading is frozen.",
         cause="The pressure sensor hangs; in simulated water, the simulator has ended.",
@@ -121,9 +106,7 @@ FAULTS = (
     ),
     FaultRule(
         name="depth_range",
-        severity="alarm",
         limit=0.5,
-        action="all-stop",
         steered_by=True,
         what="The depth is out of this robot's range.",
         cause="The pressure sensor is damaged, or the board was started under water.",
@@ -131,18 +114,14 @@ FAULTS = (
     ),
     FaultRule(
         name="imu_stale",
-        severity="alarm",
         limit=0.2,
-        action="all-stop",
         what="The IMU sends nothing; a capsize would go unnoticed.",
         cause="The IMU hangs, or its wires on the I2C bus are loose.",
         remedy="Check its cable and reset the board.",
     ),
     FaultRule(
         name="capsized",
-        severity="alarm",
         limit=2.0,
-        action="all-stop",
         what="The robot lies on its side or on its back.",
         cause="Its trim is wrong, it is caught on something, or a fin fails.",
         remedy="Let it rise and take it out. Check trim and fins.",
@@ -158,7 +137,6 @@ FAULTS = (
     ),
     FaultRule(
         name="not_rising",
-        severity="alarm",
         limit=20.0,
         action="alarm only",
         always=True,
@@ -168,9 +146,7 @@ FAULTS = (
     ),
     FaultRule(
         name="battery_low",
-        severity="alarm",
         limit=20.5,
-        action="all-stop",
         always=True,
         what="The battery was below 6.20 V for 20 s; the fins were slowed and stopped.",
         cause="The battery is empty or old.",
@@ -187,9 +163,7 @@ FAULTS = (
     ),
     FaultRule(
         name="simulator_silent",
-        severity="alarm",
         limit=0.6,
-        action="all-stop",
         always=True,
         what="The simulator has been silent for 0.5 s; the board has no sensor readings.",
         cause="The simulator ended, or the network to it is down.",
@@ -197,9 +171,7 @@ FAULTS = (
     ),
     FaultRule(
         name="control_failed",
-        severity="alarm",
         limit=0.1,
-        action="all-stop",
         what="The control loop failed.",
         cause="An error in the software.",
         remedy="Report it, with the runtime's log.",

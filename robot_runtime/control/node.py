@@ -7,7 +7,16 @@ from math import nan
 from typing import Any
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.documents import Control, Detection, Document, Event, Mode, Steering, Turning
+from robot_runtime.contract.documents import (
+    Control,
+    Detection,
+    Document,
+    Event,
+    Mode,
+    Severity,
+    Steering,
+    Turning,
+)
 from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
 from robot_runtime.control.attitude import euler_angles, heave_acceleration
 from robot_runtime.control.faults import BY_NAME, LOOK
@@ -39,7 +48,7 @@ class ControlNode:
     thread. Whatever is changed under `tick_lock` is changed between two ticks.
     """
 
-    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], None], pilot: Pilot) -> None:
+    def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], object], pilot: Pilot) -> None:
         self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
         self.turning = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
         self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.turning)}
@@ -80,13 +89,6 @@ class ControlNode:
             if "manual" in (was, mode):
                 loop.on = False
             loop.override = None
-
-    def choose(self, name: str, gains: Mapping[str, Any] | None = None) -> None:
-        """Take another depth controller, or other gains.
-
-        Raises RefusedError where either is unknown or wrong.
-        """
-        self.set_loop("depth", controller=name, gains=gains)
 
     def set_loop(
         self,
@@ -135,13 +137,7 @@ class ControlNode:
         """Hold no more what cannot be held."""
         if loop.on:
             loop.on = False
-            event = Event(
-                time=self._clock.now(),
-                kind="loop",
-                severity="caution",
-                text=f"{loop.title} no longer held. {why}",
-            )
-            self._bus.publish_document("event", event)
+            self._publish_event("loop", f"{loop.title} no longer held. {why}", "caution")
 
     def set_points(self, default: float, detected: float) -> None:
         """Set both wanted depths, m. Raises RefusedError where one is not between 0 and 10."""
@@ -329,6 +325,6 @@ class ControlNode:
         if isinstance(document, Detection):
             self._sight = document
 
-    def _publish_event(self, kind: str, text: str) -> None:
-        event = Event(time=self._clock.now(), kind=kind, severity="info", text=text)
+    def _publish_event(self, kind: str, text: str, severity: Severity = "info") -> None:
+        event = Event(time=self._clock.now(), kind=kind, severity=severity, text=text)
         self._bus.publish_document("event", event)

@@ -196,11 +196,11 @@ class Supervisor:
             if self._go("acknowledge"):
                 self._event("mode", "info", "The failsafe is acknowledged; the robot is disarmed.")
 
-    def stop(self, why: str, severity: Severity = "info") -> None:
+    def stop(self, why: str) -> None:
         """Disarms at once, in any state."""
         with self._changed:
             # First, so that the board's own word of it is no surprise.
-            self._leave("stop", severity, why)
+            self._leave("stop", "info", why)
         self._line.send(Stop())
 
     def fail(self, fault: str) -> None:

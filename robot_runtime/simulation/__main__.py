@@ -15,7 +15,7 @@ from robot_runtime.simulation.water.hil import HilSimulator
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water_process import WaterProcess
-from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 log = logging.getLogger(__name__)
@@ -41,10 +41,7 @@ def main() -> None:
             process = HilSimulator(simulator, messages)
         else:
             process = WaterProcess(simulator, arguments.board, messages, SteadyClock())
-        if arguments.server_lock is not None:
-            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
-        for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, lambda *_: process.end())
+        end_on_request(arguments, process.end)
         process.run()
 
 
@@ -64,7 +61,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--seed", type=int, default=1, help="of the sensors' noise")
-    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     add_server_options(parser)
     return parser
 

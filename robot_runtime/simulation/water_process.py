@@ -8,18 +8,13 @@ from pathlib import Path
 
 from robot_runtime.clock import Clock
 from robot_runtime.simulation.boards.board_protocol import BoardLineError, LineBuffer, read_fins, write_sense
-from robot_runtime.simulation.water.requests import changes
+from robot_runtime.simulation.boards.stepped_board import PERIOD
+from robot_runtime.simulation.water.requests import TRUTH_PERIOD, changes, serve_requests
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 log = logging.getLogger(__name__)
 
-PERIOD = 0.005
-"""s of the board's time between two answers to it; its fastest sensor is read every 10 ms."""
-TRUTH_PERIOD = 0.05
-"""s between two samples of the truth."""
 RETRY = 0.2
 """s between two attempts to reach the board."""
 PATIENCE = 0.1
@@ -32,15 +27,11 @@ class WaterProcess:
     def __init__(self, simulator: Simulator, board: Path, messages: ZenohTransport, clock: Clock) -> None:
         self._simulator = simulator
         self._board = board
-        cache = ReplayCache(messages.run, clock)
-        self._outbox = Outbox(messages.publish, messages.watched, cache)
+        self._outbox = serve_requests(messages, changes(simulator), clock)
         self._clock = clock
         self._truth_due = clock.now()
         self._ending = False
         self._attached: bool | None = None
-        for name, change in changes(simulator).items():
-            messages.serve(f"simulator/{name}", change)
-        messages.serve_bytes("simulator/blocks", cache.answer)
 
     def run(self) -> None:
         """Swim until `end` is called, through any number of boards."""

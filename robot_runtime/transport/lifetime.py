@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from robot_runtime.clock import Clock
+from robot_runtime.clock import Clock, SteadyClock
 
 HEARTBEAT = "heartbeat"
 """What a server publishes every second, from the loop that also does everything else there."""
@@ -35,7 +35,8 @@ def end_with_parent(parent: int | None = None, number: signal.Signals = signal.S
 
 
 def add_server_options(parser: argparse.ArgumentParser) -> None:
-    """The options of a process that a server starts, and that may outlive it."""
+    """Adds the options of a process that a server starts, and that may outlive it."""
+    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     parser.add_argument("--server-lock", type=Path, help="end when no server has held this file's lock ...")
     parser.add_argument(
         "--linger", type=float, default=LINGER_SECONDS, metavar="SECONDS", help="... for so long; default 30"
@@ -56,6 +57,14 @@ def is_served(lock: Path) -> bool:
     finally:
         os.close(handle)
     return False
+
+
+def end_on_request(options: argparse.Namespace, end: Callable[[], None]) -> None:
+    """Calls `end` at SIGTERM or SIGINT, and as the server options ask."""
+    if options.server_lock is not None:
+        watch_server(options.server_lock, options.linger, SteadyClock(), end)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: end())
 
 
 def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None]) -> None:

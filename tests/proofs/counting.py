@@ -14,8 +14,8 @@ from robot_runtime.config import LinkConfig
 from robot_runtime.contract.packets import PACKETS, Status
 from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
+from robot_runtime.simulation.boards.emulator_process import Water
 from robot_runtime.simulation.boards.firmware import firmware_path
-from robot_runtime.simulation.boards.stepped_board import Water
 from tests.runtime.control.flight import Flight
 
 SHARE = 0.02

@@ -20,8 +20,9 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.experiments.scenario.run import PRELUDE
 from robot_runtime.simulation.boards.emulated_board import EmulatedBoard
+from robot_runtime.simulation.boards.emulator_process import Water
 from robot_runtime.simulation.boards.firmware import firmware_path
-from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 from robot_runtime.vision.camera import CameraError, CameraFrame

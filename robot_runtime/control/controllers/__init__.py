@@ -1,9 +1,8 @@
-"""The controllers of each loop, the first of which it begins with."""
+"""The controllers of each loop; the first is the default."""
 
-from robot_runtime.control.controllers.angle import HeadingPid, PitchPid, RollPid, TurnDeadZone
-from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
-from robot_runtime.control.controllers.base import Controller, GainLimits
-from robot_runtime.control.controllers.pid import Pid
+from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone, TurnDeadZone
+from robot_runtime.control.controllers.base import Controller
+from robot_runtime.control.controllers.pid import HeadingPid, Pid, PitchPid, RollPid
 from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.controllers.tilt import Tilt
 
@@ -12,7 +11,6 @@ __all__ = [
     "BangBang",
     "BangBangDeadZone",
     "Controller",
-    "GainLimits",
     "Pid",
     "Predictive",
     "Tilt",

@@ -36,3 +36,12 @@ class BangBangDeadZone(Controller):
         """Full command with the sign of the error outside the dead zone, none inside."""
         error = set_point - measured
         return math.copysign(self.gains["output"], error) if abs(error) > self.gains["dead_zone"] else 0.0
+
+
+class TurnDeadZone(BangBangDeadZone):
+    """Bang-bang with dead zone for an angle."""
+
+    limits: ClassVar[Mapping[str, GainLimits]] = {
+        "output": GainLimits(0.3, 0.0, 1.0, "", "size of the command, as a share of the most"),
+        "dead_zone": GainLimits(0.1, 0.0, 1.0, "rad", "no command within this angle of the set point"),
+    }

@@ -1,4 +1,4 @@
-"""The PID controller."""
+"""The PID controllers: of the depth, and with gains of their own, in rad, of heading, pitch and roll."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -40,3 +40,29 @@ class Pid(Controller):
         if command == limited or (command > 0) != (error > 0):
             self._integral = min(max(self._integral + self.gains["ki"] * error * seconds, -1.0), 1.0)
         return limited
+
+
+def _pid_limits(kp: float, ki: float, kd: float) -> Mapping[str, GainLimits]:
+    return {
+        "kp": GainLimits(kp, 0.0, 20.0, "1/rad", "command for each rad of error"),
+        "ki": GainLimits(ki, 0.0, 20.0, "1/(rad s)", "command for each rad of error and second"),
+        "kd": GainLimits(kd, 0.0, 20.0, "s/rad", "command against each rad/s of turning"),
+    }
+
+
+class HeadingPid(Pid):
+    """Nothing but water holds the heading."""
+
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.3, 0.0, 0.3)
+
+
+class PitchPid(Pid):
+    """Buoyancy rights the hull, faster than the fins turn round: only the integral is of use."""
+
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)
+
+
+class RollPid(Pid):
+    """As `PitchPid`."""
+
+    limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)

@@ -12,12 +12,12 @@ from robot_runtime.core import Core
 from robot_runtime.experiments.scenario.cameras import RenderedSceneCamera
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.link.link_driver import LinkDriver
-from robot_runtime.simulation.boards.emulator_process import STILL_WATER
-from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.boards.emulator_process import STILL_WATER, Water
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.scene.availability import missing
+from robot_runtime.simulation.water.requests import TRUTH_PERIOD
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
-from robot_runtime.simulation.water_process import TRUTH_PERIOD
 from robot_runtime.transport.outbox import STREAM, Outbox
 from robot_runtime.vision.camera import Camera
 from robot_runtime.vision.card_camera import CardCamera

@@ -13,8 +13,9 @@ from robot_runtime.simulation.boards.emulator_process import (
     EmulatorClient,
     EmulatorProcess,
     FaultKind,
+    Water,
 )
-from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 
 PATIENCE = 60.0
 """s of real time for what the operating system does between two processes, on a busy computer."""

@@ -5,8 +5,8 @@ from ctypes import POINTER, c_bool, c_char_p, c_double, c_int, c_uint8, c_uint32
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.simulation.boards.emulator_process import BoardError, FaultKind
-from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard, Water
+from robot_runtime.simulation.boards.emulator_process import BoardError, FaultKind, Water
+from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion
 

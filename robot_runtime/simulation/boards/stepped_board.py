@@ -1,17 +1,12 @@
 """A board whose time is advanced in steps, with simulated water at its sensors and a host at its port."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from typing import Self
 
 from robot_runtime.simulation.boards.emulator_process import FaultKind
-from robot_runtime.simulation.water.sensors import Reading
-from robot_runtime.simulation.water.simulator import FinMotion
 
 PERIOD = 0.005
 """s between two answers of the water; its fastest sensor is read every 10 ms."""
-
-Water = Callable[[FinMotion], Reading]
 
 
 class SteppedBoard(ABC):

@@ -7,7 +7,7 @@ import sys
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.simulation.scene.process import SceneProcess
-from robot_runtime.transport.lifetime import add_server_options, end_with_parent, watch_server
+from robot_runtime.transport.lifetime import add_server_options, end_on_request, end_with_parent
 from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 
@@ -28,10 +28,7 @@ def main() -> None:
     )
     with joined as messages:
         process = SceneProcess(messages, SteadyClock())
-        if arguments.server_lock is not None:
-            watch_server(arguments.server_lock, arguments.linger, SteadyClock(), process.end)
-        for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, lambda *_: process.end())
+        end_on_request(arguments, process.end)
         process.run()
 
 
@@ -53,7 +50,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--client", action="store_true", help="the robot is on another computer")
-    parser.add_argument("--with-parent", action="store_true", help="end when the parent process ends")
     add_server_options(parser)
     return parser
 

@@ -19,18 +19,19 @@ SIDE = 512
 
 
 @cache
-def tiles(ground: tuple[int, int, int] = (196, 226, 232), across: int = 8) -> Texture:
-    """Glazed tiles with pale joints, `across` × `across` of them; each of a slightly different shade."""
+def tiles() -> Texture:
+    """8 × 8 glazed tiles with dark joints, each of a slightly different shade."""
+    ground, across = np.array((196, 226, 232)), 8
     rng = np.random.default_rng(2)
     shade = rng.normal(0.0, 0.022, (across, across, 1)) + rng.normal(0.0, 0.006, (across, across, 3))
     size = SIDE // across
-    plain = np.kron(1 + shade, np.ones((size, size, 1))) * np.array(ground)
+    plain = np.kron(1 + shade, np.ones((size, size, 1))) * ground
     joint = np.zeros((SIDE, SIDE), np.float32)
     for at in range(0, SIDE, size):
         joint[at : at + 3] = joint[:, at : at + 3] = 1.0
     soft = cv2.GaussianBlur(joint, (3, 3), 0)[:, :, np.newaxis]
     # Dark joints: pale ones are lost among pale tiles.
-    return _bytes(plain * (1 - soft) + 0.72 * np.array(ground) * soft)
+    return _bytes(plain * (1 - soft) + 0.72 * ground * soft)
 
 
 @cache

@@ -17,18 +17,14 @@ from robot_runtime.contract.packets import Motor, Sense
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.water.fins import Four
-from robot_runtime.simulation.water.requests import changes
+from robot_runtime.simulation.water.requests import TRUTH_PERIOD, Change, changes, serve_requests
 from robot_runtime.simulation.water.sensors import Reading
 from robot_runtime.simulation.water.simulator import FinMotion, Simulator
 from robot_runtime.transport.blocks import read_blocks, read_rows
-from robot_runtime.transport.outbox import Outbox
-from robot_runtime.transport.replay_cache import ReplayCache
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 
 log = logging.getLogger(__name__)
 
-TRUTH_PERIOD = 0.05
-"""s between two samples of the truth."""
 GAP = 0.2
 """s between two angles of a fin above which nobody knows how it moved: it is taken to have rested."""
 GAP_MAX = 1.0
@@ -45,17 +41,15 @@ class HilSimulator:
     def __init__(self, simulator: Simulator, messages: ZenohTransport) -> None:
         self._simulator = simulator
         self._messages = messages
-        cache = ReplayCache(messages.run, SteadyClock())
-        self._outbox = Outbox(messages.publish, messages.watched, cache)
+        requests = changes(simulator)
+        requests["fault"] = _no_bus_errors(requests["fault"])
+        self._outbox = serve_requests(messages, requests, SteadyClock())
         self._waiting: deque[bytes] = deque(maxlen=WAITING_MAX)
         self._arrived = threading.Event()
         self._ending = False
         self._time: float | None = None
         self._angles: Four = (0.0, 0.0, 0.0, 0.0)
         self._truth_due = 0.0
-        for name, change in changes(simulator).items():
-            messages.serve(f"simulator/{name}", _no_bus_errors(change) if name == "fault" else change)
-        messages.serve_bytes("simulator/blocks", cache.answer)
         messages.subscribe("motor", self._receive)
 
     def run(self) -> None:
@@ -137,7 +131,7 @@ def _sense(reading: Reading) -> Sense:
     )
 
 
-def _no_bus_errors(change: Any) -> Any:
+def _no_bus_errors(change: Change) -> Change:
     def fault(question: Mapping[str, Any]) -> None:
         if question.get("kind") == "bus":
             raise RefusedError(

@@ -1,15 +1,22 @@
-"""Requests to the running water, by name."""
+"""Requests to the running water by name, and their service to other processes."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from robot_runtime.clock import Clock
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.parsing import parse
 from robot_runtime.simulation.water.faults import Kind, SimulatedFault
 from robot_runtime.simulation.water.parameters import Vector
 from robot_runtime.simulation.water.simulator import Simulator
 from robot_runtime.simulation.water.surroundings import Basin, Current, StartPose, Trim, Waves
+from robot_runtime.transport.outbox import Outbox
+from robot_runtime.transport.replay_cache import ReplayCache
+from robot_runtime.transport.zenoh_transport import ZenohTransport
+
+TRUTH_PERIOD = 0.05
+"""s between two samples of the truth."""
 
 Question = Mapping[str, Any]
 Change = Callable[[Question], Question | None]
@@ -91,6 +98,15 @@ def changes(simulator: Simulator) -> dict[str, Change]:
 
     made = (reset, current, waves, trim, world, beacons, fault, surroundings)
     return {change.__name__: change for change in made}
+
+
+def serve_requests(messages: ZenohTransport, requests: Mapping[str, Change], clock: Clock) -> Outbox:
+    """Serves these requests; returns an outbox for `truth`, of which it serves the blocks."""
+    cache = ReplayCache(messages.run, clock)
+    for name, change in requests.items():
+        messages.serve(f"simulator/{name}", change)
+    messages.serve_bytes("simulator/blocks", cache.answer)
+    return Outbox(messages.publish, messages.watched, cache)
 
 
 def _require(question: Question, *names: str) -> None:

@@ -122,7 +122,7 @@ def test_pitch_and_roll_push_against_their_error() -> None:
 
 def test_the_depths_loop_is_told_the_mean_acceleration_downwards() -> None:
     rig = Rig("automatic")
-    rig.node.choose("predictive")
+    rig.node.set_loop("depth", controller="predictive")
     rig.tick()
     # The right of the hull is down.
     rig.feel(1.0, 0.3 - GRAVITY, 2.0)

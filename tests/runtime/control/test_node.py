@@ -139,7 +139,7 @@ def test_what_was_seen_a_second_ago_no_longer_counts(rig: Rig) -> None:
 
 
 def test_a_controller_starts_afresh_at_each_arming(rig: Rig) -> None:
-    rig.node.choose("pid", {"kp": 0.0, "ki": 1.0, "kd": 0.0})
+    rig.node.set_loop("depth", controller="pid", gains={"kp": 0.0, "ki": 1.0, "kd": 0.0})
     rig.depth(0.0)
     modes: tuple[Mode, ...] = (*("automatic",) * 4, "disarmed", "automatic")
     for mode in modes:
@@ -163,7 +163,7 @@ def test_bad_choices_are_refused_and_the_old_one_stays(
 ) -> None:
     before = rig.node.depth.controller
     with pytest.raises(RefusedError, match=why):
-        rig.node.choose(name, gains)
+        rig.node.set_loop("depth", controller=name, gains=gains)
     assert rig.node.depth.controller is before
 
 

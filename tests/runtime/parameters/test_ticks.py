@@ -31,7 +31,7 @@ class Swimmer(Core):
         line = LinkDriver("none", 250_000, clock, 1, lambda _: None, lambda: None)
         outbox = Outbox(lambda *_: None, lambda _: False)
         super().__init__(Config(), clock, "0" * 16, line, outbox, watched=lambda _: False)
-        self.control.choose("pid", {"kp": 1, "ki": 1, "kd": 1})
+        self.control.set_loop("depth", controller="pid", gains={"kp": 1, "ki": 1, "kd": 1})
         self.supervisor.mode = "automatic"
         self.control.change_mode("automatic")
         depth = Depth(time=0, depth=1.0, pressure=111_000, temperature=20.0)

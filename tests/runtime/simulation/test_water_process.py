@@ -18,8 +18,9 @@ import pytest
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract import documents
 from robot_runtime.errors import NoAnswerError, RefusedError
+from robot_runtime.simulation.boards.stepped_board import PERIOD
 from robot_runtime.simulation.water.simulator import Simulator
-from robot_runtime.simulation.water_process import PERIOD, WaterProcess
+from robot_runtime.simulation.water_process import WaterProcess
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.runtime.simulation.water.harness import QUIET

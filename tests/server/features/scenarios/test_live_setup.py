@@ -9,7 +9,7 @@ from typing import Any, cast
 import pytest
 
 from robot_runtime.contract.commands import RobotCommand
-from robot_runtime.control.controllers.angle import HeadingPid
+from robot_runtime.control.controllers.pid import HeadingPid
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
