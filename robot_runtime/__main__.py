@@ -1,4 +1,4 @@
-"""`python -m robot_runtime`: the robot's runtime, without the web."""
+"""`python -m robot_runtime` runs the robot: serial link, vision and control, without the web server."""
 
 import argparse
 import logging
@@ -14,7 +14,7 @@ from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
 def main() -> int:
-    """Exit status: 2 where the configuration or the endpoints cannot be used."""
+    """Runs until SIGTERM or SIGINT. Returns 2 if the configuration or an endpoint cannot be used."""
     options = _options()
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     if options.with_parent:
@@ -39,13 +39,13 @@ def main() -> int:
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m robot_runtime", description=__doc__)
     parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
-    parser.add_argument("--data", type=Path, default=Path("data"), help="the folder of all that is stored")
-    parser.add_argument("--port", help="serial port, instead of the configuration's")
+    parser.add_argument("--data", type=Path, default=Path("data"), help="the data folder")
+    parser.add_argument("--port", help="serial port; default: link.port of the configuration")
     parser.add_argument(
         "--heartbeat",
         type=float,
         metavar="SECONDS",
-        help="stop the robot when no server has been heard for so long",
+        help="stop the robot after this time without a server's heartbeat",
     )
     add_server_options(parser)
     return parser.parse_args()

@@ -1,4 +1,4 @@
-"""Time, as one injected thing: the computer's steady clock, or one that a test pushes forward."""
+"""The source of time: the computer's steady clock, or a simulated one that its owner advances."""
 
 import time
 from pathlib import Path
@@ -6,34 +6,34 @@ from typing import Protocol
 
 
 class Clock(Protocol):
-    """Where time comes from."""
+    """A source of time."""
 
     def now(self) -> float:
-        """Seconds on a steady clock that never jumps; the same for every process of one computer."""
+        """Returns s on a steady clock, which never jumps and is the same in every process of one computer."""
         ...
 
 
 class SteadyClock:
-    """The computer's own (CLOCK_MONOTONIC), shared by all its processes until it restarts."""
+    """The computer's CLOCK_MONOTONIC, which all its processes share until it restarts."""
 
     def now(self) -> float:
-        """Seconds since an arbitrary moment, usually the start of the computer."""
+        """Returns s since an arbitrary moment, usually the start of the computer."""
         return time.monotonic()
 
 
 def boot() -> str:
-    """Tells this start of the computer from others: the steady clocks of two cannot be compared."""
+    """Returns the identifier of this start of the computer; steady clocks compare only within one start."""
     return Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
 
 
 class SimulatedClock:
-    """Stands still until it is pushed."""
+    """A clock that advances only by `forward`."""
 
     def __init__(self, start: float = 0.0) -> None:
         self._now = start
 
     def now(self) -> float:
-        """Seconds since the start that was given, as far as it was pushed."""
+        """Returns the start time and the seconds advanced since."""
         return self._now
 
     def forward(self, seconds: float) -> None:

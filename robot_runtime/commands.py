@@ -1,4 +1,4 @@
-"""Performs the commands of `robot_runtime.contract.commands`, or refuses them with the reason."""
+"""Performs the commands of `robot_runtime.contract.commands`, or refuses them with a reason."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -38,7 +38,7 @@ Answer = Mapping[str, Any]
 
 
 class Commands:
-    """Every command to one robot; `do` takes each by its name, with its fields as a table."""
+    """Performs commands on one robot. `do` maps a command's name to a function of its fields as a table."""
 
     def __init__(self, robot: Core) -> None:
         self._robot = robot
@@ -66,7 +66,7 @@ class Commands:
         }
 
     def perform(self, command: RobotCommand) -> Answer:
-        """Perform a command; the answer names the parameters that it changed. Raises RefusedError."""
+        """Performs a command; returns the names of the parameters that it changed. Raises RefusedError."""
         handler, policy = self._handlers[type(command)], command.policy
         if policy.disturbs_experiment:
             self._robot.experiments.require_none()
@@ -74,7 +74,7 @@ class Commands:
             handler(command)
             self._robot.announce()
             return {}
-        # Between two control ticks.
+        # `changing` holds the control loop's lock, so that the command takes effect between two ticks.
         with self._robot.parameters.changing() as changed:
             answer = handler(command) or {}
         self._robot.announce()
@@ -141,7 +141,7 @@ class Commands:
         self._robot.vision.show_card(command.colour)
 
     def _vision(self, command: VisionCommand) -> None:
-        # Parsed anew, as the colour may not be one of those that are set up.
+        # Parsed again, because the colour must be one that is configured.
         table = self._robot.vision.settings.table() | command.payload()
         self._robot.set_vision(parse(VisionSettings, table))
 
@@ -162,7 +162,7 @@ class Commands:
         if loop is control.heading and control.steering == "beacons":
             raise RefusedError("The heading follows the beacons. Choose the course “stay” first.")
         if loop.measured is None:
-            raise RefusedError(f"The {loop.name} is not known yet. Check the sensors.")
+            raise RefusedError(f"The {loop.name} is not measured yet. Check the sensors.")
         self._robot.experiments.begin(command.number, loop, experiment)
 
     def _end_experiment(self, _: EndExperimentCommand) -> None:

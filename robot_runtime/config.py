@@ -1,4 +1,4 @@
-"""robot.toml as typed, checked values. What the file leaves out has the default written here."""
+"""The configuration in robot.toml as typed, checked values, with the default of each entry."""
 
 import tomllib
 from dataclasses import dataclass, field, fields
@@ -10,12 +10,12 @@ from robot_runtime.contract.parsing import parse
 from robot_runtime.contract.vision_settings import VisionSettings
 
 HIL_BAUD_MIN = 115_200
-"""From here on the line carries the fins at full rate."""
+"""bit/s from which the line carries the fins' angles at full rate."""
 
 CHIP_CLOCK = 16_000_000
 """Hz."""
 BAUD_ERROR_MAX = 0.025
-"""Of one end alone; firmware/src/board/avr/line.cpp refuses the same."""
+"""Relative error of one end of the line; firmware/src/board/avr/line.cpp has the same limit."""
 
 
 def _chip_baud(baud: int) -> float:
@@ -26,7 +26,7 @@ def _chip_baud(baud: int) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
-    """The robot's name and how it is run."""
+    """The robot's name and mode."""
 
     name: str = "turtle"
     mode: Literal["emulated", "robot", "hil"] = "emulated"
@@ -34,7 +34,7 @@ class RobotConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkConfig:
-    """The serial line; baud in bit/s. `reset` is how the board's reset pin is pulled before an upload."""
+    """The serial line; baud in bit/s. `reset` says how to pull the board's reset pin before an upload."""
 
     port: str = "/dev/serial0"
     baud: Annotated[int, Range(1200, 500_000)] = 250_000
@@ -45,13 +45,13 @@ class LinkConfig:
         if abs(made / self.baud - 1) > BAUD_ERROR_MAX:
             raise ConfigError(
                 f"link.baud is {self.baud}; the chip at 16 MHz makes {made:.0f} of it, "
-                f"{made / self.baud - 1:+.1%}, and the line needs it within {BAUD_ERROR_MAX:.1%}"
+                f"{made / self.baud - 1:+.1%}, and the error must be within {BAUD_ERROR_MAX:.1%}"
             )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HilConfig:
-    """Hardware in the loop: which board computes the fins, and where the simulator starts."""
+    """Hardware in the loop: the board that computes the fins, and the computer of the simulator."""
 
     board: Literal["emulated", "real"] = "emulated"
     simulator: Literal["here", "elsewhere"] = "here"
@@ -80,7 +80,7 @@ class VisionConfig(VisionSettings):
 
     @property
     def settings(self) -> VisionSettings:
-        """The settings that may change while the node runs."""
+        """Returns the settings that may change while the node runs."""
         return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
 
 
@@ -94,7 +94,7 @@ class ZenohConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerConfig:
-    """The web server; the names by which browsers may call it, and whether it speaks TLS."""
+    """The web server: its address, the host names that browsers may use, and TLS on or off."""
 
     host: str = "127.0.0.1"
     port: Annotated[int, Range(1, 65535)] = 8000
@@ -104,7 +104,7 @@ class ServerConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionsConfig:
-    """Automatic recording and retention; times in days, space in GB of 10^9 bytes, 0: no such rule."""
+    """Automatic recording and retention; times in days, free space in GB of 10^9 bytes; 0 disables a rule."""
 
     record_at_arming: bool = True
     undo_days: Annotated[float, Range(0, 3650)] = 7.0
@@ -114,7 +114,7 @@ class SessionsConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Config:
-    """All of robot.toml."""
+    """The whole configuration."""
 
     robot: RobotConfig = RobotConfig()
     link: LinkConfig = LinkConfig()
@@ -128,13 +128,13 @@ class Config:
     def __post_init__(self) -> None:
         if self.robot.mode == "hil" and self.link.baud < HIL_BAUD_MIN:
             raise ConfigError(
-                f"link.baud is {self.link.baud}; hardware in the loop needs {HIL_BAUD_MIN} or more, for the "
-                "simulator must see the fins as they flap"
+                f"link.baud is {self.link.baud}; hardware in the loop needs {HIL_BAUD_MIN} or more to "
+                "carry the fins' angles to the simulator in time"
             )
 
 
 def load(path: Path) -> Config:
-    """The configuration in this file. Raises ConfigError where it cannot be read or used."""
+    """Reads the configuration from this file. Raises ConfigError if it cannot be read or used."""
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:

@@ -1,7 +1,7 @@
-"""The robot's core: link, control, vision and publication, as steps without threads.
+"""The robot's core: link, control, vision and publication, as steps that never block.
 
-It has no thread and waits for nothing. `robot.Robot` gives it threads and the computer's time; in simulated
-time `scenario.run` calls the same steps one after the other.
+`robot.Robot` runs them in threads and real time, `experiments.scenario.run` one after the other in simulated
+time.
 """
 
 import logging
@@ -71,14 +71,13 @@ _PARAMETERS_EVERY = 10.0
 
 
 class Core:
-    """The robot without its threads. `run` is this run's name, 16 hexadecimal digits.
+    """The robot without its threads. `run` is this run's identifier, 16 hexadecimal digits.
 
-    Pictures come from `open_camera`, without it from the configured camera, which may ask by `messages`. A
-    `loop` stands for sensors that the board has not. With `heartbeat` a server must be heard so often (s).
+    `open_camera` replaces the configured camera, which may query `messages`. `hil` feeds a board without
+    sensors. With `heartbeat` (s) a server that is silent for longer is a fault.
 
-    `line` calls `take_messages` and `link_changed`, bound methods that are there before the rest is made.
-    That, `take_pilot`, `publish_tick` and `vision.tick` may each have a thread of their own, and so may
-    `control_tick` with `pilot_tick`.
+    `line` calls `take_messages` and `link_changed`. Threads of their own may run: `line`, `take_pilot`,
+    `publish_tick`, `vision.tick`, and `control_tick` together with `pilot_tick`.
     """
 
     def __init__(
@@ -92,7 +91,7 @@ class Core:
         watched: Callable[[str], bool],
         open_camera: Callable[[], Camera] | None = None,
         messages: ZenohTransport | None = None,
-        loop: HilFeed | None = None,
+        hil: HilFeed | None = None,
         heartbeat: float | None = None,
     ) -> None:
         self.config = config
@@ -112,7 +111,7 @@ class Core:
             clock,
             self.line,
             self.publish_event,
-            loop,
+            hil,
             heartbeat,
             on_mode=lambda mode: self.control.change_mode(mode),
             arming_obstacles=self.board_parameters.refusals,
@@ -151,7 +150,7 @@ class Core:
         self._state_changed.set()
 
     def _publish_experiment(self, experiment: Experiment) -> None:
-        # First, so that who hears of its end knows already that the loop is as it was.
+        # The state first: a receiver of the end then has the restored loop already.
         self.bus.publish_document("state", self.state())
         self.bus.publish_document("experiment", experiment)
 
@@ -165,10 +164,10 @@ class Core:
             self._control_tick()
 
     def _control_tick(self) -> None:
-        self.look()
+        self.check_faults()
         try:
             if self.control.depth.on and (reasons := self.supervisor.detector.depth_refusals()):
-                self.control.let_go(self.control.depth, reasons[0])
+                self.control.release(self.control.depth, reasons[0])
             self.experiments.tick(self.supervisor.mode)
             self.control.tick()
             if self.supervisor.mode == "test":
@@ -195,18 +194,18 @@ class Core:
         self._piloted = True
         return min(now + PILOT_LOOK, pilot.until)
 
-    def look(self) -> None:
+    def check_faults(self) -> None:
         """Checks for faults; call it every `PUBLISH_EVERY` at least."""
         try:
             self.supervisor.tick()
         except Exception:
-            log.exception("looking for faults failed")
+            log.exception("the check for faults failed")
             self.supervisor.fail("control_failed")
 
     def publish_tick(self) -> None:
         """Checks for faults and publishes queued data; call it every `PUBLISH_EVERY`."""
-        # Here too, as the control loop may be slower.
-        self.look()
+        # Here too, because the control loop may be slower.
+        self.check_faults()
         self.board_parameters.tick()
         now = self.clock.now()
         for index, (seconds, action) in enumerate(self._every):
@@ -356,10 +355,10 @@ class Core:
                 line = DebugLine(time=message.time, level=debug.level, text=debug.text)
                 self.bus.publish_document("debug", line)
         if attitude is not None:
-            # Of a hundred a second the newest of a batch will do: decoding one takes a Pi its time.
+            # Only the newest of a batch, since decoding a hundred a second costs a Pi CPU time.
             detector.see_imu(Imu.from_bytes(attitude))
         self.board_parameters.tick()
-        self.look()
+        self.check_faults()
         self.outbox.flush()
 
     def link_changed(self) -> None:

@@ -1,4 +1,4 @@
-"""Files that survive a power cut: whole under their name, or not there."""
+"""Atomic, durable writing of files: after a power cut a file is complete or absent."""
 
 import os
 from collections.abc import Iterator
@@ -6,21 +6,21 @@ from contextlib import contextmanager
 from pathlib import Path
 
 PART = ".part"
-"""Ends the name of a file that is not whole yet."""
+"""Suffix of a file that is still being written."""
 _WRITE = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
 
 
 def write_whole(path: Path, data: bytes, mode: int = 0o666) -> None:
-    """Write a file, in place of an older one, for good. Raises OSError; then the older one is still there."""
+    """Writes a file durably, replacing an older one. Raises OSError; then the older one is unchanged."""
     with unfinished(path) as part, os.fdopen(os.open(part, _WRITE, mode), "wb") as file:
         file.write(data)
 
 
 @contextmanager
 def unfinished(path: Path) -> Iterator[Path]:
-    """Yield the name under which to write a file; then put it in place, for good.
+    """Yields a temporary path to write to, and afterwards renames it to `path`, durably.
 
-    Where anything fails, it is removed, and an older file is still there. Raises OSError.
+    On failure the temporary file is removed and an older file is unchanged. Raises OSError.
     """
     part = path.with_name(path.name + PART)
     try:
@@ -33,13 +33,13 @@ def unfinished(path: Path) -> Iterator[Path]:
 
 
 def put_in_place(part: Path, path: Path) -> None:
-    """Rename a finished file, for good. Raises OSError."""
+    """Renames a finished file, durably. Raises OSError."""
     part.replace(path)
     sync(path.parent)
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those it lies in, for good. Raises OSError."""
+    """Makes a folder and its parents, durably. Raises OSError."""
     if path.is_dir():
         return
     make_folder(path.parent)
@@ -48,7 +48,7 @@ def make_folder(path: Path) -> None:
 
 
 def sync(path: Path) -> None:
-    """Have a file's bytes, or a folder's names, on the disk. Raises OSError."""
+    """Flushes a file, or the names in a folder, to the disk. Raises OSError."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

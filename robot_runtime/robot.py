@@ -22,9 +22,9 @@ from robot_runtime.vision.settings_file import VisionSettingsFile
 
 
 class Robot(Core):
-    """The running robot. `run` returns after `close`. `heartbeat`: s for which no server need be heard.
+    """The running robot. `run` returns after `close`. `heartbeat`: s after which a silent server is a fault.
 
-    `vision_file` goes before the configuration's settings.
+    Settings in `vision_file` replace the configuration's.
     """
 
     def __init__(
@@ -40,16 +40,16 @@ class Robot(Core):
         self._messages = messages
         self._closing = False
         self._ending = threading.Event()
-        # Any number will do that differs from the last run's.
+        # Any number that differs from the last run's.
         epoch = time.time_ns() // 1_000_000 & 0xFFFF
         self.connection = SerialLink(
             port, config.link.baud, clock, epoch, self.take_messages, self.link_changed
         )
-        self.loop: HilFeed | None = None
+        self.hil: HilFeed | None = None
         if config.robot.mode == "hil":
-            self.loop = HilFeed(clock, self.connection.send, self.publish_event)
-            hear = self.loop.hear
-            messages.subscribe("sense", lambda _, data: hear(data))
+            self.hil = HilFeed(clock, self.connection.send, self.publish_event)
+            forward = self.hil.forward
+            messages.subscribe("sense", lambda _, data: forward(data))
         outbox = Outbox(messages.publish, messages.watched, self.cache)
         super().__init__(
             config,
@@ -57,7 +57,7 @@ class Robot(Core):
             messages.run,
             self.connection,
             outbox,
-            loop=self.loop,
+            hil=self.hil,
             watched=messages.watched,
             messages=messages,
             heartbeat=heartbeat,
@@ -93,7 +93,7 @@ class Robot(Core):
             self._publish_vision_event(f"The settings apply, but could not be stored: {problem.strerror}")
 
     def run(self) -> None:
-        """Run until `close` is called; afterwards the board is disarmed and everything is closed."""
+        """Runs until `close` is called, then disarms the board and closes everything."""
         self.connection.start()
         self.vision.start()
         control = threading.Thread(target=self._control_loop, name="control", daemon=True)
@@ -111,7 +111,7 @@ class Robot(Core):
             self.outbox.flush()
 
     def close(self) -> None:
-        """Ask `run` to return; may be called from a signal handler, which must take no lock."""
+        """Makes `run` return; takes no lock, so that a signal handler may call it."""
         self._closing = True
 
     def _restore_vision(self) -> None:
@@ -135,5 +135,5 @@ class Robot(Core):
             if self.clock.now() < due:
                 continue
             self.control_tick()
-            # A tick that came late is not made up for.
+            # Late ticks are skipped.
             due = max(due + period, self.clock.now())

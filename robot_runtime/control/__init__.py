@@ -1,1 +1,1 @@
-"""Control: what the robot should do next, from what it senses."""
+"""Control: loops, steering, faults and the supervisor of the robot's state."""

@@ -11,14 +11,14 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Alarm, Event, Severity
 
 CLEAR_AFTER = 1.0
-"""s without a fault of the robot after which its alarm ends, so that a flickering fault is one alarm."""
+"""s without a fault of the robot after which its alarm ends, so that an intermittent fault is one alarm."""
 OVER = "alarm_over"
 """The kind of the event at the end of an alarm; at its beginning it is the fault's name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultText:
-    """The words of one fault, in sentences; `what` is "" where each time has its own."""
+    """The texts of a fault, in sentences; `what` is empty if each occurrence brings its own."""
 
     severity: Severity
     what: str
@@ -55,7 +55,7 @@ class Alarms:
             self.see(name, name in wrong, wrong.get(name, ""))
 
     def see(self, name: str, wrong: bool, detail: str = "") -> None:
-        """Sets if this fault is active now."""
+        """Sets whether this fault is active now."""
         now, alarm = self._clock.now(), self._alarms.get(name)
         active = alarm is not None and alarm.active
         if wrong:
@@ -66,7 +66,7 @@ class Alarms:
             self._end(alarm)
 
     def begin(self, name: str, detail: str = "", *, active: bool = True) -> None:
-        """Adds a fault. It lasts until `see` finds it gone; if not `active`, it is over already."""
+        """Begins an alarm. It is active until `see` finds the fault gone; if not `active`, it is past."""
         fault, now = self._faults[name], self._clock.now()
         what = f"{fault.what} {detail}".strip()
         self._last[name] = now
@@ -85,7 +85,7 @@ class Alarms:
         self._changed()
 
     def begin_again(self, name: str, detail: str = "") -> None:
-        """Begins an acknowledged alarm anew: its fault has stopped the robot once more."""
+        """Begins an acknowledged alarm again, because its fault has stopped the robot once more."""
         if self._alarms[name].acknowledged:
             self.begin(name, detail)
 

@@ -7,9 +7,9 @@ GRAVITY = 9.80665
 
 
 def euler_angles(attitude: tuple[float, float, float, float]) -> tuple[float, float, float]:
-    """Heading, pitch and roll, rad, of a unit quaternion w, x, y, z from body to world.
+    """Returns heading, pitch and roll, rad, of a unit quaternion w, x, y, z from body to world.
 
-    Turned about down by the heading, then about right, then about forward (T. I. Fossen, Handbook of Marine
+    They are rotations about down, then right, then forward (T. I. Fossen, Handbook of Marine
     Craft Hydrodynamics and Motion Control, 2011, 2.2.2).
     """
     w, x, y, z = attitude
@@ -25,7 +25,7 @@ def heave_acceleration(
 ) -> float:
     """Returns the downward acceleration, m/s², from attitude and specific force (m/s², body axes).
 
-    Attitude as in `euler_angles`. Near the poles 0.026 m/s² too little, at the equator as much too much.
+    Attitude as in `euler_angles`. The error of standard gravity is at most 0.027 m/s², at poles and equator.
     """
     w, x, y, z = attitude
     forward, right, down = force
@@ -36,5 +36,5 @@ def heave_acceleration(
 
 
 def wrap_angle(angle: float) -> float:
-    """The angle's equal between -π and π."""
+    """Returns the equal angle between -π and π."""
     return remainder(angle, 2 * pi)

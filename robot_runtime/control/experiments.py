@@ -1,4 +1,7 @@
-"""Runs one experiment at a time: started by a command, advanced before each tick."""
+"""Experiments on one loop: a step of its set point, or a relay in place of its controller.
+
+They override the loop for as long as they run and change none of its settings.
+"""
 
 import threading
 from abc import ABC, abstractmethod
@@ -15,23 +18,23 @@ from robot_runtime.control.loop import ControlLoop, LoopOverride
 from robot_runtime.errors import RefusedError
 
 SETTLED_SECONDS = 2.0
-"""s for which the value has to have stayed about the start before the step."""
+"""s for which the value must stay near the start before the step."""
 MARGIN = 0.1
-"""Share of the way between the limits by which the value has to be within them before they count."""
+"""Share of the span between the limits by which the value must be inside before they are enforced."""
 BALANCED = 0.1
 """Share of a cycle by which its halves may differ for the relay to count as balanced."""
 BALANCING_MOST = 6
-"""Cycles after which it goes on unbalanced: the bias is at its limit then, or the water is not still."""
+"""Cycles after which it continues unbalanced: the bias is at its limit, or the water is not still."""
 REPORT_PERIOD = 0.5
-"""s."""
-_LEFT: dict[Mode, str] = {
+"""s between two reports of an unchanged phase."""
+_END_REASONS: dict[Mode, str] = {
     "manual": "The pilot took over.",
     "failsafe": "The robot was stopped for a fault; see its alarms.",
 }
 
 
 class LoopExperiment(ABC):
-    """Base of both: call `observe` before each tick until it is `over`; `text` explains an early end."""
+    """Base of both. Call `observe` before each tick until it is `over`; `text` explains an early end."""
 
     kind: ClassVar[ExperimentKind]
 
@@ -39,12 +42,12 @@ class LoopExperiment(ABC):
         self.phase: ExperimentPhase = "settling"
         self.phase_since = self._began = clock.now()
         self.progress = 0.0
-        """Share that is done, as far as that is known."""
+        """Share that is done, 0 to 1."""
         self.text = ""
         self.cycles = 0
-        """Of a relay, that count."""
+        """Of a relay: its cycles since it was balanced."""
         self.bias = 0.0
-        """Of a relay: the mean command, which balances the load."""
+        """Of a relay: the mean command, which balances the load, -1 to 1."""
         self.middle = (low + high) / 2
         self._clock = clock
         self._low, self._high = low, high
@@ -65,7 +68,7 @@ class LoopExperiment(ABC):
         if self._inside and not self._low <= value <= self._high:
             span = f"{self._low:g} to {self._high:g}"
             self.end("failed", f"It ended at {value:.2f}, which is beyond the limits ({span}).")
-        # It may begin at a limit: at the surface, for one.
+        # It may begin at a limit, such as the surface.
         margin = MARGIN * (self._high - self._low)
         self._inside = self._inside or self._low + margin <= value <= self._high - margin
         self._observe(value)
@@ -92,11 +95,11 @@ class StepExperiment(LoopExperiment):
     def __init__(self, settings: StepExperimentCommand, clock: Clock) -> None:
         super().__init__(clock, settings.low, settings.high)
         self._settings = settings
-        self._away = self._began
+        self._last_outside = self._began
 
     @property
     def override(self) -> LoopOverride:
-        """Another set point for the loop's own controller."""
+        """Returns a set point for the loop's own controller."""
         return LoopOverride(
             set_point=self._settings.start if self.phase == "settling" else self._settings.target
         )
@@ -104,11 +107,11 @@ class StepExperiment(LoopExperiment):
     def _observe(self, value: float) -> None:
         settings, now = self._settings, self._clock.now()
         if abs(value - settings.start) > settings.tolerance:
-            self._away = now
+            self._last_outside = now
         if self.phase == "settling":
             waited = now - self._began
             self.progress = 0.5 * min(waited / settings.settle, 1.0) if settings.settle else 0.5
-            if waited >= settings.settle or now - self._away >= SETTLED_SECONDS:
+            if waited >= settings.settle or now - self._last_outside >= SETTLED_SECONDS:
                 self._enter("running")
         if self.phase == "running":
             self.progress = 0.5 + 0.5 * min((now - self.phase_since) / settings.duration, 1.0)
@@ -119,9 +122,9 @@ class StepExperiment(LoopExperiment):
 class RelayExperiment(LoopExperiment):
     """A relay in the controller's place (Åström and Hägglund, Automatica 20, 1984).
 
-    A load, here buoyancy, makes one half of each cycle longer than the other, and period and amplitude wrong
-    (Hang, Åström and Ho, IEE Proceedings-D 140, 1993). The mean command over a cycle is what balances it: it
-    becomes the relay's bias, until the halves are alike. Only then cycles count.
+    A load, here buoyancy, makes the halves of each cycle unequal, and period and amplitude wrong (Hang,
+    Åström and Ho, IEE Proceedings-D 140, 1993). The mean command over a cycle becomes the relay's bias until
+    the halves are equal; only later cycles count.
     """
 
     kind = "relay"
@@ -132,16 +135,16 @@ class RelayExperiment(LoopExperiment):
         self._override = LoopOverride(_Relay(self), settings.set_point)
         self._side = 0.0
         self._switched = self._began
-        self._forth = 0.0
+        self._first_half = 0.0
         self._balancing = 0
 
     @property
     def override(self) -> LoopOverride:
-        """The relay, about its set point."""
+        """Returns the relay and its set point."""
         return self._override
 
     def command(self, error: float) -> float:
-        """The relay's command, -1 to 1, where the set point is so far away."""
+        """Returns the relay's command, -1 to 1, at this error."""
         side = self._side or (1.0 if error > 0 else -1.0)
         if error * side < -self._settings.hysteresis:
             side = -side
@@ -151,24 +154,24 @@ class RelayExperiment(LoopExperiment):
         self._side = side
         return self.bias + side * self._settings.amplitude
 
-    def _observe(self, value: float) -> None:  # noqa: ARG002 - the relay sees what is newer
+    def _observe(self, value: float) -> None:  # noqa: ARG002 - the relay gets a newer value
         settings = self._settings
         if self._clock.now() - self._began >= settings.duration:
             words = f"There were {self.cycles} of {settings.cycles} cycles within {settings.duration:g} s."
             self.end("failed", words)
 
     def _switch(self) -> None:
-        """It has turned over: after each second half a cycle is whole."""
+        """Takes a switching of the relay; every second one completes a cycle."""
         now = self._clock.now()
         half, self._switched = now - self._switched, now
         if self.phase == "settling":
-            # The way there was no half.
+            # The first approach is no half cycle.
             self._enter("balancing")
         elif self._side < 0:
-            self._forth = half
-        elif self._forth:
-            self._complete((self._forth - half) / (self._forth + half))
-            self._forth = 0.0
+            self._first_half = half
+        elif self._first_half:
+            self._complete((self._first_half - half) / (self._first_half + half))
+            self._first_half = 0.0
 
     def _complete(self, asymmetry: float) -> None:
         if self.phase == "balancing":
@@ -186,7 +189,7 @@ class RelayExperiment(LoopExperiment):
 
 
 class _Relay(Controller):
-    """An experiment's relay, as the loop knows controllers."""
+    """The relay of an experiment, as a controller."""
 
     name = "relay"
     title = "Relay"
@@ -197,12 +200,15 @@ class _Relay(Controller):
         self._experiment = experiment
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Full amplitude towards the set point, from the bias."""
+        """Returns the bias, plus or minus the amplitude."""
         return self._experiment.command(set_point - measured)
 
 
 class Experiments:
-    """`on_report` takes each document. `tick` belongs to the control loop, the rest to any thread."""
+    """Runs one experiment at a time. `tick` belongs to the control loop, the rest to any thread.
+
+    `on_report` takes each document.
+    """
 
     def __init__(self, clock: Clock, on_report: Callable[[Experiment], None]) -> None:
         self._clock = clock
@@ -221,13 +227,13 @@ class Experiments:
             )
 
     def begin(self, number: int, loop: ControlLoop, experiment: LoopExperiment) -> None:
-        """Run it from the next tick on. Raises RefusedError while another runs."""
+        """Starts an experiment at the next tick. Raises RefusedError while another runs."""
         with self._lock:
             self.require_none()
             self._running = number, loop, experiment
 
     def stop(self, text: str) -> None:
-        """End what runs, if anything does."""
+        """Stops the running experiment, if any."""
         running = self._running
         if running is not None:
             running[2].end("stopped", text)
@@ -239,11 +245,11 @@ class Experiments:
             return
         number, loop, experiment = running
         if mode != "automatic":
-            experiment.end("stopped", _LEFT.get(mode, "The robot was disarmed."))
+            experiment.end("stopped", _END_REASONS.get(mode, "The robot was disarmed."))
         elif loop.measured is not None and not experiment.over:
-            near = experiment.middle
+            middle = experiment.middle
             experiment.observe(
-                loop.measured if loop.name == "depth" else near + wrap_angle(loop.measured - near)
+                loop.measured if loop.name == "depth" else middle + wrap_angle(loop.measured - middle)
             )
         loop.override = None if experiment.over else experiment.override
         self._report_changes(number, loop, experiment)

@@ -1,7 +1,7 @@
 """Detects faults from the age and the content of what the board, the pilot and the server send.
 
-Arrivals count, not stamps: an emulated board that had to pause keeps its clock behind. All of it goes by the
-steady clock, so that nobody who sets the computer's time changes anything.
+Ages count from the arrival of a message, not from its stamp, because the clock of an emulated board that was
+paused lags. All times are of the steady clock, so that setting the computer's time has no effect.
 """
 
 from collections.abc import Callable, Collection
@@ -11,25 +11,25 @@ from typing import Protocol
 from robot_runtime.clock import Clock
 from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import Depth, Hello, Imu, Packet, SensorFault, Status, StatusFlag
-from robot_runtime.control.faults import BY_NAME, LOOK
+from robot_runtime.control.faults import BY_NAME, CHECK_PERIOD
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import Pilot
 from robot_runtime.link.timing import frames_airtime, stale_after
 
 ARRIVAL = 0.05
-"""s for which what the board said may lie on its way here."""
+"""s that a message of the board may take to arrive."""
 DEPTH_MIN, DEPTH_MAX = -1.0, 20.0
-"""m: air pressure and the sensor's own drift stay above, and the robot's set point ends at 10 m."""
+"""m: air pressure and sensor drift stay above the minimum, and the set point ends at 10 m."""
 REPEATS = 10
-"""Equal readings of the pressure in a row that no sound sensor gives; see docs/reference/safety.md."""
+"""Equal pressure readings in a row that no working sensor gives; see docs/reference/safety.md."""
 TILT_MAX = 75 * pi / 180
-"""rad between the robot's down and the world's; steering alone stays far below."""
+"""rad between the robot's down and the world's; normal steering stays far below."""
 AT_SURFACE = 0.2
-"""m: so deep the pressure sensor of a floating robot may be, in waves."""
+"""m: greatest depth of a floating robot's pressure sensor, in waves."""
 RISE_OVER = 9.5
-"""s over which it is looked at whether the robot rises: once it has lost its way downwards."""
+"""s over which the rise is measured, after any motion downwards has ended."""
 RISE_MIN = 0.1
-"""m in that time. In still water it rises by 0.3; 0.1 m/s, usual for larger craft, it never reaches."""
+"""m of rise in that time; in still water it is 0.3 m."""
 _STATUS_STALE = 0.5
 _NEVER = float("-inf")
 
@@ -56,7 +56,7 @@ class BoardLink(Protocol):
 
 
 class FaultDetector:
-    """Detects faults: `see_...` take the inputs, `wrong` and `refusals` return the results.
+    """Detects faults: `see_...` take the inputs, `active_faults` and `refusals` return the results.
 
     Without `heartbeat` no server is expected."""
 
@@ -65,7 +65,7 @@ class FaultDetector:
         clock: Clock,
         line: BoardLink,
         pilot: Pilot,
-        loop: HilFeed | None,
+        hil: HilFeed | None,
         heartbeat: float | None,
         arming_obstacles: Callable[[], list[str]],
     ) -> None:
@@ -75,7 +75,7 @@ class FaultDetector:
         self._clock = clock
         self._line = line
         self._pilot = pilot
-        self._loop = loop
+        self._hil = hil
         self._arming_obstacles = arming_obstacles
         baud = line.baud
         self._silent = max(_limit("board_silent") - ARRIVAL, frames_airtime(3, baud))
@@ -127,9 +127,9 @@ class FaultDetector:
         self._vision = taken
 
     def note_check(self) -> bool:
-        """Records a check; returns True if the previous one is too old for its inputs to be trusted.
+        """Records a check; returns True if the previous one is too old to trust the inputs.
 
-        What the board sent before is read first then, as if it came just now.
+        After a stall, messages that waited are read as if they had just arrived.
         """
         stalled = self._age(self._checked) > _limit("runtime_stalled")
         self._checked = self._clock.now()
@@ -143,14 +143,14 @@ class FaultDetector:
         """Notes that the robot is armed again."""
         self._ascent, self._sinks = None, False
 
-    def wrong(self, mode: Mode, active: Collection[str]) -> dict[str, str]:
+    def active_faults(self, mode: Mode, active: Collection[str]) -> dict[str, str]:
         """Returns the active faults by name, each with a detail or an empty text.
 
-        All are looked for but where the robot is disarmed: then only some, and those `active` already.
+        While the robot is disarmed, only faults with `always` and those already `active` are checked.
         """
         found = self._conditions(mode)
-        looked_for = {name for name in found if mode != "disarmed" or BY_NAME[name].always} | {*active}
-        wrong = {name: "" for name, there in found.items() if there and name in looked_for}
+        checked = {name for name in found if mode != "disarmed" or BY_NAME[name].always} | {*active}
+        wrong = {name: "" for name, there in found.items() if there and name in checked}
         if "board_silent" in wrong and not self._line.connected:
             wrong["board_silent"] = f"({self._line.text})"
         if "fin_failing" in wrong:
@@ -164,9 +164,9 @@ class FaultDetector:
         status = self.status
         if status is None or self._age(self._status_time) > self._status_stale:
             return ["The board sends no status. Wait a moment, or reset it."]
-        if bool(status.flags & StatusFlag.HIL) != (self._loop is not None):
-            return [_WRONG_FIRMWARE if self._loop is None else _NO_HIL_FIRMWARE]
-        reasons = self._loop.refusals() if self._loop else []
+        if bool(status.flags & StatusFlag.HIL) != (self._hil is not None):
+            return [_WRONG_FIRMWARE if self._hil is None else _NO_HIL_FIRMWARE]
+        reasons = self._hil.refusals() if self._hil else []
         return reasons or [*self.depth_refusals(), *self._other_refusals(status), *self._arming_obstacles()]
 
     def depth_refusals(self) -> list[str]:
@@ -212,14 +212,14 @@ class FaultDetector:
             "not_rising": self._does_not_rise(),
             "battery_low": low,
             "fin_failing": bool(self._fins()),
-            "simulator_silent": self._loop is not None and self._loop.lost,
+            "simulator_silent": self._hil is not None and self._hil.lost,
         }
 
     def _frozen(self) -> bool:
         return self._repeats >= REPEATS and self._age(self._moved) > _limit("depth_frozen")
 
     def _imu_is_stale(self) -> bool:
-        """Compares with other messages: a board that sends nothing at all is another fault."""
+        """Compares with other messages, because a board that sends nothing at all is another fault."""
         return self._heard - self._imu > self._imu_stale
 
     def _capsized(self) -> bool:
@@ -246,8 +246,8 @@ class FaultDetector:
 
 
 def _limit(name: str) -> float:
-    """s after which it is so at a look, for it to be noticed within the fault's limit."""
-    return BY_NAME[name].limit - LOOK
+    """Returns the s after which a check must detect the fault, to stay within its limit."""
+    return BY_NAME[name].limit - CHECK_PERIOD
 
 
 _FINS = {

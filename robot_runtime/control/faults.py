@@ -9,7 +9,7 @@ from typing import Literal
 from robot_runtime.contract.documents import Mode, Severity
 from robot_runtime.control.alarms import FaultText
 
-LOOK = 0.1
+CHECK_PERIOD = 0.1
 """s between two checks at most."""
 
 Action = Literal["all-stop", "neutral", "drop set points", "alarm only"]
@@ -23,14 +23,14 @@ class FaultRule(FaultText):
     limit: float
     severity: Severity = "alarm"
     action: Action = "all-stop"
-    steered_by: bool = False
-    """True if only depth control needs it: in manual and in the fin check it raises an alarm only."""
+    automatic_only: bool = False
+    """True if it stops the robot only in automatic; elsewhere it raises an alarm only."""
     always: bool = False
-    """True if it is checked while the robot is disarmed, too."""
+    """True if it is also checked while the robot is disarmed."""
 
     def stops(self, mode: Mode) -> bool:
-        """True if the robot is stopped for it in this mode."""
-        return self.action == "all-stop" and not (self.steered_by and mode != "automatic")
+        """True if it stops the robot in this mode."""
+        return self.action == "all-stop" and not (self.automatic_only and mode != "automatic")
 
 
 _CABLE = "The board has no power or hangs, or a wire of the serial line is loose."
@@ -91,7 +91,7 @@ FAULTS = (
     FaultRule(
         name="depth_stale",
         limit=0.5,
-        steered_by=True,
+        automatic_only=True,
         what="The depth is too old for control.",
         cause="The pressure sensor does not answer, or the serial line loses too many frames.",
         remedy=_SENSOR,
@@ -99,7 +99,7 @@ FAULTS = (
     FaultRule(
         name="depth_frozen",
         limit=0.5,
-        steered_by=True,
+        automatic_only=True,
         what="The pressure reading is frozen.",
         cause="The pressure sensor hangs; in simulated water, the simulator has ended.",
         remedy=_SENSOR,
@@ -107,7 +107,7 @@ FAULTS = (
     FaultRule(
         name="depth_range",
         limit=0.5,
-        steered_by=True,
+        automatic_only=True,
         what="The depth is out of this robot's range.",
         cause="The pressure sensor is damaged, or the board was started under water.",
         remedy="Switch the board off and on at the surface, so that it measures the surface pressure again.",

@@ -11,7 +11,7 @@ _SHARE = 0.5
 _FOLLOWED = 0.5
 """Share of the commanded swing that a sound fin reaches at least."""
 _SWING_MIN = 0.2
-"""rad of commanded swing; with less, the fin was not commanded."""
+"""rad; with less commanded swing, the fin counts as not commanded."""
 
 
 class FinCheck:
@@ -28,7 +28,7 @@ class FinCheck:
         self._most = [[float("-inf")] * FIN_COUNT for _ in range(2)]
 
     def step(self) -> Navigation | None:
-        """Returns the command for now; None when the check is over. It swims up, so as not to dive."""
+        """Returns the present command; None when the check is over. It swims up, so as not to dive."""
         number = int((self._clock.now() - self._began) / _STEP)
         if number >= len(AXES):
             return None

@@ -39,15 +39,15 @@ class ControlLoop:
         self.override: LoopOverride | None = None
         self.measured: float | None = None
         self.mean: float | None = None
-        """Of what was measured since the last tick, where that was more than one value."""
+        """Mean of the values measured since the last tick, if there were any."""
         self.heave_acceleration: float | None = None
-        """Of the depth: the mean acceleration downwards since the last tick, m/s², where its controller
+        """Of the depth: the mean acceleration downwards since the last tick, m/s², if its controller
         `needs_heave_acceleration` and any was measured."""
         self.output: float | None = None
-        """The newest command; None where this loop does not steer."""
+        """The newest command, -1 to 1; None while the loop does not steer."""
         self._is_angle = name != "depth"
         self._running: Controller | None = None
-        self._counted_on = 0.0
+        self._unwrapped = 0.0
 
     @property
     def set_point_in_force(self) -> float:
@@ -56,28 +56,28 @@ class ControlLoop:
         return self.set_point if override is None or override.set_point is None else override.set_point
 
     @property
-    def in_force(self) -> Controller:
+    def controller_in_force(self) -> Controller:
         """The controller in force: the override's or the loop's own."""
         override = self.override
         return self.controller if override is None or override.controller is None else override.controller
 
     def step(self, seconds: float, heave_command: float = 0.0) -> None:
-        """Decide; `seconds` since the last step, `heave_command` the command downwards beside this one's.
+        """Computes `output`; needs a measured value.
 
-        There must be a measured value.
+        `seconds` is the time since the last step, `heave_command` the command downwards of this tick.
         """
         assert self.measured is not None
-        controller = self.in_force
+        controller = self.controller_in_force
         if controller is not self._running:
             controller.start()
-            self._running, self._counted_on = controller, self.measured
+            self._running, self._unwrapped = controller, self.measured
         set_point, measured = self.set_point_in_force, self.measured
         if controller.averages and self.mean is not None:
             measured = self.mean
         if self._is_angle:
-            self._counted_on += wrap_angle(measured - self._counted_on)
-            set_point = self._counted_on + wrap_angle(set_point - measured)
-            measured = self._counted_on
+            self._unwrapped += wrap_angle(measured - self._unwrapped)
+            set_point = self._unwrapped + wrap_angle(set_point - measured)
+            measured = self._unwrapped
         controller.heave_command, controller.heave_acceleration = heave_command, self.heave_acceleration
         self.output = min(max(controller.step(set_point, measured, seconds), -1.0), 1.0)
 
@@ -91,7 +91,7 @@ class ControlLoop:
             self.set_point = min(max(self.measured, self.limits.minimum), self.limits.maximum)
 
     def find(self, name: str) -> Controller:
-        """The controller of this name. Raises RefusedError where there is none."""
+        """Returns the controller of this name. Raises RefusedError if there is none."""
         controller = self.controllers.get(name)
         if controller is None:
             raise RefusedError(f"there is no controller {name!r}; there are {', '.join(self.controllers)}")

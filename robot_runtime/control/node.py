@@ -19,7 +19,7 @@ from robot_runtime.contract.documents import (
 )
 from robot_runtime.contract.packets import Beacon, Depth, Imu, Navigation
 from robot_runtime.control.attitude import euler_angles, heave_acceleration
-from robot_runtime.control.faults import BY_NAME, LOOK
+from robot_runtime.control.faults import BY_NAME, CHECK_PERIOD
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.pilot import AXES, NEUTRAL, Pilot
 from robot_runtime.control.steering import STEERINGS, BeaconSteering
@@ -27,31 +27,31 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.transport.bus import Bus
 
 BEACON_STALE = 0.5
-"""s after which what the beacon detectors saw no longer counts."""
-VISION_STALE = BY_NAME["vision_stale"].limit - LOOK
-"""s after which, at a tick, what the vision node saw no longer counts."""
+"""s after which a reading of the beacon detectors is too old to use."""
+VISION_STALE = BY_NAME["vision_stale"].limit - CHECK_PERIOD
+"""s after which, at a tick, a detection is too old to use."""
 STICK_MIDDLE = 0.05
-"""Share of its way up to which a stick is in the middle."""
+"""Share of its travel within which a stick counts as centred."""
 
 
 _DEPTHS_MAX, _IMUS_MAX = 50, 100
-"""So many come in a second, which is the longest between two ticks."""
+"""As many as arrive in a second, the longest time between two ticks."""
 
 
 class ControlNode:
-    """Steers the loops: all that are wanted in automatic, those that hold while the pilot drives in manual.
+    """Steps the control loops in automatic, and those that hold an axis in manual.
 
-    In automatic the depth is always held: at the default set point, or another while something is seen that
-    there is one for. Meanwhile it may swim towards a light beacon.
+    In automatic the depth is always held: at the default set point, or at the one of what the camera detects.
+    Meanwhile the robot may swim towards a light beacon.
 
     `send` takes the command to the board. `tick` belongs to the control loop; the rest may be called from any
-    thread. Whatever is changed under `tick_lock` is changed between two ticks.
+    thread. Changes under `tick_lock` take effect between two ticks.
     """
 
     def __init__(self, bus: Bus, clock: Clock, send: Callable[[Navigation], object], pilot: Pilot) -> None:
         self.depth, self.heading = ControlLoop("depth", "z"), ControlLoop("heading", "yaw")
-        self.turning = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
-        self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.turning)}
+        self.attitude_loops = (self.heading, ControlLoop("pitch", "pitch"), ControlLoop("roll", "roll"))
+        self.loops: dict[str, ControlLoop] = {loop.name: loop for loop in (self.depth, *self.attitude_loops)}
         self.tick_lock = threading.RLock()
         self.mode: Mode = "disarmed"
         self.set_point_default = 0.5
@@ -69,21 +69,21 @@ class ControlNode:
         self._depth_taken: float | None = None
         self._imu: bytes | None = None
         self._imus: deque[bytes] = deque(maxlen=_IMUS_MAX)
-        self._sight: Detection | None = None
-        self._used: Detection | None = None
+        self._detection: Detection | None = None
+        self._used_detection: Detection | None = None
         self.picture_age: float | None = None
-        """s; of the last picture that a tick used, when it did first."""
+        """s; age of the last picture at the first tick that used it."""
         self._ticked: float | None = None
-        self._towards_light = BeaconSteering()
+        self._beacon_steering = BeaconSteering()
         self._course = (0.0, 0.0)
-        self._lights = (float("-inf"), False, False)
+        self._beacons = (float("-inf"), False, False)
         bus.on_row("depth", self._take_depth)
         bus.on_row("imu", self._take_imu)
         bus.on_row("beacon", self._take_beacon)
         bus.on_document("detection", self._take_detection)
 
     def change_mode(self, mode: Mode) -> None:
-        """From now on the robot is in this mode. Waits for nothing: a STOP comes this way, too."""
+        """Sets the robot's mode. It never blocks, because a STOP takes this way, too."""
         was, self.mode = self.mode, mode
         for loop in self.loops.values():
             if "manual" in (was, mode):
@@ -99,11 +99,10 @@ class ControlNode:
         controller: str | None = None,
         gains: Mapping[str, Any] | None = None,
     ) -> None:
-        """Change a loop; all of it, or nothing where that raises RefusedError. `gains` are the named
-        controller's.
+        """Changes a loop, or nothing if that raises RefusedError. `gains` are those of the named controller.
 
-        A hold that is switched on in manual holds what is measured. The depth's set point is its hold's
-        where it is held in manual, the default one otherwise.
+        A hold that is switched on in manual holds the measured value. While the depth is held in manual, its
+        set point is that of the hold, otherwise the default one.
         """
         with self.tick_lock:
             loop = self._find(name)
@@ -133,20 +132,20 @@ class ControlNode:
                 change = f"held at {loop.describe(loop.set_point)}" if on else "no longer held"
                 self._publish_event("loop", f"{loop.title} {change}.")
 
-    def let_go(self, loop: ControlLoop, why: str) -> None:
-        """Hold no more what cannot be held."""
+    def release(self, loop: ControlLoop, reason: str) -> None:
+        """Switches off the hold of a loop that cannot be controlled any more."""
         if loop.on:
             loop.on = False
-            self._publish_event("loop", f"{loop.title} no longer held. {why}", "caution")
+            self._publish_event("loop", f"{loop.title} no longer held. {reason}", "caution")
 
     def set_points(self, default: float, detected: float) -> None:
-        """Set both wanted depths, m. Raises RefusedError where one is not between 0 and 10."""
+        """Sets both set points of the depth, m. Raises RefusedError unless each is between 0 and 10."""
         for depth in (default, detected):
             self.depth.check(depth)
         self.set_point_default, self.set_point_detected = default, detected
 
     def steer(self, by: str) -> None:
-        """Stay, or swim towards a light beacon. Raises RefusedError where there is no such steering."""
+        """Chooses the steering in automatic. Raises RefusedError if there is no such steering."""
         for one in STEERINGS:
             if one == by:
                 self.steering = one
@@ -154,13 +153,13 @@ class ControlNode:
         raise RefusedError(f"there is no steering {by!r}; there are {', '.join(STEERINGS)}")
 
     def tick(self) -> None:
-        """Decide, and send the command where the robot is steered. The caller holds `tick_lock`."""
+        """Steps the loops and sends the command if the robot is steered. The caller holds `tick_lock`."""
         now, mode = self._clock.now(), self.mode
         taken = self._measure()
         self._choose_set_point(now, mode)
         steered = mode == "manual" or (mode == "automatic" and taken is not None)
         if steered and self._ticked is None:
-            self._towards_light.start()
+            self._beacon_steering.start()
         seconds = now - (self._ticked or now)
         self._ticked = now if steered else None
         self._step_loops(mode if steered else "disarmed", seconds)
@@ -170,17 +169,17 @@ class ControlNode:
         self._publish(now, taken)
 
     def drive(self) -> None:
-        """Send what the pilot wants now, with what is held meanwhile; the loops do not step."""
+        """Sends the pilot's newest input with the outputs of the holds; the loops do not step."""
         if self.mode == "manual":
             self._send_newest("manual")
 
     def command(self, command: Navigation) -> None:
-        """Send a command to the board, and tell what it was."""
+        """Sends a command to the board and publishes it."""
         self._send(command)
         self._bus.publish_row("navigation", self._clock.now(), command.to_bytes())
 
     def _send_newest(self, mode: Mode) -> None:
-        # One after the other, so that no older input comes after a newer one.
+        # One at a time, so that no older input is sent after a newer one.
         with self._sending:
             self.command(Navigation(**self._axes(mode)))
 
@@ -221,7 +220,7 @@ class ControlNode:
 
     def _check_on(self, loop: ControlLoop) -> None:
         if loop is self.depth and self.mode != "manual":
-            raise RefusedError("Automatic always holds the depth. Its hold is for manual.")
+            raise RefusedError("Automatic always holds the depth. Only manual can switch its hold.")
         if self.mode == "manual" and loop.measured is None:
             raise RefusedError(f"The {loop.name} is not measured yet. Check the sensors.")
 
@@ -232,13 +231,13 @@ class ControlNode:
         return loop
 
     def _measure(self) -> float | None:
-        """Read what came last; when the depth was taken, if there was one."""
+        """Takes the newest measurements; returns the time of the newest depth, if there is one."""
         if self._imu is not None:
             angles = euler_angles(Imu.from_bytes(self._imu).attitude)
-            for loop, angle in zip(self.turning, angles, strict=True):
+            for loop, angle in zip(self.attitude_loops, angles, strict=True):
                 loop.measured = angle
         self.depth.heave_acceleration = None
-        if self.depth.in_force.needs_heave_acceleration:
+        if self.depth.controller_in_force.needs_heave_acceleration:
             self.depth.heave_acceleration = self._mean_heave_acceleration()
         else:
             self._imus.clear()
@@ -281,7 +280,7 @@ class ControlNode:
                     nan if loop.measured is None else loop.measured,
                     nan if loop.output is None else loop.output,
                 )
-                for loop in self.turning
+                for loop in self.attitude_loops
             ),
             strict=True,
         )
@@ -290,20 +289,20 @@ class ControlNode:
     def _find_course(self, now: float, seconds: float) -> tuple[float, float]:
         if self.steering == "none":
             return 0.0, 0.0
-        time, right, left = self._lights
+        time, right, left = self._beacons
         fresh = now - time <= BEACON_STALE
-        return self._towards_light.step(fresh and right, fresh and left, seconds)
+        return self._beacon_steering.step(fresh and right, fresh and left, seconds)
 
     def _choose_set_point(self, now: float, mode: Mode) -> None:
         set_point, reason = self.set_point_default, ""
-        sight = self._sight
-        if sight is not None and now - sight.taken <= VISION_STALE:
-            if sight.set_point is not None:
-                set_point, reason = sight.set_point, f": {sight.target} is seen"
-            elif sight.colour == self.colour:
+        detection = self._detection
+        if detection is not None and now - detection.taken <= VISION_STALE:
+            if detection.set_point is not None:
+                set_point, reason = detection.set_point, f": {detection.target} is seen"
+            elif detection.colour == self.colour:
                 set_point, reason = self.set_point_detected, f": {self.colour} is seen"
-        if sight is not None and sight is not self._used:
-            self._used, self.picture_age = sight, now - sight.taken
+        if detection is not None and detection is not self._used_detection:
+            self._used_detection, self.picture_age = detection, now - detection.taken
         if set_point != self._announced_set_point:
             self._announced_set_point = set_point
             self._publish_event("set_point", f"Set point {set_point:.2f} m{reason}.")
@@ -319,11 +318,11 @@ class ControlNode:
 
     def _take_beacon(self, _: str, time: float, record: bytes) -> None:
         seen = Beacon.from_bytes(record)
-        self._lights = (time, bool(seen.right), bool(seen.left))
+        self._beacons = (time, bool(seen.right), bool(seen.left))
 
     def _take_detection(self, _: str, document: Document) -> None:
         if isinstance(document, Detection):
-            self._sight = document
+            self._detection = document
 
     def _publish_event(self, kind: str, text: str, severity: Severity = "info") -> None:
         event = Event(time=self._clock.now(), kind=kind, severity=severity, text=text)

@@ -1,4 +1,4 @@
-"""The pilot's input: the newest valid command of the control's holder."""
+"""The pilot's input: the newest valid command of the client that holds the control lease."""
 
 import json
 import math
@@ -10,16 +10,16 @@ from robot_runtime.contract.packets import Navigation
 from robot_runtime.errors import RefusedError
 
 PILOT = "pilot"
-"""The name under which the server sends it."""
+"""The Zenoh topic of the input, which the server publishes."""
 AGE_MAX = 0.3
-"""s by which an input may be old, or ahead of this clock."""
+"""s by which an input may be older or newer than this clock."""
 PATIENCE = 0.2
-"""s for which an input counts. While anything is held they come 20 times a second, so that some may be late.
+"""s for which an input is valid. While a stick is held, 20 arrive in a second, so that some may be late.
 
-Fins that flap take a quarter of a second to rest: together less than half a second.
+Flapping fins take 0.25 s to rest: together less than 0.5 s.
 """
 PILOT_LOOK = 0.05
-"""s between two checks of the pilot's silence at most."""
+"""s between two checks of the pilot's silence, at most."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 NEUTRAL = Navigation(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
 
@@ -29,9 +29,9 @@ class Pilot:
 
     def __init__(self, clock: Clock) -> None:
         self.lease = 0
-        """The epoch of the control's holder; what was sent under another is dropped."""
+        """Epoch of the control lease; input of another epoch is dropped."""
         self.taken = float("-inf")
-        """s; when the newest input was taken from the sticks, or control by hand began."""
+        """s; time at which the newest input left the sticks, or manual control began."""
         self.dropped: Counter[str] = Counter()
         self._clock = clock
         self._sequence = -1
@@ -42,16 +42,16 @@ class Pilot:
         self.taken, self._command = self._clock.now(), NEUTRAL
 
     def change_lease(self, epoch: int) -> None:
-        """Accepts only this holder's input from now on. Raises RefusedError for an older epoch."""
+        """Accepts only input of this lease from now on. Raises RefusedError for an older epoch."""
         if epoch < self.lease:
-            raise RefusedError(f"the lease {epoch} is older than {self.lease}, which counts")
+            raise RefusedError(f"the lease {epoch} is older than the present one, {self.lease}")
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 
     def take(self, payload: bytes) -> bool:
         """Takes an input as JSON: lease, sequence, taken (s, steady clock), axes (six shares, -1 to 1).
 
-        Whether it counts.
+        Returns True if it is valid.
         """
         try:
             lease, sequence, taken, axes = _read(json.loads(payload))
@@ -78,7 +78,7 @@ class Pilot:
 
     @property
     def until(self) -> float:
-        """s, steady clock; from when on the newest input is too old."""
+        """s, steady clock, from which the newest input is too old."""
         return self.taken + PATIENCE
 
     def command(self) -> Navigation:
@@ -87,7 +87,7 @@ class Pilot:
 
 
 def _read(words: Any) -> tuple[int, int, float, list[float]]:
-    """Raises ValueError, TypeError, KeyError or OverflowError where it is no input."""
+    """Returns the fields of an input. Raises ValueError, TypeError, KeyError or OverflowError."""
     lease, sequence, taken, axes = (words[name] for name in ("lease", "sequence", "taken", "axes"))
     if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
         raise TypeError("lease and sequence are whole numbers, axes a list")

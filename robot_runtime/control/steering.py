@@ -1,8 +1,8 @@
 """Steering while the depth is held: none, or towards a light beacon.
 
-Each of the two detectors only says whether it sees a light on its side; ahead both see it. So the robot
-swims straight on while both do, turns towards the one that does alone, and where neither does turns to the
-side on which it saw it last, until it has been all round.
+Each of the two detectors reports whether it sees a light on its side; both see a light ahead. The robot swims
+straight on while both see one, and turns towards the side that sees one alone. With no light it turns to the
+side that saw one last, for a limited time.
 """
 
 from typing import get_args
@@ -12,12 +12,12 @@ from robot_runtime.contract.documents import Steering
 STEERINGS: tuple[Steering, ...] = get_args(Steering)
 
 SURGE = 0.6
-"""Share of the most, forwards, towards a light ahead."""
+"""Share of the full command, forwards, towards a light ahead."""
 SURGE_TURNING = 0.3
 YAW = 0.5
-"""Share of the most, towards a light that one detector sees."""
+"""Share of the full command, towards a light that one detector sees."""
 SEARCH_SECONDS = 20.0
-"""For which it turns without seeing anything; then it rests where it is, until a light is seen."""
+"""s for which it turns without a light; afterwards it rests until a light is seen."""
 
 
 class BeaconSteering:
@@ -32,7 +32,7 @@ class BeaconSteering:
         self._searched = 0.0
 
     def step(self, right: bool, left: bool, seconds: float) -> tuple[float, float]:
-        """Surge and yaw, each a share of the most, -1 to 1; `seconds` since the last step."""
+        """Returns the commands of surge and yaw, -1 to 1; `seconds` is the time since the last step."""
         if right or left:
             self._searched = 0.0
             if right and left:

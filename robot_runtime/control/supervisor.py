@@ -21,7 +21,7 @@ _ARM_TRIES = 10
 ARM_WAIT = 0.1
 """s between two STARTs."""
 _ARM_BYTES = 96
-"""What START and the answer wait for and are themselves, on the line."""
+"""Bytes on the line between START and its answer, including both."""
 
 _ARM: dict[Mode, Trigger] = {"automatic": "arm", "manual": "arm manual", "test": "check fins"}
 _CHANGE: dict[Mode, Trigger] = {"manual": "take over", "automatic": "hand back"}
@@ -50,12 +50,12 @@ class Arming:
 
 
 class Supervisor:
-    """Holds the robot's state, which changes as `transitions` says and in no other way.
+    """Holds the robot's state, which changes only by the table in `transitions`.
 
-    `tick` runs at least every `faults.LOOK` s; all may be called from any thread. Where there is a `loop`,
-    the board must be one for it; with `heartbeat` a server must be heard so often (s). `on_mode` gets each
-    new mode, and may wait for nothing. `arming_obstacles` returns the parameters
-    that the board has not confirmed yet, as reasons against arming.
+    `tick` runs at least every `faults.CHECK_PERIOD` s; all may be called from any thread. With `hil` the
+    board must run the firmware for hardware in the loop; with `heartbeat` (s) a server that is silent for
+    longer is a fault. `on_mode` gets each new mode and must not block. `arming_obstacles` returns the
+    parameters that the board has not confirmed yet, as reasons against arming.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Supervisor:
         clock: Clock,
         line: BoardLink,
         on_event: Callable[[Event], None],
-        loop: HilFeed | None = None,
+        hil: HilFeed | None = None,
         heartbeat: float | None = None,
         on_mode: Callable[[Mode], None] = lambda _: None,
         arming_obstacles: Callable[[], list[str]] = list,
@@ -71,18 +71,18 @@ class Supervisor:
         self.mode: Mode = "disarmed"
         self.armed_since: float | None = None
         self.pilot = Pilot(clock)
-        self.detector = FaultDetector(clock, line, self.pilot, loop, heartbeat, arming_obstacles)
+        self.detector = FaultDetector(clock, line, self.pilot, hil, heartbeat, arming_obstacles)
         self.fin_check = FinCheck(clock)
         self._clock = clock
         self._line = line
         self._on_event = on_event
-        self._loop = loop
+        self._hil = hil
         self._heartbeat = heartbeat
         self._on_mode = on_mode
         self._alarms = Alarms(clock, BY_NAME, on_event, clear_after=CLEAR_AFTER)
         self._arming: Arming | None = None
         self._arm_tries = _ARM_TRIES + round(airtime(_ARM_BYTES, line.baud) / ARM_WAIT)
-        # Reentrant: telling an event may come back here to read the state.
+        # Reentrant: a receiver of an event may read the state.
         self._changed = threading.Condition(threading.RLock())
 
     @property
@@ -108,7 +108,7 @@ class Supervisor:
             old = self.detector.status
             self.detector.see_status(status)
             if self.mode != "disarmed" and old is not None and old.epoch != status.epoch:
-                # Its silence may have been noticed first; this is what it was.
+                # Its silence may have been detected first; this is the cause.
                 self._fail("board_restarted")
             elif self.armed and not status.flags & StatusFlag.ARMED:
                 self._fail("board_disarmed")
@@ -123,7 +123,7 @@ class Supervisor:
     def arm(self, mode: Mode = "automatic", alone: float = 0.0) -> None:
         """Arms the board and waits until it is armed.
 
-        Raises RefusedError with every reason where it may not be, or does not follow.
+        Raises RefusedError with all reasons if it must not be armed, or does not arm.
         """
         with self._changed:
             arming = self.begin_arming(mode, alone)
@@ -131,14 +131,14 @@ class Supervisor:
                 self._changed.wait_for(
                     lambda: arming.over or self.board_armed == arming.disarmed_seen, ARM_WAIT
                 )
-                self.go_on_arming()
+                self.continue_arming()
             if arming.refusal:
                 raise RefusedError(arming.refusal)
 
     def begin_arming(self, mode: Mode = "automatic", alone: float = 0.0) -> Arming:
-        """Asks the board to arm; `go_on_arming` completes it. Raises RefusedError with all reasons.
+        """Asks the board to arm; `continue_arming` completes it. Raises RefusedError with all reasons.
 
-        `alone` are the s for which the robot may go on without the server.
+        `alone`: s for which the robot may continue without the server.
         """
         with self._changed:
             if self.mode == mode != "test":
@@ -158,7 +158,7 @@ class Supervisor:
                 raise RefusedError(f"The robot is already being armed for {self._arming.mode}.")
             return self._arming
 
-    def go_on_arming(self) -> None:
+    def continue_arming(self) -> None:
         """Completes arming when the board is armed, or asks again; call it every `ARM_WAIT` at least."""
         with self._changed:
             arming = self._arming
@@ -199,7 +199,7 @@ class Supervisor:
     def stop(self, why: str) -> None:
         """Disarms at once, in any state."""
         with self._changed:
-            # First, so that the board's own word of it is no surprise.
+            # Before STOP is sent, so that the board's report of it is no fault.
             self._leave("stop", "info", why)
         self._line.send(Stop())
 
@@ -216,19 +216,19 @@ class Supervisor:
             if failed:
                 moved = "; ".join(f"{fin} {how}" for fin, how in failed.items())
                 self._alarms.begin("fin_failing", f"({moved})", active=False)
-            words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _FINS_WELL
+            words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _ALL_FINS_FOLLOWED
             self._leave("checked", "caution" if failed else "info", words, kind="fin_check")
         self._line.send(Stop())
 
     def tick(self) -> None:
         """Checks for faults and takes their actions; repeats STOP until the board is disarmed."""
-        if self._loop is not None:
-            self._loop.tick()
+        if self._hil is not None:
+            self._hil.tick()
         with self._changed:
             if self.detector.note_check() and self.armed:
                 self._fail("runtime_stalled")
             active = {alarm.fault for alarm in self._alarms.listed() if alarm.active}
-            wrong = self.detector.wrong(self.mode, active)
+            wrong = self.detector.active_faults(self.mode, active)
             self._alarms.update(wrong)
             for name, detail in wrong.items():
                 if BY_NAME[name].stops(self.mode):
@@ -249,8 +249,8 @@ class Supervisor:
         self._event("armed", "info", _ARMED_WORDS[arming.mode])
 
     def _ask_to_arm(self, arming: Arming) -> None:
-        # Repeated because the board wants half a second of steady traffic first. It ignores what it has, and
-        # the line does not carry the same twice at a time.
+        # Repeated because the board requires half a second of steady traffic first. It ignores repetitions,
+        # and the line never has two of them in transit.
         arming.tries -= 1
         if not arming.disarmed_seen:
             self._line.send(Stop())
@@ -295,4 +295,4 @@ class Supervisor:
 
 
 _ACKNOWLEDGE = "Acknowledge the alarms before the robot is armed again."
-_FINS_WELL = "Fin check: all four fins followed."
+_ALL_FINS_FOLLOWED = "Fin check: all four fins followed."

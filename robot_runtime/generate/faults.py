@@ -45,6 +45,6 @@ def _states() -> str:
 
 
 def _fault(fault: FaultRule) -> tuple[str, ...]:
-    action = f"{fault.action}; alarm only in manual" if fault.steered_by else fault.action
+    action = f"{fault.action}; alarm only in manual" if fault.automatic_only else fault.action
     message = f"{fault.what} {fault.cause} *{fault.remedy}*"
     return f"`{fault.name}`", f"{fault.limit:g} s", action, fault.severity, message

@@ -1,4 +1,4 @@
-"""Full command or none: the thesis's controller, and one that rests near the set point."""
+"""Bang-bang controllers: the thesis's, and those with a dead zone."""
 
 import math
 from collections.abc import Mapping
@@ -17,13 +17,13 @@ class BangBang(Controller):
     limits: ClassVar[Mapping[str, GainLimits]] = {"output": _OUTPUT}
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Full command with the sign of the error."""
+        """Returns the full command with the sign of the error."""
         error = set_point - measured
         return math.copysign(self.gains["output"], error) if error else 0.0
 
 
 class BangBangDeadZone(Controller):
-    """Bang-bang that rests while it is close enough."""
+    """Bang-bang with no command near the set point."""
 
     name = "bang_bang_dead_zone"
     title = "Bang-bang with dead zone"
@@ -33,7 +33,7 @@ class BangBangDeadZone(Controller):
     }
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:  # noqa: ARG002
-        """Full command with the sign of the error outside the dead zone, none inside."""
+        """Returns the full command with the sign of the error outside the dead zone, 0 inside."""
         error = set_point - measured
         return math.copysign(self.gains["output"], error) if abs(error) > self.gains["dead_zone"] else 0.0
 

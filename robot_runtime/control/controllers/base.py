@@ -23,8 +23,7 @@ class GainLimits:
 
 
 class Controller(ABC):
-    """Base of all controllers. They see numbers alone: m of depth, downwards, or rad, of which a full turn
-    counts on instead of starting again."""
+    """Base of all controllers. Values are in m of depth, downwards, or in rad of an unwrapped angle."""
 
     name: ClassVar[str]
     title: ClassVar[str]
@@ -36,10 +35,10 @@ class Controller(ABC):
 
     def __init__(self) -> None:
         self.heave_command = 0.0
-        """The command downwards that goes out with this one's, where that is for another axis."""
+        """For a controller of another axis: the command downwards that is sent with its own."""
         self.heave_acceleration: float | None = None
-        """m/s²: the mean acceleration downwards since the last step, for the depth, where it
-        `needs_heave_acceleration`; None where none came."""
+        """m/s²: the mean acceleration downwards since the last step, if it `needs_heave_acceleration` and any
+        was measured."""
         self.gains = {name: limits.default for name, limits in self.limits.items()}
 
     @classmethod
@@ -55,40 +54,41 @@ class Controller(ABC):
                 raise ValueError(f"{name} is {value!r}; it must be a number between {span}")
 
     def tune(self, gains: Mapping[str, float]) -> None:
-        """Set some gains, all or none. Raises ValueError on unknown names and values out of range."""
+        """Sets some gains, all or none. Raises ValueError on unknown names and values out of range."""
         self.check(gains)
         self.gains |= {name: float(value) for name, value in gains.items()}
 
-    def start(self) -> None:  # noqa: B027 - most controllers have no past
+    def start(self) -> None:  # noqa: B027 - most controllers have no state
         """Resets the state; called whenever the controller takes over."""
 
     @abstractmethod
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """The command, -1 to 1; `seconds` since the last step, 0 at the first."""
+        """Returns the command, -1 to 1; `seconds` is the time since the last step, 0 at the first."""
 
 
 class Rate:
-    """The rate of change of a value, low-pass filtered; 0 until two values were seen."""
+    """The rate of change of a value, low-pass filtered; 0 until two values were taken."""
 
     def __init__(self, time_constant: float) -> None:
         self.value = 0.0
         self._time_constant = time_constant
         self._last: float | None = None
 
-    def see(self, measured: float, seconds: float) -> None:
-        """The value is this, `seconds` after the one before."""
+    def update(self, measured: float, seconds: float) -> None:
+        """Takes the value measured `seconds` after the previous one."""
         if self._last is not None and seconds > 0:
             rate = (measured - self._last) / seconds
             self.value += (rate - self.value) * seconds / (self._time_constant + seconds)
         self._last = measured
 
 
-def braked(left: float, braking: float, slope: float) -> float:
-    """The speed that braking allows with so much left: √(2·a·left), linear where that is too steep.
+def braking_speed(distance: float, deceleration: float, slope: float) -> float:
+    """Returns the speed from which this deceleration stops within the distance: √(2·a·distance).
 
-    A boundary layer: J.-J. Slotine and W. Li, Applied Nonlinear Control, 1991, 7.2.
+    Near 0 it is `slope`·distance: a boundary layer, J.-J. Slotine and W. Li, Applied Nonlinear Control,
+    1991, 7.2.
     """
-    linear = braking / slope**2
-    if abs(left) <= linear:
-        return slope * left
-    return copysign(sqrt(2 * braking * (abs(left) - linear / 2)), left)
+    linear = deceleration / slope**2
+    if abs(distance) <= linear:
+        return slope * distance
+    return copysign(sqrt(2 * deceleration * (abs(distance) - linear / 2)), distance)

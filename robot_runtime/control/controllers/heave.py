@@ -1,9 +1,9 @@
 """A model of heave motion driven by four fins, which `Predictive` uses for its predictions.
 
-Depth z (m) and its speed v (m/s) count downwards, forces are accelerations of the hull with the water that it
-takes along. The numbers are those of the simulated robot (docs/reference/simulation.md), which are as good as
-what was published: thrust of a flapping fin ∝ 1 - cos A, where A is its amplitude from peak to peak; a fin
-that turns round pushes like a paddle, and the water along its blade, as in `simulation/fins.py`.
+Depth z (m) and its speed v (m/s) count downwards; forces are accelerations of the hull with its added mass.
+The numbers are those of the simulated robot (docs/reference/simulation.md): the thrust of a flapping fin is
+∝ 1 - cos A, where A is its amplitude from peak to peak; a fin that turns round pushes like a paddle, as in
+`simulation/water/fins.py`.
 """
 
 from dataclasses import dataclass, field
@@ -11,15 +11,15 @@ from math import acos, copysign, cos, pi, sin
 from typing import NamedTuple
 
 TINY = 1 / 127
-"""The least command: it turns the fins round, and hardly flaps them. None at all stops their turning."""
+"""The least command: it turns the fins round and hardly flaps them. A command of 0 stops their turning."""
 DOWN = pi / 2
-"""rad: where the fins point when they push the hull down; -DOWN when up."""
+"""rad: direction of fins that push the hull down; -DOWN of fins that push it up."""
 _AMPLITUDE = 1.6
 _AMPLITUDE_RATE = _AMPLITUDE / 0.12
 _TURN_RATE = 80 / 1024 * 2 * pi / 0.1
 """rad/s; the firmware turns fins by at most 80 ticks of 1024 in 100 ms, and flaps them harder in 120 ms."""
 TURNING_ROUND = 2 * DOWN / _TURN_RATE
-"""s."""
+"""s that the fins take to turn round."""
 _FULL = 1 - cos(_AMPLITUDE)
 _BLADE = 2.9
 """1/m: 4 · ½ρ·C_N·S over the mass, of the blades across their motion."""
@@ -64,12 +64,12 @@ class Heave:
     hull: float = 1.0
     """Of the water's resistance to the hull."""
     drift: float = 0.0
-    """What else pushes the hull down: buoyancy, below 0 where it floats."""
+    """Any other push downwards: buoyancy, below 0 where the hull floats."""
     slopes: tuple[float, float, float, float] = field(default=(0.0, 0.0, 0.0, 0.0), init=False)
-    """By how much the last `advance` changes the speed with strength, blades, hull, and the speed before."""
+    """Derivatives of the speed after the last `advance` by strength, blades, hull and the speed before."""
 
     def advance(self, motion: Motion, command: float, seconds: float, step: float) -> Motion:
-        """The motion after `seconds` under this command, in steps of about `step` s."""
+        """Returns the motion after `seconds` under this command, computed in steps of about `step` s."""
         depth, speed, direction, amplitude = motion
         count = max(round(seconds / step), 1)
         step = seconds / count
@@ -101,7 +101,7 @@ class Heave:
         return Motion(depth, speed, direction, amplitude)
 
     def resistance(self, speed: float) -> float:
-        """Drag against this speed, of resting fins."""
+        """Returns the hull's deceleration by drag at this speed, m/s², with resting fins."""
         return self.hull * (_LINEAR + self.drag * abs(speed)) * speed
 
     def coast(self, speed: float, drift: float) -> float:
@@ -115,7 +115,7 @@ class Heave:
         return way
 
     def command(self, push: float) -> float:
-        """The command, 0 to 1, with which the fins push so (m/s²), 0 where that is below 0."""
+        """Returns the command, 0 to 1, for this push of the fins (m/s²); 0 for a negative one."""
         share = min(max(push, 0.0) / (self.thrust * self.strength), 1.0)
         return acos(1 - share * _FULL) / _AMPLITUDE
 

@@ -8,7 +8,7 @@ from robot_runtime.control.controllers.heave import Heave, Motion
 Matrix = list[list[float]]
 
 LAG = 0.05
-"""s from a command to when the fins have followed it."""
+"""s from a command until the fins have followed it."""
 AGE = 0.033
 """s by which a reading of the depth is older than the tick that uses it."""
 ACCELERATION_AGE = 0.012
@@ -16,17 +16,17 @@ ACCELERATION_AGE = 0.012
 _STEP = 0.02
 """s of the model's steps."""
 _AWASH = 0.008
-"""m of depth above which waves and the surface act on the hull, and nothing is learnt of the craft."""
+"""m of depth above which waves and the surface act on the hull, so that nothing is learnt."""
 _DEPTH, _SPEED = 0.003, 0.01
-"""m, m/s: standard deviations at the start; so are the next."""
+"""m, m/s: standard deviations at the start; the next line has those of the parameters."""
 _MASS, _STRENGTH, _BLADES, _HULL, _DRIFT = 0.15, 0.3, 0.05, 0.3, 0.006
 _CALM, _PUSHED, _PADDLED = 0.001, 0.02, 0.15
-"""m/s by which the speed may be off after a step; for each m/s² of push, which comes in strokes; as a share
-of what the blades did to it."""
+"""Errors of the predicted speed of a step: m/s in general; for each m/s² of push, which comes in strokes; as
+a share of the blades' effect."""
 _CHANGE = (0.002, 0.002, 0.002, 0.0002)
-"""By which the parameters may change in a step."""
+"""Change of the parameters in a step."""
 _RANGE = (0.5, 1.6)
-"""Of the three shares."""
+"""Limits of the three shares."""
 _DRIFT_MAX = 0.03
 """m/s²."""
 _BIAS = 0.1
@@ -80,23 +80,25 @@ class HeaveObserver:
     def observe(
         self, motion: Motion, command: float, measured: float, noise: float, seconds: float
     ) -> Motion:
-        """The motion now, from that `seconds` ago, the command since, and the mean depth measured since.
+        """Returns the motion now from that `seconds` ago, and from command and mean measured depth since.
 
         `noise` is the standard deviation of that mean, m.
         """
         motion = self._predict(motion, command, seconds)
-        # The mean is that of the middle of the time, and heard of late.
+        # The mean belongs to the middle of the time, and arrives late.
         age = seconds / 2 + AGE
-        wrong = measured - (motion.depth - motion.speed * age)
+        innovation = measured - (motion.depth - motion.speed * age)
         gains, self._covariance = update(self._covariance, [1.0, -age, 0.0, 0.0, 0.0, 0.0], noise**2)
         depth, speed, strength, blades, hull, drift = gains
         if measured > _AWASH:
             heave = self.heave
-            heave.strength = _within(heave.strength + strength * wrong, *_RANGE)
-            heave.blades = _within(heave.blades + blades * wrong, *_RANGE)
-            heave.hull = _within(heave.hull + hull * wrong, *_RANGE)
-            heave.drift = _within(heave.drift + drift * wrong, -_DRIFT_MAX, _DRIFT_MAX)
-        return motion._replace(depth=motion.depth + depth * wrong, speed=motion.speed + speed * wrong)
+            heave.strength = _clamp(heave.strength + strength * innovation, *_RANGE)
+            heave.blades = _clamp(heave.blades + blades * innovation, *_RANGE)
+            heave.hull = _clamp(heave.hull + hull * innovation, *_RANGE)
+            heave.drift = _clamp(heave.drift + drift * innovation, -_DRIFT_MAX, _DRIFT_MAX)
+        return motion._replace(
+            depth=motion.depth + depth * innovation, speed=motion.speed + speed * innovation
+        )
 
     def _predict(self, motion: Motion, command: float, seconds: float) -> Motion:
         heave = self.heave
@@ -110,17 +112,17 @@ class HeaveObserver:
         to_speed = [0.0, retained, pushed, paddled, resisted, seconds]
         to_depth = [1.0, seconds * (1 + retained) / 2, *(seconds / 2 * slope for slope in to_speed[2:])]
         speed_noise = _CALM + _PUSHED * abs(pushed) / seconds + _PADDLED * abs(paddled)
-        rows = [self._mixed(to_depth), self._mixed(to_speed), *self._covariance[2:]]
+        rows = [self._propagate(to_depth), self._propagate(to_speed), *self._covariance[2:]]
         self._covariance = [[dot(to_depth, row), dot(to_speed, row), *row[2:]] for row in rows]
         for place, deviation in enumerate((0.0, speed_noise, *_CHANGE)):
             self._covariance[place][place] += deviation**2
         return motion
 
-    def _mixed(self, shares: list[float]) -> list[float]:
+    def _propagate(self, shares: list[float]) -> list[float]:
         return [dot(shares, column) for column in zip(*self._covariance, strict=True)]
 
 
-def _within(value: float, low: float, high: float) -> float:
+def _clamp(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
@@ -139,18 +141,18 @@ class InertialHeave:
     def observe(
         self, acceleration: float, measured: float, noise: float, seconds: float
     ) -> tuple[float, float]:
-        """Depth and speed now, from the mean acceleration (m/s²) and depth (m) of the time since the last.
+        """Returns depth and speed now from the mean acceleration (m/s²) and depth (m) since the last call.
 
-        `noise` is the standard deviation of that depth.
+        `noise` is the standard deviation of that depth, m.
         """
         self._predict(acceleration, seconds)
-        # The mean is that of the middle of the time.
+        # The mean belongs to the middle of the time.
         row = [1.0, -(seconds / 2 + AGE - ACCELERATION_AGE), 0.0]
-        wrong = measured - dot(row, [self._depth, self._speed, self._bias])
+        innovation = measured - dot(row, [self._depth, self._speed, self._bias])
         (depth, speed, bias), self._covariance = update(self._covariance, row, noise**2)
-        self._depth += depth * wrong
-        self._speed += speed * wrong
-        self._bias += bias * wrong
+        self._depth += depth * innovation
+        self._speed += speed * innovation
+        self._bias += bias * innovation
         now = self._speed + (acceleration - self._bias) * ACCELERATION_AGE
         return self._depth + now * ACCELERATION_AGE, now
 

@@ -1,4 +1,4 @@
-"""The PID controllers: of the depth, and with gains of their own, in rad, of heading, pitch and roll."""
+"""PID controllers of the depth, and of heading, pitch and roll with gains in rad."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -27,14 +27,14 @@ class Pid(Controller):
         self.start()
 
     def start(self) -> None:
-        """Forget integral and speed."""
+        """Resets integral and speed."""
         self._integral = 0.0
         self._speed = Rate(self._filter)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
+        """Returns kp e + ki ∫e dt - kd dy/dt, limited to ±1."""
         error = set_point - measured
-        self._speed.see(measured, seconds)
+        self._speed.update(measured, seconds)
         command = self.gains["kp"] * error + self._integral - self.gains["kd"] * self._speed.value
         limited = min(max(command, -1.0), 1.0)
         if command == limited or (command > 0) != (error > 0):
@@ -51,18 +51,18 @@ def _pid_limits(kp: float, ki: float, kd: float) -> Mapping[str, GainLimits]:
 
 
 class HeadingPid(Pid):
-    """Nothing but water holds the heading."""
+    """PID of the heading, which only the water's drag damps."""
 
     limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.3, 0.0, 0.3)
 
 
 class PitchPid(Pid):
-    """Buoyancy rights the hull, faster than the fins turn round: only the integral is of use."""
+    """PID of the pitch. Buoyancy rights the hull faster than the fins turn, so the integral alone is used."""
 
     limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)
 
 
 class RollPid(Pid):
-    """As `PitchPid`."""
+    """PID of the roll, as `PitchPid`."""
 
     limits: ClassVar[Mapping[str, GainLimits]] = _pid_limits(0.0, 0.8, 0.0)

@@ -1,17 +1,17 @@
-"""Heading by fins that are tilted a little while they hold the depth."""
+"""Control of the heading by tilting the fins that hold the depth."""
 
 from collections.abc import Mapping
 from math import asin, cos, tan
 from typing import ClassVar
 
-from robot_runtime.control.controllers.base import Controller, GainLimits, Rate, braked
+from robot_runtime.control.controllers.base import Controller, GainLimits, Rate, braking_speed
 
 _AMPLITUDE = 1.6
 """rad; of fins at full command. Their thrust is ∝ 1 - cos of it."""
 _POINTING = 0.02
-"""Command downwards below which the fins do not push but turn round, and so lose their tilt."""
+"""Least command downwards at which the fins push; below it they turn round and lose their tilt."""
 _SHARE_LEAST = 0.04
-"""Of the thrust; with less, more tilt would not do."""
+"""Least share of the thrust that is counted on; below it, more tilt has no effect."""
 _FILTER = 0.2
 """s, time constant of the turn rate."""
 
@@ -20,22 +20,21 @@ class Tilt(Controller):
     """Tilts the fins that push up or down, so that a part of their push turns the hull.
 
     A yaw command y beside a command z downwards turns each fin's direction by atan(y / |z|). Where z is
-    small a small y turns the fins far, and fins that turn are a blow to hull and depth. So this controller
-    thinks in the tilt: as much as the wanted acceleration needs with the thrust that there is, never far, and
-    slowly; where the fins rest it waits. It is of use only while the depth is steered.
+    small a small y turns the fins far, and turning fins disturb hull and depth. So this controller computes
+    the tilt: what the required acceleration needs with the present thrust, limited in size and rate. While
+    the fins rest it waits. It works only while the depth is controlled.
 
-    The wanted turn rate is as braking allows it, √(2·a·angle), linear where that would be too steep, as in
-    `Predictive`.
+    The goal of the turn rate is `braking_speed` of the angle.
     """
 
     name = "tilt"
     title = "Tilted fins"
     limits: ClassVar[Mapping[str, GainLimits]] = {
         "tilt": GainLimits(1.0, 0.1, 1.2, "rad", "most by which the fins are tilted"),
-        "slew": GainLimits(1.0, 0.1, 5.0, "rad/s", "how fast they are"),
-        "response": GainLimits(1.5, 0.2, 10.0, "1/s", "how fast the wanted turn rate is taken up"),
-        "approach": GainLimits(0.8, 0.1, 5.0, "1/s", "wanted turn rate for each rad from the set point"),
-        "braking": GainLimits(0.15, 0.01, 2.0, "rad/s²", "deceleration that is counted on"),
+        "slew": GainLimits(1.0, 0.1, 5.0, "rad/s", "how fast they are tilted"),
+        "response": GainLimits(1.5, 0.2, 10.0, "1/s", "how fast the turn rate approaches its goal"),
+        "approach": GainLimits(0.8, 0.1, 5.0, "1/s", "turn rate for each rad from the set point"),
+        "braking": GainLimits(0.15, 0.01, 2.0, "rad/s²", "deceleration assumed for braking"),
         "torque": GainLimits(6.8, 0.5, 50.0, "rad/s²", "acceleration by all fins at full command"),
     }
 
@@ -44,13 +43,13 @@ class Tilt(Controller):
         self.start()
 
     def start(self) -> None:
-        """Forget tilt and turn rate."""
+        """Resets tilt and turn rate."""
         self._tilt = 0.0
         self._rate = Rate(_FILTER)
 
     def step(self, set_point: float, measured: float, seconds: float) -> float:
-        """The yaw that tilts the fins as they should be."""
-        self._rate.see(measured, seconds)
+        """Returns the yaw command that gives the fins their goal tilt."""
+        self._rate.update(measured, seconds)
         if abs(self.heave_command) < _POINTING:
             if self.heave_command:
                 self._tilt = 0.0
@@ -59,8 +58,8 @@ class Tilt(Controller):
         self._tilt += min(max(self._goal_tilt(set_point - measured) - self._tilt, -most), most)
         return abs(self.heave_command) * tan(self._tilt)
 
-    def _goal_tilt(self, left: float) -> float:
-        rate = braked(left, self.gains["braking"], self.gains["approach"])
+    def _goal_tilt(self, error: float) -> float:
+        rate = braking_speed(error, self.gains["braking"], self.gains["approach"])
         share = max((1 - cos(_AMPLITUDE * abs(self.heave_command))) / (1 - cos(_AMPLITUDE)), _SHARE_LEAST)
         part = self.gains["response"] * (rate - self._rate.value) / (self.gains["torque"] * share)
         most = self.gains["tilt"]

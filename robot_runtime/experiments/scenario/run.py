@@ -153,7 +153,7 @@ class _RunLoop:
                 task.run_if_due(now)
             due = [end, self._look_at, rig.robot.pilot_tick(), *(task.due for task in self._tasks)]
             if self._arming is not None:
-                self._go_on_arming(now)
+                self._continue_arming(now)
                 due.append(self._ask_again)
             if self._has_camera and now > -_SAME_TIME:
                 due.append(now + rig.robot.vision.tick())
@@ -201,13 +201,13 @@ class _RunLoop:
         elif not isinstance(event, BookmarkEvent):
             raise ValueError(f"{event.do} cannot be done in simulated time")
 
-    def _go_on_arming(self, now: float) -> None:
+    def _continue_arming(self, now: float) -> None:
         assert self._arming is not None
         arming, event = self._arming
         supervisor = self._rig.robot.supervisor
         if not arming.over and (supervisor.board_armed or now >= self._ask_again - _SAME_TIME):
             self._ask_again = now + ARM_WAIT
-            supervisor.go_on_arming()
+            supervisor.continue_arming()
         if arming.over:
             self._arming = None
             if arming.refusal:

@@ -81,7 +81,7 @@ class Flight:
         arming = self.supervisor.begin_arming(mode, alone)
         while not arming.over:
             self.run(0.1)
-            self.supervisor.go_on_arming()
+            self.supervisor.continue_arming()
         assert arming.refusal == ""
 
     def command(self, name: str, **question: Any) -> None:

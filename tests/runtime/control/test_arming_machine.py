@@ -53,7 +53,7 @@ class Arming(RuleBasedStateMachine):
                 self.supervisor.pilot.taken = self.rig.clock.now()
             self._age(0.05)
             self._look()
-            self.supervisor.go_on_arming()
+            self.supervisor.continue_arming()
             self._look()
             self.supervisor.tick()
             self._look()

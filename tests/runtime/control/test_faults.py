@@ -23,7 +23,7 @@ def live(rig: Rig, seconds: float, feel: Callable[[], None]) -> None:
 
 
 def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
-    return set(rig.supervisor.detector.wrong(mode, []))
+    return set(rig.supervisor.detector.active_faults(mode, []))
 
 
 def all_but(rig: Rig, missing: str) -> Callable[[], None]:
@@ -126,10 +126,13 @@ def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
     rig.board.flags = StatusFlag.BATTERY_LOW
     rig.board.faults = SensorFault.FIN_FRONT_LEFT | SensorFault.FIN_BACK_RIGHT
     rig.report()
-    found = rig.supervisor.detector.wrong("automatic", [])
+    found = rig.supervisor.detector.active_faults("automatic", [])
     assert found == {"battery_low": "", "fin_failing": "(back right, front left)"}
-    assert rig.supervisor.detector.wrong("disarmed", []) == {"battery_low": ""}
-    assert set(rig.supervisor.detector.wrong("disarmed", ["fin_failing"])) == {"battery_low", "fin_failing"}
+    assert rig.supervisor.detector.active_faults("disarmed", []) == {"battery_low": ""}
+    assert set(rig.supervisor.detector.active_faults("disarmed", ["fin_failing"])) == {
+        "battery_low",
+        "fin_failing",
+    }
 
 
 def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:

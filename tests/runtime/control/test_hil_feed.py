@@ -26,7 +26,7 @@ class Rig:
 
 def test_a_word_goes_on_to_the_board_as_it_is() -> None:
     rig = Rig()
-    rig.loop.hear(WORD.to_bytes())
+    rig.loop.forward(WORD.to_bytes())
     assert [packet.to_bytes() for packet in rig.sent] == [WORD.to_bytes()]
     assert rig.loop.refusals() == []
 
@@ -36,7 +36,7 @@ def test_its_coming_is_told_once_and_its_going_is_known() -> None:
     rig.loop.tick()
     assert rig.events == []
     assert "There is no simulator" in rig.loop.refusals()[0]
-    rig.loop.hear(WORD.to_bytes())
+    rig.loop.forward(WORD.to_bytes())
     for _ in range(3):
         rig.loop.tick()
     rig.clock.forward(SILENCE * 1.01)
@@ -49,6 +49,6 @@ def test_its_coming_is_told_once_and_its_going_is_known() -> None:
 
 def test_what_is_no_word_is_dropped_and_does_not_count(caplog: pytest.LogCaptureFixture) -> None:
     rig = Rig()
-    rig.loop.hear(WORD.to_bytes()[:-1])
+    rig.loop.forward(WORD.to_bytes()[:-1])
     assert (rig.sent, rig.loop.present) == ([], False)
     assert "no Sense" in caplog.text

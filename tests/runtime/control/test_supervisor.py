@@ -219,14 +219,14 @@ def test_what_the_board_said_before_a_stop_is_not_taken_for_the_next_arming(rig:
     obedient, rig.board.send = rig.board.send, Board.send.__get__(rig.board)  # type: ignore[method-assign]
     rig.supervisor.stop("Enough.")
     arming = rig.supervisor.begin_arming()
-    rig.supervisor.go_on_arming()
+    rig.supervisor.continue_arming()
     assert rig.supervisor.mode == "disarmed"
     assert not any(isinstance(packet, Start) for packet in rig.board.sent[-3:])
     rig.board.flags, rig.board.obeys = 0, True
     rig.board.send = obedient  # type: ignore[method-assign]
     rig.report()
-    rig.supervisor.go_on_arming()
-    rig.supervisor.go_on_arming()
+    rig.supervisor.continue_arming()
+    rig.supervisor.continue_arming()
     assert arming.over
     assert rig.supervisor.mode == "automatic"
     assert rig.supervisor.alarms == []
@@ -306,17 +306,17 @@ def test_a_fault_that_comes_back_after_it_was_acknowledged_is_an_alarm_again(rig
 def test_arming_goes_on_step_by_step_where_nobody_may_wait(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
-    rig.supervisor.go_on_arming()
+    rig.supervisor.continue_arming()
     assert not arming.over
     assert rig.supervisor.begin_arming() is arming
     assert rig.board.sent == [Start(epoch=7)] * 2
     rig.board.obeys = True
-    rig.supervisor.go_on_arming()
-    rig.supervisor.go_on_arming()
+    rig.supervisor.continue_arming()
+    rig.supervisor.continue_arming()
     assert (arming.over, arming.refusal) == (True, "")
     assert rig.supervisor.armed
     assert rig.supervisor.begin_arming().over
-    rig.supervisor.go_on_arming()
+    rig.supervisor.continue_arming()
     assert len(rig.board.sent) == 3
 
 
@@ -324,7 +324,7 @@ def test_a_board_that_never_follows_ends_the_attempt(rig: Rig) -> None:
     rig.board.obeys = False
     arming = rig.supervisor.begin_arming()
     while not arming.over:
-        rig.supervisor.go_on_arming()
+        rig.supervisor.continue_arming()
     assert "did not arm" in arming.refusal
     assert isinstance(rig.board.sent[-1], Stop)
     rig.supervisor.tick()
