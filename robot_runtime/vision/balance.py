@@ -10,18 +10,18 @@ from robot_runtime.contract.vision_settings import BYTE_MAX, WhiteBalance
 from robot_runtime.vision.picture import Picture
 
 GAIN_MAX = 4.0
-"""By which no channel is raised more: beyond that there is noise in place of light."""
+"""Largest gain of a channel; beyond it, noise dominates."""
 SPARSE = 4
-"""Of so many lines and columns one is enough for a mean."""
+"""Every so many lines and columns, one is used for the means."""
 
 
 def none(picture: Picture) -> Picture:
-    """The picture as it is."""
+    """Returns the picture unchanged."""
     return picture
 
 
 def grey_world(picture: Picture) -> Picture:
-    """Each channel scaled so that all have the same mean: the world is taken to be grey on the whole.
+    """Scales the channels to the same mean, on the assumption that the world is grey on average.
 
     G. Buchsbaum, A spatial processor model for object colour perception, J. Franklin Institute 310 (1980).
     BGR, uint8 of shape (height, width, 3).
@@ -34,18 +34,17 @@ def grey_world(picture: Picture) -> Picture:
 
 
 def underwater(picture: Picture) -> Picture:
-    """The red that water has taken, given back from green where it is missing; then as `grey_world`.
+    """Restores lost red from green, then balances as `grey_world`. BGR, uint8 of shape (height, width, 3).
 
     I_r + (mean I_g - mean I_r)·(1 - I_r)·I_g with intensities from 0 to 1: C. O. Ancuti, C. Ancuti, C. De
     Vleeschouwer and P. Bekaert, Color Balance and Fusion for Underwater Image Enhancement, IEEE Transactions
-    on Image Processing 27 (2018) 379, equation 4 with α = 1. Where red is not weaker than green, nothing is
-    given.
+    on Image Processing 27 (2018) 379, equation 4 with α = 1. Red that is not weaker than green is unchanged.
     """
     blue, green, red = cv2.split(picture)
     means = _means(picture)
     lost = max(means[1] - means[2], 0.0) / BYTE_MAX
-    given = cv2.multiply(cv2.bitwise_not(red), green, scale=lost / BYTE_MAX)
-    return grey_world(cv2.merge((blue, green, cv2.add(red, given))).astype(np.uint8, copy=False))
+    restored = cv2.multiply(cv2.bitwise_not(red), green, scale=lost / BYTE_MAX)
+    return grey_world(cv2.merge((blue, green, cv2.add(red, restored))).astype(np.uint8, copy=False))
 
 
 BALANCES: Mapping[WhiteBalance, Callable[[Picture], Picture]] = {
@@ -56,6 +55,6 @@ BALANCES: Mapping[WhiteBalance, Callable[[Picture], Picture]] = {
 
 
 def _means(picture: Picture) -> NDArray[np.float64]:
-    """Of blue, green and red."""
+    """Returns the means of blue, green and red."""
     means: NDArray[np.float64] = picture[::SPARSE, ::SPARSE].reshape(-1, 3).mean(axis=0, dtype=np.float64)
     return means

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 class CameraError(Exception):
     """A camera gives no picture; the text says why and what to do.
 
-    For `patience` (s) that is nothing to tell of, as it may pass by itself.
+    It is reported only if it lasts for longer than `patience` (s).
     """
 
     def __init__(self, text: str, patience: float = 0.0) -> None:
@@ -27,15 +27,15 @@ class CameraFrame(NamedTuple):
 
 
 class Camera(ABC):
-    """A source of pictures, open from its making until `close`. Making one may raise CameraError."""
+    """A source of pictures, open from construction until `close`. Construction may raise CameraError."""
 
     @abstractmethod
     def read(self) -> CameraFrame:
-        """The newest picture. Raises CameraError where there is none."""
+        """Returns the newest picture. Raises CameraError if there is none."""
 
     @abstractmethod
     def close(self) -> None:
-        """Give the device back."""
+        """Releases the device."""
 
     @abstractmethod
     def __str__(self) -> str:

@@ -1,8 +1,7 @@
-"""A camera that draws its picture: calm water, and on request a coloured card that somebody holds up in it.
+"""A camera that draws calm water and, on request, a coloured card in it.
 
 Colours reach the camera as through water: each channel is I·e^(-βz) + B·(1 - e^(-βz)), where z is the
-distance, β the water's attenuation and B its own colour. Red is lost first. The same time gives the same
-picture.
+distance, β the water's attenuation and B its own colour. The same time gives the same picture.
 """
 
 from collections.abc import Callable
@@ -21,7 +20,7 @@ from robot_runtime.vision.picture import Picture
 Floats = NDArray[np.float32]
 
 WATER = (150.0, 128.0, 30.0)
-"""Blue, green and red of the water itself, 0 to 255, halfway down the picture."""
+"""Blue, green and red of the water itself, 0 to 255, in the middle of the picture."""
 ATTENUATION = (0.06, 0.09, 0.6)
 """1/m, of blue, green and red."""
 CARD_DISTANCE = 0.4
@@ -33,15 +32,15 @@ BLACK = (18, 18, 18)
 NOISE = 3.0
 """Standard deviation of each byte of the picture."""
 NOISE_SHIFT = 64
-"""Pixels by which the sheet of noise is larger than the picture."""
+"""Pixels by which the array of noise is larger than the picture."""
 RIPPLES = ((1.7, 0.6, 0.31), (-1.1, 1.9, 0.23), (0.7, -2.6, 0.41), (2.9, 1.3, 0.17))
-"""Caustic light as four waves: how often across, how often down, and Hz."""
+"""Caustic light as four waves: cycles across, cycles down, and Hz."""
 COARSE = 8
-"""Pixels of the picture for each at which light is computed; it is smooth anyway."""
+"""Pixels per sample of the light, which is smooth."""
 
 
 class CardCamera(Camera):
-    """Draws `width` × `height` pixels; `card` tells which card is shown now, if any."""
+    """Draws `width` × `height` pixels; `card` returns the shown card, if any."""
 
     def __init__(
         self,
@@ -54,7 +53,7 @@ class CardCamera(Camera):
         self._clock = clock
         self._card = card
         self._water = _water(width, height)
-        # Kept, since memory that is new for each picture costs more than drawing in it.
+        # Reused, because new memory for each picture costs more than drawing in it.
         self._canvas: Floats = np.empty_like(self._water)
         self._fine: Floats = np.empty((height, width), np.float32)
         down, across = np.mgrid[0 : 1 : complex(height // COARSE), 0 : 1 : complex(width // COARSE)]
@@ -63,19 +62,19 @@ class CardCamera(Camera):
         self._noise = np.random.default_rng(1).standard_normal(sheet, np.float32) * np.float32(NOISE)
 
     def read(self) -> CameraFrame:
-        """The picture of this moment."""
+        """Returns the picture of now."""
         now = self._clock.now()
         return CameraFrame(self.draw(now, self._card()), now)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Does nothing; no device is open."""
 
     def __str__(self) -> str:
         card = self._card()
         return f"drawn water with a {card.name} card" if card else "drawn water without a card"
 
     def draw(self, time: float, card: CameraCard | None) -> Picture:
-        """The picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
+        """Returns the picture at this time (s), uint8 of shape (height, width, 3), blue, green, red."""
         canvas = self._canvas
         np.copyto(canvas, self._water)
         if card is not None:
@@ -110,15 +109,15 @@ class CardCamera(Camera):
         return self._fine[:, :, np.newaxis]
 
     def _grain(self, time: float) -> Floats:
-        """Noise of the sensor: a piece of a larger sheet, another one at each time."""
+        """Returns the sensor's noise: a part of a larger array, another one at each time."""
         width, height = self._size
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         return self._noise[y : y + height, x : x + width]
 
     def _quad(self, time: float, left: float, top: float, right: float, bottom: float) -> NDArray[np.int32]:
-        """The corners, in sixteenths of a pixel, of what lies there on the card (pixels from its middle).
+        """Returns the corners, in 1/16 pixel, of a rectangle on the card, given in pixels from its middle.
 
-        The hand that holds it is not quite still.
+        The card sways, as if held by hand.
         """
         width, height = self._size
         centre_x = width * (0.5 + 0.03 * sin(2 * pi * 0.11 * time))
@@ -132,13 +131,13 @@ class CardCamera(Camera):
 
 
 def _water(width: int, height: int) -> Floats:
-    """Water that grows darker downwards."""
+    """Returns water that grows darker downwards."""
     brightness = np.linspace(1.25, 0.7, height, dtype=np.float32)[:, np.newaxis, np.newaxis]
     return np.ascontiguousarray(np.broadcast_to(brightness * np.array(WATER, np.float32), (height, width, 3)))
 
 
 def _through_water(paint: Paint) -> tuple[float, float, float]:
-    """A paint's blue, green and red as seen on the card, through the water."""
+    """Returns a paint's blue, green and red as seen through the water in front of the card."""
     blue, green, red = (
         own * exp(-loss * CARD_DISTANCE) + water * (1 - exp(-loss * CARD_DISTANCE))
         for own, water, loss in zip(paint, WATER, ATTENUATION, strict=True)

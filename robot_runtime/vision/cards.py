@@ -1,4 +1,4 @@
-"""The cards that are held before the camera: coloured ones, and one with a marker."""
+"""The cards that can be shown to the camera: coloured ones, and one with a marker."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from robot_runtime.contract.vision_settings import ColourRange, marker_name
 
 MARKER_DICTIONARY = cv2.aruco.DICT_4X4_50
 MARKER_CELLS = 6
-"""To each side, with the black border."""
+"""Cells along each side, with the black border."""
 MARKER_SIDE = 0.8
-"""Of the card's width."""
+"""Side of the marker as a share of the card's width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class CameraCard:
 
 
 def make_card(name: str, colours: Mapping[str, ColourRange]) -> CameraCard:
-    """The card of this name; of the range's middle where the colour has no paint. Raises KeyError."""
+    """Returns the card of this name; without a paint it has the middle of the range. Raises KeyError."""
     if name == marker_name(MARKER_CARD):
         return CameraCard(name, WHITE, marked=True)
     if name in PAINTS:
@@ -40,7 +40,7 @@ def make_card(name: str, colours: Mapping[str, ColourRange]) -> CameraCard:
 
 @cache
 def marker_pattern() -> NDArray[np.uint8]:
-    """The printed marker, 0 where it is black and 255 where white, one pixel a cell."""
+    """Returns the printed marker, one pixel a cell: 0 black, 255 white."""
     dictionary = cv2.aruco.getPredefinedDictionary(MARKER_DICTIONARY)
     pattern = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, MARKER_CELLS)
     return pattern.astype(np.uint8, copy=False)

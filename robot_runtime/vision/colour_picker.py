@@ -1,4 +1,4 @@
-"""A colour's range from a place in the picture that somebody points at."""
+"""Proposes a colour range from a point in the picture."""
 
 from dataclasses import dataclass
 from math import ceil, floor
@@ -16,25 +16,22 @@ from robot_runtime.vision.picture import Picture
 
 HUES = HUE_MAX + 1
 SATURATION_LEAST = 50
-"""Below which a hue says little: it is grey."""
+"""Least saturation at which the hue is meaningful; below it a pixel is grey."""
 VALUE_LEAST = 30
 COLOURED_LEAST = 0.6
 """Share of the pixels that must have a colour."""
 PERCENTILES = (5, 95)
 HUE_SPREAD_MAX = 40
-"""Between the percentiles; with more there are several colours."""
+"""Largest hue span between the percentiles; with more there are several colours."""
 HUE_MARGIN, SATURATION_MARGIN = 5, 40
-"""Beyond the percentiles: light, distance and noise change a colour by about so much. Chosen."""
+"""Margins beyond the percentiles, for changes of light, distance and noise. Chosen."""
 VALUE_LEFT = 0.6
-"""Of the brightness picked: ripples above focus the light, and somebody may point where it is brightest.
-
-A share, not a difference, since light multiplies what it falls on. Chosen.
-"""
+"""Lower limit of the value as a share of the picked one, since ripples focus the light. Chosen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PickPoint:
-    """Where somebody points: shares of width and height, and a radius as a share of the width."""
+    """A point in the picture: shares of width and height, and a radius as a share of the width."""
 
     x: Annotated[float, Range(0, 1)]
     y: Annotated[float, Range(0, 1)]
@@ -43,16 +40,16 @@ class PickPoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourProposal:
-    """A range, and the share of the whole picture that it holds."""
+    """A proposed range, and the share of the whole picture that it covers."""
 
     colour: ColourRange
     share: float
 
 
 def propose(picture: Picture, place: PickPoint) -> ColourProposal:
-    """The range of what is around a place of a BGR picture (height, width, 3).
+    """Returns the colour range around a point of a BGR picture (height, width, 3).
 
-    Raises RefusedError where there is no colour, or more than one.
+    Raises RefusedError if there is no colour, or more than one.
     """
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV).astype(np.uint8, copy=False)
     colour = range_of(_around(hsv, place))
@@ -60,7 +57,7 @@ def propose(picture: Picture, place: PickPoint) -> ColourProposal:
 
 
 def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
-    """The range that holds these HSV pixels (number, 3) but for the outermost. Raises RefusedError."""
+    """Returns the range of these HSV pixels (number, 3) without the outermost. Raises RefusedError."""
     coloured = pixels[(pixels[:, 1] >= SATURATION_LEAST) & (pixels[:, 2] >= VALUE_LEAST)]
     if len(coloured) < COLOURED_LEAST * len(pixels):
         saturation, value = np.median(pixels[:, 1:], axis=0)
@@ -79,7 +76,7 @@ def range_of(pixels: NDArray[np.uint8]) -> ColourRange:
 
 
 def _hues(hues: NDArray[np.uint8]) -> tuple[int, int]:
-    """The lowest and the highest of these, as the circle goes, with a margin."""
+    """Returns the lowest and the highest hue on the circle, with a margin."""
     angles = hues * (2 * np.pi / HUES)
     middle = np.arctan2(np.sin(angles).mean(), np.cos(angles).mean()) * HUES / (2 * np.pi)
     beside = (hues - middle + HUES / 2) % HUES - HUES / 2

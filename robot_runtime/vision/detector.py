@@ -20,11 +20,14 @@ DICTIONARIES: Mapping[MarkerDictionary, int] = {
     "original": cv2.aruco.DICT_ARUCO_ORIGINAL,
     "april_36h11": cv2.aruco.DICT_APRILTAG_36h11,
 }
-"""OpenCV's, by the names of the configuration."""
+"""OpenCV's dictionaries by their names in the configuration.
+
+S. Garrido-Jurado et al., Pattern Recognition 47 (2014).
+"""
 
 
 class MarkerFinder:
-    """Finds the markers that count by these settings."""
+    """Finds the ArUco markers that the settings select."""
 
     def __init__(self, settings: VisionSettings) -> None:
         self._numbers = settings.marker_numbers
@@ -34,14 +37,14 @@ class MarkerFinder:
             self._detector = cv2.aruco.ArucoDetector(dictionary)
 
     def find(self, picture: Picture) -> list[ArucoMarker]:
-        """Those in a BGR picture (height, width, 3), in order of their numbers."""
+        """Returns the markers in a BGR picture (height, width, 3), in order of their numbers."""
         if self._detector is None:
             return []
         height, width = picture.shape[:2]
         corners, numbers, _ = self._detector.detectMarkers(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY))
         found = [
             ArucoMarker(number=int(number), corners=(four.reshape(4, 2) / (width, height)).ravel().tolist())
-            # OpenCV gives None in place of no numbers.
+            # OpenCV returns None instead of an empty array.
             for number, four in zip(np.ravel(numbers) if corners else (), corners, strict=True)
             if not self._numbers or int(number) in self._numbers
         ]
@@ -66,18 +69,18 @@ class Sight:
 
 
 class Detector:
-    """Searches pictures by these settings."""
+    """Searches pictures for the colours and markers of these settings."""
 
     def __init__(self, settings: VisionSettings) -> None:
         self.settings = settings
         self.balance = BALANCES[settings.white_balance]
-        """What every picture passes first."""
+        """The white balance that every picture passes first."""
         self._markers = MarkerFinder(settings)
 
-    def look(self, picture: Picture) -> Sight:
+    def search(self, picture: Picture) -> Sight:
         """Searches a BGR picture (height, width, 3).
 
-        The wanted colour goes before everything, what has an action before the rest, in the actions' order.
+        The selected colour comes first, then targets of actions in the actions' order, then the rest.
         """
         settings = self.settings
         balanced = self.balance(picture)

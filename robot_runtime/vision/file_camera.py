@@ -1,4 +1,4 @@
-"""A camera that shows a video at its own speed, again and again, or a picture."""
+"""A camera that plays a video file at its own rate in a loop, or shows a picture file."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ HINT = "name a video or a picture in robot.toml: [vision] file"
 
 
 class FileCamera(Camera):
-    """Plays a file, scaled to `width` × `height` pixels. Raises CameraError where it cannot be opened."""
+    """Plays a file, scaled to `width` × `height` pixels. Raises CameraError if it cannot be opened."""
 
     def __init__(self, file: Path, width: int, height: int, clock: Clock) -> None:
         if not file.is_file():
@@ -27,14 +27,14 @@ class FileCamera(Camera):
             self._open_video()
 
     def read(self) -> CameraFrame:
-        """The picture that is due now. Raises CameraError where the video cannot be decoded."""
+        """Returns the picture that is due now. Raises CameraError if the video cannot be decoded."""
         now = self._clock.now()
         picture = self._still if self._still is not None else self._picture_due(now)
         scaled = cv2.resize(picture, self._size, interpolation=cv2.INTER_AREA)
         return CameraFrame(scaled.astype(np.uint8, copy=False), now)
 
     def close(self) -> None:
-        """Close the file."""
+        """Closes the file."""
         if self._video is not None:
             self._video.release()
 

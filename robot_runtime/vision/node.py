@@ -29,11 +29,11 @@ log = logging.getLogger(__name__)
 RETRY = 2.0
 """s between two attempts to open a camera that failed."""
 THUMBNAIL_SECONDS = 2.0
-"""s between two small pictures for recordings. The runtime does not know whether anything records."""
+"""s between two small pictures, which are always published for recordings."""
 
 
 class RateTimer:
-    """An even rhythm of `rate` Hz, which may change at any time. What came late is not made up for."""
+    """A periodic timer of `rate` Hz, which may change at any time. Late periods are skipped."""
 
     def __init__(self, clock: Clock, rate: float) -> None:
         self._clock = clock
@@ -42,7 +42,7 @@ class RateTimer:
 
     @property
     def rate(self) -> float:
-        """Hz. Raises ValueError when it is set to what is not in VISION_RATE."""
+        """Hz. Setting it raises ValueError outside VISION_RATE."""
         return self._rate
 
     @rate.setter
@@ -53,22 +53,22 @@ class RateTimer:
         self._rate = rate
 
     def remaining(self) -> float:
-        """Seconds until the next one is due; 0 or less when it is."""
+        """Returns s until the next period is due; 0 or less if it is due now."""
         return self._last + 1 / self._rate - self._clock.now()
 
     def begin(self) -> None:
-        """Note that the one that was due begins now."""
+        """Records that the due period begins now."""
         period, now = 1 / self._rate, self._clock.now()
         self._last = self._last + period if now < self._last + 2 * period else now
 
 
 class VisionNode:
-    """Looks at a settable rate, in a thread of its own that no camera can end.
+    """Searches pictures at a settable rate, in a thread of its own that survives failures of the camera.
 
-    Every picture gives one Detection: of the wanted colour if it is there, else of what has an action, else
-    of the largest patch of another colour, else of none. Only while `watched` says of "picture", "mask" or
-    "balanced" that somebody watches is it handed on, with its time (s), as a JPEG file; a small picture is
-    every `THUMBNAIL_SECONDS`. All callbacks run on the node's thread. The camera "scene" is asked through
+    Every picture gives one Detection: of the selected colour, else of a target with an action, else of the
+    largest patch of another colour, else an empty one. While `watched` is true of "picture", "mask" or
+    "balanced", that picture is passed on with its time (s) as a JPEG file; a small picture is passed on
+    every `THUMBNAIL_SECONDS`. All callbacks run on the node's thread. The camera "scene" is queried through
     `messages`.
     """
 
@@ -84,8 +84,8 @@ class VisionNode:
         messages: ZenohTransport | None = None,
         on_thumbnail: Callable[[float, bytes], None] | None = None,
     ) -> None:
-        self.held: CameraCard | None = None
-        """The card before the camera."""
+        self.shown_card: CameraCard | None = None
+        """The card that is shown to the camera."""
         self._config = config
         self._settings = config.settings
         self._clock = clock
@@ -98,7 +98,7 @@ class VisionNode:
         self._on_event = on_event
         self._messages = messages
         self._open_camera = open_camera or self._configured_camera
-        self._pace = RateTimer(clock, config.rate)
+        self._timer = RateTimer(clock, config.rate)
         self._detector: Detector | None = None
         self._camera: Camera | None = None
         self._failure: str | None = None
@@ -110,19 +110,19 @@ class VisionNode:
 
     @property
     def settings(self) -> VisionSettings:
-        """The settings in force; new ones apply, as a whole, from the next picture on."""
+        """The settings in force; new ones apply, all together, from the next picture on."""
         return self._settings
 
     @settings.setter
     def settings(self, settings: VisionSettings) -> None:
         self._settings = settings
-        self._pace.rate = settings.rate
+        self._timer.rate = settings.rate
         self._wake.set()
 
     @property
     def card(self) -> str | None:
-        """The name of the card before the camera."""
-        return self.held.name if self.held else None
+        """The name of the card that is shown to the camera."""
+        return self.shown_card.name if self.shown_card else None
 
     @property
     def cards(self) -> list[str]:
@@ -133,13 +133,13 @@ class VisionNode:
 
     @property
     def text(self) -> str:
-        """The camera in words, or what is wrong with it."""
+        """Description of the camera, or of its failure."""
         if self._failure is not None:
             return f"no picture: {self._failure}"
         return str(self._camera) if self._camera else "starting"
 
     def show_card(self, colour: str | None) -> None:
-        """Show this card, or none. Raises RefusedError where that cannot be."""
+        """Shows this card, or none. Raises RefusedError for another camera or an unknown card."""
         if self._config.camera not in ("card", "scene"):
             raise RefusedError(
                 f"the camera is {self._config.camera!r}; cards are shown to the cameras 'scene' and 'card' "
@@ -148,16 +148,16 @@ class VisionNode:
         if colour is not None and colour not in self.cards:
             raise RefusedError(f"there is no card of colour {colour!r}; there are {', '.join(self.cards)}")
         if colour is None:
-            self.held = None
+            self.shown_card = None
         else:
             from robot_runtime.vision.pipeline import make_card
 
-            self.held = make_card(colour, self._settings.colours)
+            self.shown_card = make_card(colour, self._settings.colours)
 
     def pick(self, question: dict[str, Any]) -> "ColourProposal":
-        """The range of the colour at a place of the newest picture, after the white balance.
+        """Returns the colour range around a point of the newest picture, after the white balance.
 
-        `question` is a `PickPoint` as a table. Changes nothing. Raises RefusedError, ConfigError.
+        `question` is a `PickPoint` as a table. No setting changes. Raises RefusedError, ConfigError.
         """
         from robot_runtime.vision.pipeline import Detector, PickPoint, propose
 
@@ -168,18 +168,18 @@ class VisionNode:
         return propose(Detector(self._settings).balance(frame.picture), place)
 
     def start(self) -> None:
-        """Begin to look."""
+        """Starts the thread."""
         self._thread.start()
 
     def close(self) -> None:
-        """Stop looking and give the camera back."""
+        """Ends the thread and releases the camera."""
         self._ending = True
         self._wake.set()
         if self._thread.is_alive():
             self._thread.join(timeout=RETRY)
 
-    def look(self) -> None:
-        """Take one picture, search it, and tell; report a camera that gives none, and try it again later."""
+    def process_picture(self) -> None:
+        """Takes, searches and publishes one picture; a failing camera is reported and retried later."""
         try:
             frame = self._take()
         except CameraError as problem:
@@ -192,19 +192,19 @@ class VisionNode:
                 self._examine(frame)
 
     def tick(self) -> float:
-        """Look where that is due; s until it will be, 0 where it was."""
-        remaining = self._pace.remaining()
+        """Processes a picture if one is due and returns 0; otherwise returns the s until then."""
+        remaining = self._timer.remaining()
         if remaining > 0:
             return remaining
-        self._pace.begin()
+        self._timer.begin()
         try:
-            self.look()
+            self.process_picture()
         except Exception:
-            log.exception("a picture could not be searched")
+            log.exception("a picture could not be processed")
         return 0.0
 
     def _run(self) -> None:
-        # Here, so that the first picture is not late for it.
+        # Imported before the first picture, so that this one is not late.
         importlib.import_module("robot_runtime.vision.pipeline")
         while not self._ending:
             remaining = self.tick()
@@ -214,7 +214,7 @@ class VisionNode:
         self._drop_camera()
 
     def _take(self) -> CameraFrame | None:
-        """The newest picture; None while a camera that failed is left alone."""
+        """Returns the newest picture; None until a failed camera is to be tried again."""
         if self._camera is None:
             if self._clock.now() < self._retry_at:
                 return None
@@ -227,14 +227,14 @@ class VisionNode:
         return frame
 
     def _examine(self, frame: CameraFrame) -> None:
-        # Loads NumPy and OpenCV, which takes longest of all at a start; the robot is in hand before that.
+        # Imports NumPy and OpenCV, the slowest part of the start; the robot is under control before that.
         from robot_runtime.vision import pipeline
 
         settings = self._settings
         if self._detector is None or self._detector.settings is not settings:
             self._detector = pipeline.Detector(settings)
         begun = self._clock.now()
-        sight = self._detector.look(frame.picture)
+        sight = self._detector.search(frame.picture)
         ended = self._clock.now()
         self._frame = frame
         patch = sight.patch
@@ -252,12 +252,12 @@ class VisionNode:
                 set_point=sight.set_point,
             )
         )
-        self._hand_on(frame, sight)
+        self._pass_on(frame, sight)
         if self._on_thumbnail is not None and frame.taken >= self._thumbnail_due:
             self._thumbnail_due = frame.taken + THUMBNAIL_SECONDS
             self._on_thumbnail(frame.taken, pipeline.as_thumbnail(frame.picture))
 
-    def _hand_on(self, frame: CameraFrame, sight: "Sight") -> None:
+    def _pass_on(self, frame: CameraFrame, sight: "Sight") -> None:
         from robot_runtime.vision import pipeline
 
         made: dict[str, Callable[[], Picture]] = {
@@ -297,4 +297,4 @@ class VisionNode:
         def report_missing(why: str) -> None:
             self._report("caution", f"Camera: the scene cannot be rendered: {why}. A drawn card stands in.")
 
-        return open_camera(self._config, self._clock, self._messages, lambda: self.held, report_missing)
+        return open_camera(self._config, self._clock, self._messages, lambda: self.shown_card, report_missing)

@@ -1,4 +1,4 @@
-"""Patches of one colour in a picture: their mask, their outlines, and which of them count."""
+"""Patches of one colour in a picture: mask, outlines and selection, and the mask as a picture for people."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from robot_runtime.contract.vision_settings import HUE_MAX, ColourRange, VisionS
 from robot_runtime.vision.picture import Picture
 
 CONTOURS_MAX = 50
-"""Patches that are measured, the largest ones: noise that nothing removes makes thousands."""
+"""The largest patches that are measured; noise may make thousands."""
 CANDIDATES_MAX = 5
-"""Patches that are told of, the largest ones."""
+"""The largest patches that are reported."""
 OPENING_LEAST = 3
-"""Pixels; with fewer nothing would be removed."""
+"""Least size of the opening, pixels; a smaller one removes nothing."""
 GROUND = (23, 17, 10)
-"""Blue, green and red, as all below."""
+"""Blue, green and red, like all below."""
 DROPPED = (96, 88, 80)
-"""Has the colour and does not count."""
+"""Pixels of the colour outside the accepted patches."""
 COUNTED = (243, 238, 230)
 OUTLINE = (180, 198, 53)
 OUTLINE_REFUSED = (41, 180, 240)
@@ -30,9 +30,9 @@ Contour = np.ndarray[tuple[int, ...], np.dtype[np.int32]]
 
 @dataclass(frozen=True, slots=True)
 class Patches:
-    """All of one colour; `mask` is 255 where it is, uint8 of shape (height, width).
+    """All patches of one colour; `mask` is 255 in them, uint8 of shape (height, width).
 
-    `candidates` are the largest patches, first the largest, and `contours` their outlines.
+    `candidates` are the largest patches in descending order, `contours` their outlines.
     """
 
     colour: str
@@ -42,18 +42,18 @@ class Patches:
 
     @property
     def counting(self) -> Iterator[tuple[Candidate, Contour]]:
-        """Those that count."""
+        """The candidates that meet the limits of the settings, with their outlines."""
         pairs = zip(self.candidates, self.contours, strict=True)
         return ((candidate, contour) for candidate, contour in pairs if not candidate.refused)
 
     @property
     def largest(self) -> Candidate | None:
-        """The largest that counts."""
+        """The largest candidate that meets the limits."""
         return next((candidate for candidate, _ in self.counting), None)
 
 
 def find_patches(hsv: Picture, name: str, settings: VisionSettings) -> Patches:
-    """The patches of a named colour in an HSV picture (height, width, 3)."""
+    """Returns the patches of a named colour in an HSV picture (height, width, 3)."""
     height, width = hsv.shape[:2]
     mask = find_colour(hsv, settings.colours[name])
     if cv2.countNonZero(mask) < settings.area_min * width * height:
@@ -62,14 +62,14 @@ def find_patches(hsv: Picture, name: str, settings: VisionSettings) -> Patches:
     contours = [one.astype(np.int32, copy=False) for one in found]
     contours.sort(key=cv2.contourArea, reverse=True)
     measured = [(_measure(one, width, height, settings), one) for one in contours[:CONTOURS_MAX]]
-    # Those that count are told of before any that does not, however large.
+    # Those that meet the limits come first, whatever their size.
     measured.sort(key=lambda pair: bool(pair[0].refused))
     listed = measured[:CANDIDATES_MAX]
     return Patches(name, mask, [one for one, _ in listed], [contour for _, contour in listed])
 
 
 def find_colour(hsv: Picture, colour: ColourRange) -> Picture:
-    """255 where the HSV picture (height, width, 3) has this colour, 0 elsewhere; (height, width)."""
+    """Returns 255 where an HSV picture (height, width, 3) has this colour, else 0; shape (height, width)."""
     low, high = colour.hue
     if low <= high:
         return _between(hsv, colour, low, high)
@@ -83,7 +83,7 @@ def _between(hsv: Picture, colour: ColourRange, hue_low: int, hue_high: int) -> 
 
 
 def _opened(mask: Picture, opening: float) -> Picture:
-    """Without specks, which noise makes; larger patches stay as they are."""
+    """Returns the mask without specks of noise; larger patches are unchanged."""
     if opening == 0:
         return mask
     size = max(OPENING_LEAST, int(mask.shape[1] * opening) | 1)
@@ -124,7 +124,7 @@ def _refused(area: float, fill: float, aspect: float, circularity: float, settin
 
 
 def draw_mask(patches: Patches) -> Picture:
-    """The mask with the outlines of the largest patches, BGR, uint8 of shape (height, width, 3)."""
+    """Returns the mask with the outlines of the largest patches, BGR, uint8 of shape (height, width, 3)."""
     height, width = patches.mask.shape
     picture = np.full((height, width, 3), GROUND, np.uint8)
     picture[patches.mask > 0] = DROPPED

@@ -10,14 +10,14 @@ from robot_runtime.vision.camera import Camera, CameraError, CameraFrame
 
 
 class PiCamera(Camera):
-    """Pictures of `width` × `height` pixels. Raises CameraError without picamera2 or without a camera."""
+    """Takes pictures of `width` × `height` pixels. Raises CameraError without picamera2 or a camera."""
 
     def __init__(self, width: int, height: int, clock: Clock) -> None:
         self._clock = clock
         self._device = _open_device(width, height)
 
     def read(self) -> CameraFrame:
-        """The newest picture. Raises CameraError where the camera gives none."""
+        """Returns the newest picture. Raises CameraError if the camera gives none."""
         try:
             picture = self._device.capture_array("main")
         except Exception as problem:
@@ -25,7 +25,7 @@ class PiCamera(Camera):
         return CameraFrame(np.ascontiguousarray(picture[:, :, :3], dtype=np.uint8), self._clock.now())
 
     def close(self) -> None:
-        """Give the camera back."""
+        """Releases the camera."""
         self._device.close()
 
     def __str__(self) -> str:

@@ -1,7 +1,6 @@
 """The parts of the vision node that need NumPy and OpenCV: cameras, detector and JPEG encoding.
 
-They are loaded with this module, in the node's own thread: that takes longer than all the rest of a start,
-and the board should not wait for it.
+The node imports this module in its own thread, because it takes longer than the rest of the start.
 """
 
 from collections.abc import Callable
@@ -29,7 +28,7 @@ JPEG_QUALITY = 80
 THUMBNAIL_WIDTH = 160
 THUMBNAIL_QUALITY = 50
 
-# On pictures of this size more threads cost more than they bring, and the robot has one core.
+# More threads cost more than they gain on such small pictures, and the robot has one core.
 cv2.setNumThreads(1)
 
 
@@ -40,7 +39,7 @@ def open_camera(
     card: Callable[[], CameraCard | None],
     on_missing: Callable[[str], None],
 ) -> Camera:
-    """The configured camera; a drawn card, after `on_missing` was told why, where no scene can be rendered.
+    """Opens the configured camera, or a card camera if no scene can be rendered; `on_missing` gets why.
 
     Raises CameraError.
     """
@@ -57,12 +56,12 @@ def open_camera(
 
 
 def as_jpeg(picture: Picture) -> bytes:
-    """The picture as a JPEG file."""
+    """Returns the picture as a JPEG file."""
     return _encode(picture, JPEG_QUALITY)
 
 
 def as_thumbnail(picture: Picture) -> bytes:
-    """A small one, as a JPEG file."""
+    """Returns a small copy of the picture as a JPEG file."""
     height, width = picture.shape[:2]
     size = (THUMBNAIL_WIDTH, max(1, round(height * THUMBNAIL_WIDTH / width)))
     small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA).astype(picture.dtype, copy=False)

@@ -1,4 +1,4 @@
-"""The camera of a robot in simulated water: the scene's own process renders what it sees."""
+"""The camera of a robot in simulated water, rendered by the process of the scene."""
 
 from collections.abc import Callable
 
@@ -12,17 +12,17 @@ READY_TIMEOUT = 1.0
 PICTURE_TIMEOUT = 16.0
 """s; the first picture waits until all of the scene is made."""
 PATIENCE = 8.0
-"""s for which it is not news that there is none: board, simulator and scene start after the runtime."""
+"""s before a missing picture is reported: board, simulator and scene start after the runtime."""
 
 
 class SceneMissingError(Exception):
-    """Nothing can be rendered where the scene runs; the text says what is missing and how to get it."""
+    """The process of the scene cannot render; the text says what is missing and how to install it."""
 
 
 class SceneCamera(Camera):
-    """Asks for pictures of `width` × `height` pixels; `card` tells which card is shown, if any.
+    """Queries pictures of `width` × `height` pixels; `card` returns the shown card, if any.
 
-    Raises CameraError where no scene answers, SceneMissingError where it answers that it cannot render.
+    Raises CameraError if no scene answers, SceneMissingError if it answers that it cannot render.
     """
 
     def __init__(
@@ -39,8 +39,8 @@ class SceneCamera(Camera):
             missing = messages.query("scene/ready", {}, READY_TIMEOUT)["missing"]
         except NoAnswerError as problem:
             raise CameraError(
-                "no scene answers; it belongs to a simulated robot, and starts with the server. A real robot "
-                "has another camera: name it in robot.toml, [vision] camera",
+                "no scene answers. It belongs to a simulated robot and starts with the server. For a real "
+                "robot, name its camera in robot.toml, [vision] camera",
                 PATIENCE,
             ) from problem
         if missing is not None:
@@ -54,14 +54,14 @@ class SceneCamera(Camera):
             picture = read_picture(self._messages.query_bytes("scene/picture", request, PICTURE_TIMEOUT))
         except NoAnswerError as problem:
             raise CameraError(
-                "the scene does not answer any more; the System page tells more", PATIENCE
+                "the scene no longer answers; see its log on the System page", PATIENCE
             ) from problem
         except (RefusedError, ValueError) as problem:
-            raise CameraError(f"the scene gives none: {problem}", PATIENCE) from problem
+            raise CameraError(f"the scene gives no picture: {problem}", PATIENCE) from problem
         return CameraFrame(picture.pixels, picture.time)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Does nothing; no device is open."""
 
     def __str__(self) -> str:
         card = self._card()

@@ -1,4 +1,4 @@
-"""A file of the vision settings, which survive a restart."""
+"""Storage of the vision settings, which survive a restart."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ from robot_runtime.durable_files import write_whole
 
 
 class VisionSettingsFile:
-    """A file; whole under its name, or not there."""
+    """The JSON file of the vision settings, written atomically."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -29,7 +29,7 @@ class VisionSettingsFile:
         return settings
 
     def write(self, settings: VisionSettings) -> None:
-        """Stores the settings. Raises OSError; the older ones remain then."""
+        """Stores the settings. Raises OSError; then the older ones remain."""
         write_whole(self._path, json.dumps(settings.table(), indent=1).encode())
 
     def forget(self) -> None:

@@ -145,7 +145,7 @@ class ScenarioRig:
         vision, config = self.robot.vision, self.robot.config.vision
 
         def card() -> CameraCard | None:
-            return vision.held
+            return vision.shown_card
 
         self._camera = CardCamera(config.width, config.height, self.clock, card)
         if config.camera == "scene":

@@ -51,4 +51,4 @@ def test_what_is_no_word_is_dropped_and_does_not_count(caplog: pytest.LogCapture
     rig = Rig()
     rig.loop.forward(WORD.to_bytes()[:-1])
     assert (rig.sent, rig.loop.present) == ([], False)
-    assert "no Sense" in caplog.text
+    assert "invalid Sense" in caplog.text

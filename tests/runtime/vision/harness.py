@@ -26,7 +26,7 @@ def find(
 ) -> Found | None:
     """What the detector finds when it looks for this colour first."""
     settings = VisionSettings(colour=wanted, colours=dict(colours), area_min=area_min)
-    sight = Detector(settings).look(picture)
+    sight = Detector(settings).search(picture)
     if sight.patch is None:
         return None
     assert sight.colour is not None

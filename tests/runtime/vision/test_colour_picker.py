@@ -124,7 +124,7 @@ class TestNode:
     def test_picks_in_the_newest_picture_and_changes_nothing(self) -> None:
         clock = SimulatedClock(1.0)
         node, _ = self.vision(drawn(1.0, "blue"), clock)
-        node.look()
+        node.process_picture()
         before = node.settings
         proposal = node.pick({"x": 0.5, "y": 0.5})
         assert find(drawn(1.0, "blue"), "picked", colours={"picked": proposal.colour}) is not None
@@ -135,9 +135,9 @@ class TestNode:
         node, camera = self.vision(drawn(1.0, "blue"), clock)
         with pytest.raises(RefusedError, match=r"no picture to pick a colour in\. Camera: starting"):
             node.pick({"x": 0.5, "y": 0.5})
-        node.look()
+        node.process_picture()
         camera.failure = CameraError("the lens cap is on")
-        node.look()
+        node.process_picture()
         with pytest.raises(RefusedError, match="the lens cap is on"):
             node.pick({"x": 0.5, "y": 0.5})
 
@@ -154,6 +154,6 @@ class TestNode:
     )
     def test_bad_places_are_refused(self, question: dict[str, object], why: str) -> None:
         node, _ = self.vision(drawn(1.0, "blue"), SimulatedClock(1.0))
-        node.look()
+        node.process_picture()
         with pytest.raises(ConfigError, match=why):
             node.pick(question)

@@ -115,7 +115,7 @@ def test_one_coloured_pictures() -> None:
 
 
 def look(picture: Picture, **settings: Any) -> Sight:
-    return Detector(VisionSettings(**settings)).look(picture)
+    return Detector(VisionSettings(**settings)).search(picture)
 
 
 BAR, SQUARE = (10, 40, 100, 20, YELLOW), (130, 20, 40, 40, YELLOW)

@@ -70,7 +70,7 @@ def test_tells_what_each_picture_holds(listener: Listener, clock: SimulatedClock
     node = listener.node(clock)
     for card in (None, "yellow", "red", None):
         node.show_card(card)
-        node.look()
+        node.process_picture()
         clock.forward(0.25)
     assert [detection.colour for detection in listener.detections] == [None, "yellow", "red", None]
     assert [detection.taken for detection in listener.detections] == [20.0, 20.25, 20.5, 20.75]
@@ -90,7 +90,7 @@ def test_measures_its_own_time(listener: Listener, monkeypatch: pytest.MonkeyPat
         return convert(*arguments)  # type: ignore[call-overload]
 
     monkeypatch.setattr(cv2, "cvtColor", slow)
-    node.look()
+    node.process_picture()
     assert listener.detections[0].processing == pytest.approx(0.03)
     assert listener.detections[0].time == pytest.approx(20.03)
 
@@ -101,19 +101,19 @@ def test_wanted_colour_goes_first(listener: Listener, clock: SimulatedClock) -> 
     node = listener.node(clock, ShakyCamera(picture, clock).open)
     for colour in ("yellow", "red", "green"):
         node.settings = VisionSettings(colour=colour)
-        node.look()
+        node.process_picture()
     assert [detection.colour for detection in listener.detections] == ["yellow", "red", "red"]
 
 
 def test_pictures_are_made_only_while_somebody_watches(listener: Listener, clock: SimulatedClock) -> None:
     node = listener.node(clock)
-    node.look()
+    node.process_picture()
     assert listener.pictures == []
     listener.watching = {"picture"}
     node.show_card("yellow")
-    node.look()
+    node.process_picture()
     listener.watching = set()
-    node.look()
+    node.process_picture()
     ((topic, taken, jpeg),) = listener.pictures
     assert (topic, taken) == ("picture", 20.0)
     decoded = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
@@ -129,10 +129,10 @@ def test_mask_and_balanced_picture_are_made_for_whoever_watches_them(
     node = listener.node(clock)
     node.show_card("yellow")
     listener.watching = {"mask"}
-    node.look()
+    node.process_picture()
     listener.watching = {"balanced"}
     node.settings = VisionSettings(white_balance="grey_world")
-    node.look()
+    node.process_picture()
     assert [topic for topic, _, _ in listener.pictures] == ["mask", "balanced"]
     mask, balanced = (
         cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR) for _, _, jpeg in listener.pictures
@@ -158,8 +158,8 @@ def test_settings_change_as_a_whole_between_two_pictures(
         return convert(*arguments)  # type: ignore[call-overload]
 
     monkeypatch.setattr(cv2, "cvtColor", change_meanwhile)
-    node.look()
-    node.look()
+    node.process_picture()
+    node.process_picture()
     before, after = listener.detections
     assert (before.colour, before.target, before.set_point) == ("yellow", "yellow", None)
     assert (after.colour, after.target, after.set_point) == ("red", "red", 2.0)
@@ -170,12 +170,12 @@ def test_a_camera_that_fails_is_reported_once_and_tried_again(
 ) -> None:
     camera = ShakyCamera(drawn(1.0, "yellow"), clock)
     node = listener.node(clock, camera.open)
-    node.look()
+    node.process_picture()
     assert node.text == "shaky camera"
     camera.failure = CameraError("the lens cap is on; take it off")
     for _ in range(20):
         clock.forward(0.25)
-        node.look()
+        node.process_picture()
     assert node.text == "no picture: the lens cap is on; take it off"
     assert [event.severity for event in listener.events] == ["caution"]
     assert "the lens cap is on; take it off" in listener.events[0].text
@@ -184,7 +184,7 @@ def test_a_camera_that_fails_is_reported_once_and_tried_again(
     assert camera.closed == 1
     camera.failure = None
     clock.forward(RETRY)
-    node.look()
+    node.process_picture()
     assert [event.severity for event in listener.events] == ["caution", "info"]
     assert node.text == "shaky camera"
     assert [detection.colour for detection in listener.detections] == ["yellow", "yellow"]
@@ -195,7 +195,7 @@ def test_another_failure_is_reported_anew(listener: Listener, clock: SimulatedCl
     node = listener.node(clock, camera.open)
     for text in ("no light", "no light", "no power"):
         camera.failure = CameraError(text)
-        node.look()
+        node.process_picture()
         clock.forward(RETRY)
     assert len(listener.events) == 2
 
@@ -206,30 +206,30 @@ def test_a_camera_may_fail_in_any_way(
     camera = ShakyCamera(drawn(1.0, None), clock)
     camera.failure = ZeroDivisionError("oops")
     node = listener.node(clock, camera.open)
-    node.look()
+    node.process_picture()
     assert "oops" in node.text
     assert "ZeroDivisionError" in caplog.text
     camera.failure = None
     clock.forward(RETRY)
-    node.look()
+    node.process_picture()
     assert len(listener.detections) == 1
 
 
 def test_missing_file_and_its_return(tmp_path: Path, listener: Listener, clock: SimulatedClock) -> None:
     file = tmp_path / "pool.png"
     node = listener.node(clock, config=VisionConfig(camera="file", file=str(file)))
-    node.look()
+    node.process_picture()
     assert "there is no file" in node.text
     cv2.imwrite(str(file), drawn(1.0, "yellow"))
     clock.forward(RETRY)
-    node.look()
+    node.process_picture()
     assert node.text == "file pool.png"
     assert listener.detections[0].colour == "yellow"
 
 
 def test_pi_camera_where_there_is_none(listener: Listener, clock: SimulatedClock) -> None:
     node = listener.node(clock, config=VisionConfig(camera="pi"))
-    node.look()
+    node.process_picture()
     assert "picamera2" in node.text
     assert listener.detections == []
 
@@ -303,7 +303,7 @@ def test_a_small_picture_comes_every_two_seconds_whoever_watches(
 ) -> None:
     node = listener.node(clock)
     for _ in range(20):
-        node.look()
+        node.process_picture()
         clock.forward(0.25)
     assert [time for time, _ in listener.thumbnails] == [20.0, 22.0, 24.0]
     picture = cv2.imdecode(np.frombuffer(listener.thumbnails[0][1], np.uint8), cv2.IMREAD_COLOR)

@@ -250,10 +250,10 @@ def look(messages: ZenohTransport, until: Callable[[VisionNode], bool], config: 
         end = time.monotonic() + SLOW
         while not until(vision):
             assert time.monotonic() < end
-            vision.look()
+            vision.process_picture()
     finally:
         vision.close()
-    vision.look()
+    vision.process_picture()
     assert found[-1].colour == "yellow"
     return events
 
@@ -288,9 +288,9 @@ def test_without_a_scene_there_is_no_picture_and_it_is_news_only_after_a_while()
                 VisionConfig(camera="scene"), clock, lambda _: None, lambda *_: None, lambda _: False,
                 events.append, messages=alone,
             )  # fmt: skip
-            vision.look()
+            vision.process_picture()
             assert (vision.text, events) == ("starting", [])
             clock.forward(9.0)
-            vision.look()
+            vision.process_picture()
     assert "no scene answers" in vision.text
     assert [event.severity for event in events] == ["caution"]

@@ -122,7 +122,7 @@ def test_a_card_is_seen_as_what_it_is(scene: Make, contents: Contents) -> None:
 def test_the_marker_card_is_read(scene: Make, size: tuple[int, int]) -> None:
     pose = truth((0.0, 0.0, 1.0), roll=10.0)
     picture = scene(Contents()).render_camera(1.0, pose, *size, WHITE, marked=True)
-    (marker,) = Detector(VisionSettings(markers="4x4_50")).look(picture).markers
+    (marker,) = Detector(VisionSettings(markers="4x4_50")).search(picture).markers
     assert marker.number == MARKER_CARD
     assert sum(marker.corners[0::2]) / 4 == pytest.approx(0.5, abs=0.02)
     assert sum(marker.corners[1::2]) / 4 == pytest.approx(0.5, abs=0.02)
