@@ -39,7 +39,7 @@ def _measure(contents: Contents) -> dict[str, float]:
             began = time.perf_counter()
             picture, depth, eye = scene.draw_camera(now, _swimming(now), *_SIZE)
             drawn = time.perf_counter()
-            scene.look(picture, depth, eye, now)
+            scene.apply_water(picture, depth, eye, now)
             rendering.append(drawn - began)
             looking.append(time.perf_counter() - drawn)
     return {"render": 1000 * median(rendering[_WARM:]), "look": 1000 * median(looking[_WARM:])}

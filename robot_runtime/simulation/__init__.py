@@ -1,1 +1,1 @@
-"""The simulated water: a rigid body with four fins, what its sensors feel, and the process that swims it."""
+"""The simulation: a rigid body with four fins in water, its sensors, the emulated board and the scene."""

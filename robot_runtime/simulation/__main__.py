@@ -1,6 +1,6 @@
-"""`python -m robot_runtime.simulation`: the water.
+"""`python -m robot_runtime.simulation` simulates the water.
 
-Around an emulated board (`--board SOCKET`), or around a robot anywhere whose hardware is in the loop
+For an emulated board (`--board SOCKET`), or for a robot with hardware in the loop, on any computer
 (`--in-the-loop --connect ENDPOINT`).
 """
 
@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 
 
 def main() -> None:
-    """Swim until SIGTERM or SIGINT."""
+    """Runs until SIGTERM or SIGINT."""
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s simulation: %(message)s")
     if arguments.with_parent:
@@ -50,17 +50,17 @@ def _parser() -> argparse.ArgumentParser:
     place = parser.add_mutually_exclusive_group(required=True)
     place.add_argument("--board", type=Path, help="the emulated board's Unix socket")
     place.add_argument(
-        "--in-the-loop", action="store_true", help="the board, real or emulated, has no other sensors"
+        "--in-the-loop", action="store_true", help="simulate the sensors of a board in the loop"
     )
     parser.add_argument(
         "--connect",
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint to publish to; may repeat",
+        help="Zenoh endpoint of the robot; may repeat",
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
-    parser.add_argument("--seed", type=int, default=1, help="of the sensors' noise")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the sensors' noise")
     add_server_options(parser)
     return parser
 

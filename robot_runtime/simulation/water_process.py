@@ -16,9 +16,9 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 log = logging.getLogger(__name__)
 
 RETRY = 0.2
-"""s between two attempts to reach the board."""
+"""s between two attempts to connect to the board."""
 PATIENCE = 0.1
-"""s for which a silent board is waited for before looking whether to end."""
+"""s of waiting for a silent board between two checks for the end."""
 
 
 class WaterProcess:
@@ -34,13 +34,13 @@ class WaterProcess:
         self._attached: bool | None = None
 
     def run(self) -> None:
-        """Swim until `end` is called, through any number of boards."""
+        """Simulates until `end` is called, with one board after another."""
         while not self._ending:
             try:
                 with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as line:
                     line.settimeout(PATIENCE)
                     line.connect(str(self._board))
-                    self._attend(line)
+                    self._serve_board(line)
             except (OSError, BoardLineError) as problem:
                 if self._attached is not False:
                     log.warning("no board at %s (%s); trying again until there is one", self._board, problem)
@@ -51,15 +51,15 @@ class WaterProcess:
         """Makes `run` return soon; may be called from a signal handler or any thread."""
         self._ending = True
 
-    def _attend(self, line: socket.socket) -> None:
+    def _serve_board(self, line: socket.socket) -> None:
         line.sendall(f"attach {PERIOD}\n".encode())
         broken: frozenset[str] = frozenset()
         for text in self._lines(line):
             if text.startswith("error"):
-                log.warning("the board says: %s", text)
+                log.warning("the board reports: %s", text)
                 continue
             if text == "ok":
-                # To a fault that it was told of.
+                # The answer to a fault.
                 continue
             reading = self._simulator.advance(PERIOD, read_fins(text))
             now = self._clock.now()
@@ -87,14 +87,14 @@ class WaterProcess:
             return
         self._truth_due += TRUTH_PERIOD
         if self._truth_due <= now:
-            # The board was away: what nobody swam need not be told of.
+            # The board was away, so that there is nothing to publish for that time.
             self._truth_due = now + TRUTH_PERIOD
         self._outbox.add_row("truth", now, self._simulator.truth().to_bytes())
         self._outbox.flush()
 
 
 def _faults(known: frozenset[str], failing: frozenset[str]) -> str:
-    """The lines that let the board's devices fail, or answer again; `known` are those that fail by now."""
+    """Returns the commands that make devices fail or answer again; `known` are those that fail already."""
     absent = [f"fault {device} absent\n" for device in sorted(failing - known)]
-    mended = [f"fault {device} none\n" for device in sorted(known - failing)]
-    return "".join(absent + mended)
+    repaired = [f"fault {device} none\n" for device in sorted(known - failing)]
+    return "".join(absent + repaired)

@@ -227,5 +227,5 @@ def test_clean_ends_it_all_and_the_counts_stay(rig: Rig) -> None:
 )
 def test_what_makes_no_sense_is_refused(rig: Rig, command: str) -> None:
     with pytest.raises(BoardError, match=r"^(line|seed) takes "):
-        rig.board.order(command)
+        rig.board.command(command)
     assert say(rig, data(20)) == data(20)

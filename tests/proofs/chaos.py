@@ -178,9 +178,9 @@ class Storm:
 
     def _line(self, wrong: str, seconds: float, right: str) -> None:
         with suppress(BoardError), EmulatorClient(self._world.folder.board_socket) as board:
-            board.order(wrong)
+            board.command(wrong)
             time.sleep(seconds)
-            board.order(right)
+            board.command(right)
 
     def _jump(self) -> str:
         self.report.done["clock jumped"] += 1

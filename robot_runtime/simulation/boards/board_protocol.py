@@ -1,6 +1,6 @@
-"""The lines of text between the water and the emulated board, without any socket.
+"""The text protocol between the water and the emulated board, without I/O.
 
-The board tells of its fins, `fins TIME A0..A3 S0..S3 D0..D3 POWER LED`, and waits to be answered with
+The board sends its fins, `fins TIME A0..A3 S0..S3 D0..D3 POWER LED`, and waits for the answer
 `sense PRESSURE TEMPERATURE FX FY FZ P Q R BEACON_RIGHT BEACON_LEFT BATTERY E0 E1 E2 E3`.
 """
 
@@ -13,7 +13,7 @@ from robot_runtime.simulation.water.simulator import FinMotion
 LINE_BYTES_MAX = 1024
 FIN_NUMBERS = 15
 SWING_MAX = 1000.0
-"""rad and rad/s beyond which no fin can be or turn; such numbers would break the physics."""
+"""Largest angle, rad, and speed, rad/s, of a fin; larger numbers would break the physics."""
 
 
 class BoardLineError(ValueError):
@@ -27,7 +27,7 @@ class LineBuffer:
         self._rest = b""
 
     def feed(self, data: bytes) -> Iterator[str]:
-        """The lines that `data` completes, without their ends. Raises LineError on one that never ends."""
+        """Yields the lines that `data` completes, without line ends. Raises BoardLineError on a long line."""
         *whole, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > LINE_BYTES_MAX:
             raise BoardLineError(f"a line of more than {LINE_BYTES_MAX} bytes")
@@ -36,7 +36,7 @@ class LineBuffer:
 
 
 def read_fins(line: str) -> FinMotion:
-    """The fins of a `fins` line. Raises LineError where it is none."""
+    """Returns the fins of a `fins` line. Raises BoardLineError if it is invalid."""
     word, *texts = line.split()
     if word != "fins" or len(texts) != FIN_NUMBERS:
         raise BoardLineError(f"{line!r} is not `fins` and {FIN_NUMBERS} numbers")
@@ -45,13 +45,13 @@ def read_fins(line: str) -> FinMotion:
     except ValueError as problem:
         raise BoardLineError(f"{line!r}: {problem}") from problem
     if not all(map(isfinite, numbers)) or max(map(abs, numbers[1:9])) > SWING_MAX:
-        raise BoardLineError(f"{line!r} tells of fins that cannot be")
+        raise BoardLineError(f"{line!r} has impossible fins: angle or speed beyond {SWING_MAX:g}")
     _, a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power, _ = numbers
     return FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
 
 
 def write_sense(reading: Reading) -> str:
-    """The answer to a `fins` line, with its end."""
+    """Returns the answer to a `fins` line, with its line end."""
     numbers = (*reading.force, *reading.rate)
     motion = " ".join(f"{number:.6f}" for number in numbers)
     encoders = " ".join(f"{error:.5f}" for error in reading.encoders)

@@ -1,4 +1,4 @@
-"""The emulated board, paused, stepped by its socket with a host at its serial port."""
+"""The emulated board, paused and stepped through its socket, with a host at its serial port."""
 
 import os
 import tempfile
@@ -18,13 +18,14 @@ from robot_runtime.simulation.boards.emulator_process import (
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
 
 PATIENCE = 60.0
-"""s of real time for what the operating system does between two processes, on a busy computer."""
+"""s of real time for bytes to pass between two processes, on a busy computer."""
 
 
 class PausedPort:
-    """The port at `tty`, opened at this speed, and the board's power switched off and on then.
+    """The serial port of a paused board, in step with it: no emulated time passes while bytes are in transit.
 
-    So what the board did before makes no difference, but for its memories. Raises BoardError and PortError.
+    So a run gives the same bytes every time. Construction opens `tty` at this speed and power-cycles the
+    board. Raises BoardError and PortError.
     """
 
     def __init__(self, board: EmulatorClient, tty: Path, baud: int) -> None:
@@ -40,7 +41,7 @@ class PausedPort:
             raise
 
     def close(self) -> None:
-        """Close the port."""
+        """Closes the port."""
         self._port.close()
 
     def count(self, counter: str) -> int:
@@ -48,13 +49,13 @@ class PausedPort:
         return int(self._board.stats()[counter])
 
     def write(self, data: bytes) -> None:
-        """Hand these bytes to the board."""
+        """Sends these bytes, and returns when the board has them."""
         self._port.write(data)
         self.written += len(data)
         self._wait_for(lambda: self.count("bytes_from_host") == self.written)
 
     def receive(self) -> bytes:
-        """All that the board has handed over since the last time."""
+        """Returns all bytes that the board has sent since the last call."""
         given, data = self.count("bytes_to_host"), b""
 
         def complete() -> bool:
@@ -76,7 +77,7 @@ class PausedPort:
 
 
 class EmulatedBoard(SteppedBoard):
-    """The program `elf` on the emulated chip. Raises BoardError and PortError where that cannot be."""
+    """The program `elf` on the emulated chip. Raises BoardError and PortError."""
 
     def __init__(self, program: Path, elf: Path, water: Water) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mucat-")
@@ -112,14 +113,14 @@ class EmulatedBoard(SteppedBoard):
 
     def line(self, command: str) -> None:
         """Sets a fault of the line by a command such as `line to_board cut on`."""
-        self._board.order(command)
+        self._board.command(command)
 
     def seed_line(self, seed: int) -> None:
         """Seeds the faults of the line."""
         self._board.seed_line(seed)
 
     def reset(self) -> None:
-        """Pull the reset pin."""
+        """Pulls the reset pin."""
         self._board.reset()
 
     def close(self) -> None:

@@ -36,14 +36,14 @@ STILL_WATER = Reading(
 
 
 class BoardError(Exception):
-    """The board did not start, went away, or refused a command; the text says why."""
+    """The board did not start, has ended, or refused a command; the text says why."""
 
 
 class EmulatorClient:
-    """A connection to the board's socket. Where it is the water, it answers the board's `fins` lines."""
+    """A connection to the board's socket. After `attach` it answers the board's `fins` lines."""
 
     def __init__(self, path: Path) -> None:
-        """Connect. Raises BoardError where no board answers at `path`."""
+        """Connects. Raises BoardError if no board answers at `path`."""
         self._water: Water | None = None
         self._lines = LineBuffer()
         self._pending: list[str] = []
@@ -62,31 +62,31 @@ class EmulatorClient:
         self.close()
 
     def close(self) -> None:
-        """Disconnect; the board runs on with the last values."""
+        """Disconnects; the board continues with the last values."""
         self._socket.close()
 
     def attach(self, period: float, water: Water) -> None:
-        """Be the water: while an answer is awaited, `water` is asked every `period` (s of emulated time).
+        """Becomes the water: while it waits for an answer, `water` is called every `period` (emulated s).
 
-        Raises BoardError where another connection is the water, or no board can keep such a period.
+        Raises BoardError if another connection is the water, or the period is impossible.
         """
         self._water = water
-        self._insist(f"attach {period!r}")
+        self._send_checked(f"attach {period!r}")
 
     def sense(self, reading: Reading) -> None:
         """Sets the quantities that the sensors measure from now on.
 
-        Raises BoardError on values that cannot be, or where another connection is the water.
+        Raises BoardError on impossible values, or if another connection is the water.
         """
-        self._insist(write_sense(reading).strip())
+        self._send_checked(write_sense(reading).strip())
 
     def fins(self) -> FinMotion:
-        """The fins as they are now."""
-        return read_fins(f"fins {self._look()}")
+        """Returns the present motion of the fins."""
+        return read_fins(f"fins {self._query_fins()}")
 
     def led(self) -> bool:
         """Returns True if the LED is on."""
-        return self._look().endswith(" 1")
+        return self._query_fins().endswith(" 1")
 
     def run(self, seconds: float) -> float:
         """Advances a paused board in emulated time, as fast as possible; returns its time (s)."""
@@ -94,58 +94,58 @@ class EmulatorClient:
         return float(self._answer("ok"))
 
     def stats(self) -> dict[str, float]:
-        """The board's counters, by name."""
+        """Returns the board's counters, by name."""
         self._send("stats")
         pairs = (pair.split("=") for pair in self._answer("stats").split())
         return {name: float(value) for name, value in pairs}
 
     def fault(self, device: str, kind: FaultKind) -> None:
         """Sets or clears the fault of a device (imu, pressure, encoder0-3, bridge0-3). Raises BoardError."""
-        self.order(f"fault {device} {kind}")
+        self.command(f"fault {device} {kind}")
 
     def disturb_line(self, direction: LineDirection, kind: LineFault, rate: float) -> None:
         """Sets the probability of a fault for each bit (bit_errors) or character. Raises BoardError."""
-        self.order(f"line {direction} {kind} {rate!r}")
+        self.command(f"line {direction} {kind} {rate!r}")
 
     def burst_line(self, direction: LineDirection, rate: float, bits: float) -> None:
         """Sets the probability that a burst begins at a bit; half of the bits in a burst are wrong."""
-        self.order(f"line {direction} burst {rate!r} {bits!r}")
+        self.command(f"line {direction} burst {rate!r} {bits!r}")
 
     def stall_line(self, direction: LineDirection, seconds: float) -> None:
         """Delays sent bytes by this much emulated time; nothing gets lost."""
-        self.order(f"line {direction} stall {seconds!r}")
+        self.command(f"line {direction} stall {seconds!r}")
 
     def cut_line(self, direction: LineDirection, cut: bool) -> None:
         """Cuts the wire, or restores it."""
-        self.order(f"line {direction} cut {'on' if cut else 'off'}")
+        self.command(f"line {direction} cut {'on' if cut else 'off'}")
 
     def clean_line(self, direction: LineDirection) -> None:
         """Removes all faults of this direction."""
-        self.order(f"line {direction} clean")
+        self.command(f"line {direction} clean")
 
     def seed_line(self, seed: int) -> None:
         """Seeds the faults of the line from now on."""
-        self.order(f"seed {seed}")
+        self.command(f"seed {seed}")
 
     def reset(self) -> None:
-        """Pull the reset pin."""
-        self.order("reset")
+        """Pulls the reset pin."""
+        self.command("reset")
 
     def power(self) -> None:
-        """Take the power away and give it back: it begins anew, but for flash memory and EEPROM."""
-        self.order("power")
+        """Switches the power off and on; flash memory and EEPROM keep their contents."""
+        self.command("power")
 
     def load(self, elf: Path) -> None:
-        """Upload another program and reset. Raises BoardError where it is none."""
-        self.order(f"load {elf}")
+        """Uploads another program and resets the board. Raises BoardError if it is invalid."""
+        self.command(f"load {elf}")
 
-    def order(self, command: str) -> None:
-        """Any command that is answered with a plain `ok`. Raises BoardError where it is refused."""
+    def command(self, command: str) -> None:
+        """Sends a command that is answered with a plain `ok`. Raises BoardError if it is refused."""
         self._send(command)
         self._answer("ok")
 
-    def _insist(self, command: str) -> None:
-        # The board answers this command only where it refuses it, and always before it answers the next one.
+    def _send_checked(self, command: str) -> None:
+        # The board answers this command only to refuse it, and always before it answers the next one.
         self._send(command)
         self._send("stats")
         try:
@@ -154,7 +154,7 @@ class EmulatorClient:
             self._answer("stats")
             raise
 
-    def _look(self) -> str:
+    def _query_fins(self) -> str:
         self._send("fins")
         return self._answer("ok")
 
@@ -162,7 +162,7 @@ class EmulatorClient:
         try:
             self._socket.sendall(line.encode() + b"\n")
         except OSError as problem:
-            raise BoardError(f"the emulated board has gone: {problem}") from problem
+            raise BoardError(f"the emulated board has ended: {problem}") from problem
 
     def _answer(self, expected: str) -> str:
         while True:
@@ -190,12 +190,12 @@ class EmulatorClient:
 
 
 class EmulatorProcess:
-    """The board's program; ends with the `with` statement. `tty` and `socket` are the paths that it makes."""
+    """The emulator's process; ends with the `with` statement. It creates the paths `tty` and `socket`."""
 
     def __init__(self, program: Path, elf: Path | None, tty: Path, socket: Path, *options: str) -> None:
-        """Start it and wait until it is ready. Raises BoardError, with the program's own words.
+        """Starts it and waits until it is ready. Raises BoardError with the emulator's own message.
 
-        Without an `elf` its flash memory is empty but for the boot loader that `options` must name.
+        Without an `elf` the flash memory holds only the boot loader, which `options` must name.
         """
         self.tty = tty
         self.socket = socket
@@ -210,7 +210,7 @@ class EmulatorProcess:
             raise BoardError(f"cannot start {program}: {problem}; `make firmware` builds it") from problem
         if self._first_line() != b"ready\n":
             self.stop()
-            raise BoardError(self._said or "the emulated board ended without a word")
+            raise BoardError(self._output or "the emulated board ended without a message")
 
     def __enter__(self) -> Self:
         return self
@@ -219,11 +219,11 @@ class EmulatorProcess:
         self.stop()
 
     def connect(self) -> EmulatorClient:
-        """A new connection to its socket."""
+        """Opens a new connection to its socket."""
         return EmulatorClient(self.socket)
 
     def stop(self) -> int:
-        """End it as a signal would, wait, and return its exit status."""
+        """Ends the process by SIGTERM and returns its exit status."""
         if self.process.poll() is None:
             self.process.terminate()
         status = self.process.wait(START_TIMEOUT)
@@ -231,11 +231,11 @@ class EmulatorProcess:
             self.process.stdout.close()
         if not self._errors.closed:
             self._errors.seek(0)
-            self._said = self._errors.read().decode(errors="replace").strip()
+            self._output = self._errors.read().decode(errors="replace").strip()
             self._errors.close()
         return status
 
-    _said = ""
+    _output = ""
 
     def _first_line(self) -> bytes:
         output = self.process.stdout

@@ -1,8 +1,7 @@
-"""The robot's firmware for one speed of the serial line: where it lies, and how it is built.
+"""The robot's firmware for one speed of the serial line: its path and its build.
 
-The speed is compiled in. Each has a folder of its own, so that none is ever taken for another's; that of the
-default lies at the top. `python -m robot_runtime.simulation.boards.firmware` builds what
-`robot.toml` asks for.
+The speed is compiled in, so that each speed has its own folder; that of the default is the top one.
+`python -m robot_runtime.simulation.boards.firmware` builds the firmware for `robot.toml`.
 """
 
 import argparse
@@ -23,10 +22,10 @@ class FirmwareBuildError(Exception):
 
 
 def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> Path:
-    """The robot's firmware for this many bit/s; the suffix is ".elf" (emulated board) or ".hex" (upload).
+    """Returns the path of the firmware for this many bit/s; `suffix` is ".elf" (emulated) or ".hex" (upload).
 
-    `build` is the folder of everything built, `hil` asks for that of a board in the loop. The file need not
-    be there yet.
+    `build` is the folder of all products, `hil` selects the firmware of a board in the loop. The file need
+    not exist.
     """
     folder = build / "firmware"
     if baud != LinkConfig().baud:
@@ -35,9 +34,9 @@ def firmware_path(build: Path, baud: int, suffix: str, *, hil: bool = False) -> 
 
 
 def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
-    """Bring the firmware for this many bit/s up to date. Raises BuildError where that is not possible.
+    """Builds the firmware for this many bit/s if it is out of date. Raises FirmwareBuildError.
 
-    A computer without the compiler takes what is there.
+    Without a compiler an existing file is used as it is.
     """
     product = firmware_path(build, baud, ".elf", hil=hil)
     if shutil.which("make") is None or shutil.which("avr-gcc") is None:
@@ -56,13 +55,13 @@ def build_firmware(build: Path, baud: int, *, hil: bool = False) -> None:
 
 
 def main() -> int:
-    """Exit status: 0 once the firmware is there, 1 where the configuration or the compiler is in the way."""
+    """Builds the configured firmware. Returns 0, or 1 if the configuration or the build has errors."""
     parser = argparse.ArgumentParser(
         prog="python -m robot_runtime.simulation.boards.firmware", description=__doc__
     )
     parser.add_argument("--config", type=Path, default=Path("robot.toml"), help="the robot's configuration")
     parser.add_argument(
-        "--build", type=Path, default=_SOURCES.parent / "build", help="folder of the products"
+        "--build", type=Path, default=_SOURCES.parent / "build", help="folder of all products"
     )
     options = parser.parse_args()
     try:

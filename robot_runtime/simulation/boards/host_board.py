@@ -16,7 +16,7 @@ _DIRECTIONS = {"to_board": 0, "from_board": 1}
 _STALL_MAX = 3600.0
 _DOUBLES = POINTER(c_double)
 
-# Each name's result, then its arguments.
+# Result, then arguments of each function.
 _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "board_create": (c_void_p,),
     "board_destroy": (None, c_void_p),
@@ -33,9 +33,9 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
 
 
 class HostBoard(SteppedBoard):
-    """The board in the shared library `path`. What its firmware computes takes none of its time.
+    """The board in the shared library `path`. Computing takes none of its simulated time.
 
-    Raises BoardError where the library is not there.
+    Raises BoardError if the library cannot be loaded.
     """
 
     def __init__(self, path: Path, water: Water) -> None:
@@ -95,7 +95,7 @@ class HostBoard(SteppedBoard):
         self._library.board_seed(self._board, seed)
 
     def reset(self) -> None:
-        """Pull the reset pin."""
+        """Pulls the reset pin."""
         self._library.board_reset(self._board)
 
     def close(self) -> None:
@@ -116,4 +116,4 @@ class HostBoard(SteppedBoard):
             *reading.encoders,
         )
         if not self._library.board_sense(self._board, numbers):
-            raise BoardError(f"the board refused what its sensors were to feel: {reading}")
+            raise BoardError(f"the board refused this reading of its sensors: {reading}")

@@ -10,19 +10,19 @@ PERIOD = 0.005
 
 
 class SteppedBoard(ABC):
-    """The robot's firmware on a board just powered; ends with the `with` statement.
+    """The robot's firmware on a board after power-on; ends with the `with` statement.
 
-    At the end of each `PERIOD` the water is told of the fins and says what the sensors feel.
+    At the end of each `PERIOD` the water gets the fins and returns the sensors' reading.
     """
 
     firmware: bytes
-    """The file that holds the program."""
+    """Contents of the program's file."""
 
     @abstractmethod
     def run(self, periods: int) -> bytes:
         """Advances by this many `PERIOD`s; returns the bytes for the host, in order.
 
-        Raises BoardError where the board goes away.
+        Raises BoardError if the board ends.
         """
 
     @abstractmethod
@@ -43,7 +43,7 @@ class SteppedBoard(ABC):
 
     @abstractmethod
     def reset(self) -> None:
-        """Pull the reset pin."""
+        """Pulls the reset pin."""
 
     @abstractmethod
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""`python -m robot_runtime.simulation.scene`: what there is to see in the simulated water."""
+"""`python -m robot_runtime.simulation.scene` renders the underwater scene of a simulated robot."""
 
 import argparse
 import logging
@@ -12,10 +12,10 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport, join
 
 
 def main() -> None:
-    """Render until SIGTERM or SIGINT."""
+    """Runs until SIGTERM or SIGINT."""
     arguments = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(levelname)s scene: %(message)s")
-    # It tells of modules that are not needed.
+    # It logs modules that are not needed.
     logging.getLogger("OpenGL").setLevel(logging.WARNING)
     if arguments.with_parent:
         end_with_parent()
@@ -39,14 +39,14 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint of who looks; may repeat",
+        help="Zenoh endpoint of the robot; may repeat",
     )
     parser.add_argument(
         "--listen",
         action="append",
         default=[],
         metavar="ENDPOINT",
-        help="Zenoh endpoint where the simulator finds the scene; may repeat",
+        help="Zenoh endpoint for the simulator to connect to; may repeat",
     )
     parser.add_argument("--robot", default="turtle", help="the robot's name, part of every Zenoh key")
     parser.add_argument("--client", action="store_true", help="the robot is on another computer")

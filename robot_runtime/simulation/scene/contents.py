@@ -14,7 +14,7 @@ TARGETS_MAX = 16
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """Something of one colour that can be looked for. Raises ValueError on what cannot be."""
+    """A coloured object to search for. Raises ValueError on an unknown colour or a far position."""
 
     colour: str
     """One of `PAINTS`."""
@@ -32,7 +32,7 @@ class Target:
 
     @property
     def paint(self) -> Paint:
-        """Its blue, green and red."""
+        """The target's blue, green and red."""
         return PAINTS[self.colour]
 
 
@@ -41,14 +41,14 @@ class SceneWater:
     """The kind of water and its turbidity."""
 
     kind: Kind | None = None
-    """None: a pool where there are walls, else natural."""
+    """None: a pool if there are walls, otherwise natural."""
     turbidity: Annotated[float, TURBIDITY] = 0.1
-    """0: clear, 1: nothing is seen beyond a hand's breadth."""
+    """0: clear; 1: visibility of 0.1 m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Targets:
-    """All of them. Raises ValueError on too many."""
+    """All targets. Raises ValueError on too many."""
 
     targets: tuple[Target, ...]
 
@@ -65,12 +65,12 @@ START_TARGETS = (
     Target(colour="green", position=(4.2, 0.4, 1.6), size=0.3, shape="box"),
     Target(colour="blue", position=(3.4, 1.4, 0.7), size=0.28),
 )
-"""Chosen: one of each colour, ahead."""
+"""The targets at the start. Chosen: one of each colour, ahead."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contents:
-    """Everything in the scene but the robot. Raises ValueError on what cannot be."""
+    """Everything in the scene except the robot. Raises ValueError on impossible beacons."""
 
     place: SceneWater = SceneWater()
     basin: Basin = START_BASIN

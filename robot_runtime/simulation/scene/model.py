@@ -4,7 +4,7 @@ import os
 from math import cos, pi, sin
 from typing import Any
 
-# Before MuJoCo is imported, which reads it then.
+# MuJoCo reads this when it is imported.
 os.environ.setdefault("MUJOCO_GL", "egl")
 
 import mujoco
@@ -17,23 +17,23 @@ from robot_runtime.simulation.water.parameters import SimulationParameters
 
 WIDTH_MAX, HEIGHT_MAX = 1280, 960
 FIELD_OF_VIEW = 48.8
-"""°, upright. Pi Camera v2 by its data sheet; assumed behind a dome, as a flat window would narrow it."""
+"""°, vertical. Pi Camera v2 by its data sheet; assumed behind a dome, as a flat window would narrow it."""
 NOSE = 0.125
-"""m, of the camera before the centre of mass."""
+"""m from the centre of mass forward to the camera."""
 CARD_DISTANCE = 0.4
 """m from camera to card."""
 CARD = (0.105, 0.148)
 """m, width and height: A6."""
 MARKER_SIDE = 0.8
-"""Of the card's width, that the marker on it takes."""
+"""Width of the marker as a share of the card's."""
 NEAR, FAR = 0.02, 1000.0
-"""m between which things are drawn."""
+"""m, limits of the drawn distances."""
 
 ALWAYS, ROBOT, SURFACE_BELOW, CARD_HELD, MARKER_HELD = range(5)
-"""Groups of things that are drawn or not, depending on who looks and from where."""
+"""Groups of geometry that depend on the viewer and its position."""
 
 PERIOD = 10.0
-"""m after which the natural floor repeats."""
+"""m, period of the natural floor."""
 RELIEF = 0.35
 """m between the highest and the lowest places of the natural floor; the highest is the simulator's floor."""
 RELIEF_SIDE = 49
@@ -44,11 +44,11 @@ TILE_TEXTURE = 1.2
 LINE_WIDTH, LINE_APART = 0.25, 2.5
 """m, of the dark lines on a pool's floor."""
 POOL_MAX = 60.0
-"""m; nothing farther is seen."""
+"""m; nothing farther is visible."""
 SURFACE = 30.0
-"""m of surface to each side of the robot."""
+"""m of surface on each side of the robot."""
 SURFACE_TEXTURE = 1.8
-"""m that one texture of it covers."""
+"""m that one texture of the surface covers."""
 
 _M = mujoco
 _T2D, _TCUBE = _M.mjtTexture.mjTEXTURE_2D, _M.mjtTexture.mjTEXTURE_CUBE
@@ -58,12 +58,12 @@ _MESH, _HFIELD = _M.mjtGeom.mjGEOM_MESH, _M.mjtGeom.mjGEOM_HFIELD
 
 
 def build(contents: Contents, parameters: SimulationParameters) -> Any:
-    """The compiled model (MjModel) of this scene with the robot in it."""
+    """Returns the compiled model (MjModel) of this scene with the robot in it."""
     spec = mujoco.MjSpec()
     spec.stat.extent = 1.0
     spec.visual.map.znear, spec.visual.map.zfar = NEAR, FAR
     spec.visual.global_.offwidth, spec.visual.global_.offheight = WIDTH_MAX, HEIGHT_MAX
-    # Several samples a pixel take a CPU three times as long; the look's lens smooths edges instead.
+    # Several samples a pixel take a CPU three times as long; the blur of the optics smooths edges instead.
     spec.visual.quality.offsamples = 0
     spec.visual.quality.shadowsize = 16
     spec.visual.quality.numslices, spec.visual.quality.numstacks = 24, 16
@@ -82,13 +82,13 @@ def build(contents: Contents, parameters: SimulationParameters) -> Any:
     )
     _surface(spec, contents)
     (_pool if contents.kind == "pool" else _natural)(spec, contents)
-    _things(spec, contents)
+    _targets_and_beacons(spec, contents)
     _robot(spec, parameters)
     return spec.compile()
 
 
 def _texture(spec: Any, name: str, pixels: textures.Texture, repeat: float = 1.0, **more: Any) -> str:
-    """A material of this name, whose texture covers `repeat` times each m, or the whole thing once."""
+    """Adds a material with this texture, `repeat` times per m, or once over the whole object."""
     kind = more.pop("type", _T2D)
     texture = spec.add_texture(name=name, type=kind, nchannel=pixels.shape[2])
     texture.width, texture.height = pixels.shape[1], pixels.shape[0]
@@ -104,7 +104,7 @@ def _surface(spec: Any, contents: Contents) -> None:
     glow = (round(red), round(green), round(blue))
     below = _texture(spec, "below", textures.surface_below(glow), 1 / SURFACE_TEXTURE, emission=0.9)
     body = spec.worldbody.add_body(name="surface", mocap=True)
-    # Turned over: a plane is seen from where its z axis points.
+    # Turned over, because a plane is visible from the side of its z axis.
     body.add_geom(
         type=_PLANE, size=[SURFACE, SURFACE, 1], quat=[0, 1, 0, 0], material=below, group=SURFACE_BELOW
     )
@@ -119,7 +119,7 @@ def _pool(spec: Any, contents: Contents) -> None:
     world.add_geom(type=_PLANE, size=[north, west, 1], pos=[0, 0, -depth], material=tiles)
     high = depth / 2
     for sign in (1, -1):
-        # A plane's front is where its z axis points: inwards. Its y axis is the wall's height.
+        # The z axis, a plane's visible side, points inwards; the y axis is the wall's height.
         world.add_geom(
             type=_PLANE, size=[west, high, 1], pos=[sign * north, 0, -high], material=tiles,
             quat=_axes((0, -sign, 0), (0, 0, 1)),
@@ -173,7 +173,7 @@ def _natural(spec: Any, contents: Contents) -> None:
         x, y = rng.uniform(-PERIOD / 2, PERIOD / 2, 2)
         turn, shade = rng.uniform(0, 2 * pi), rng.uniform(0.8, 1.2)
         rgba = [shade, shade, shade, 1] if stone else [0.24 * shade, 0.23 * shade, 0.2 * shade, 1]
-        for north, west in _repeated():
+        for north, west in ((x, y) for x in (-PERIOD, 0.0) for y in (-PERIOD, 0.0)):
             ground.add_geom(
                 type=_MESH,
                 meshname=f"{'stone' if stone else 'plant'}{number % shapes.KINDS}",
@@ -184,7 +184,7 @@ def _natural(spec: Any, contents: Contents) -> None:
             )
 
 
-def _things(spec: Any, contents: Contents) -> None:
+def _targets_and_beacons(spec: Any, contents: Contents) -> None:
     floor = -contents.basin.depth
     line = [0.25, 0.27, 0.28, 1]
     for target in contents.targets:
@@ -230,7 +230,7 @@ def _robot(spec: Any, parameters: SimulationParameters) -> None:
         name="card", type=_BOX, size=[0.001, CARD[0] / 2, CARD[1] / 2],
         pos=[NOSE + CARD_DISTANCE, 0, 0], group=CARD_HELD,
     )  # fmt: skip
-    # A texture lies across a box's z axis, which points to the camera here.
+    # A texture lies across a box's z axis, which points to the camera.
     marker = _texture(spec, "marker", textures.marker())
     half = MARKER_SIDE * CARD[0] / 2
     robot.add_geom(
@@ -240,7 +240,7 @@ def _robot(spec: Any, parameters: SimulationParameters) -> None:
     places = zip(parameters.fin_positions, parameters.fin_directions, strict=True)
     for number, ((forward, right), (along, across)) in enumerate(places):
         body = robot.add_body(pos=[forward, -right, 0], quat=_axes((along, -across, 0), (across, along, 0)))
-        # Across the blade, so that its tip goes down where the angle grows.
+        # Across the blade, so that its tip goes down with a growing angle.
         body.add_joint(name=f"fin{number}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
         body.add_geom(type=_ELLIPSOID, size=[0.054, 0.023, 0.004], pos=[0.042, 0, 0], rgba=fin, group=ROBOT)
         body.add_geom(type=_BALL, size=[0.011, 0, 0], rgba=dark, group=ROBOT)
@@ -258,12 +258,8 @@ def _rope(spec: Any, north: float, east: float, down: float, floor: float, rgba:
         )
 
 
-def _repeated() -> list[tuple[float, float]]:
-    return [(x, y) for x in (-PERIOD, 0.0) for y in (-PERIOD, 0.0)]
-
-
 def _axes(x: tuple[float, float, float], y: tuple[float, float, float]) -> list[float]:
-    """The quaternion of a frame with these x and y axes."""
+    """Returns the quaternion of a frame with these x and y axes."""
     quaternion = np.empty(4)
     frame = np.column_stack((x, y, np.cross(x, y))).astype(float)
     mujoco.mju_mat2Quat(quaternion, frame.ravel())

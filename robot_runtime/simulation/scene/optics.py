@@ -19,35 +19,35 @@ Floats = NDArray[np.float32]
 CAUSTICS_SIZE = 1.1
 """m that one caustic texture covers."""
 CAUSTICS_DRIFT = (0.11, 0.07), (-0.09, 0.10)
-"""m/s north and east of two such textures; where both are bright, it is."""
+"""m/s north and east of two such textures; light is the lower of the two."""
 CAUSTICS_DEPTH = 3.0
-"""m of depth over which they fade to a third."""
+"""m of depth over which caustics fade to 1/e."""
 CAUSTICS_DISTANCE = 6.0
-"""m from the camera over which they fade likewise."""
+"""m from the camera over which they fade to 1/e."""
 CAUSTICS_FAR = 15.0
-"""m beyond which none are drawn."""
+"""m from the camera beyond which they do not change."""
 CAUSTICS_BEGIN = 0.3
 """m of depth at which they are strongest."""
 SUN = (0.25, -0.2)
-"""m north and east that sunlight goes for each m down."""
+"""m north and east of the sunlight's path per m down."""
 UPWARDS = 0.35
-"""Share by which the water's own light grows straight up and fades straight down."""
+"""Share by which the water's own light is brighter straight up and darker straight down."""
 SKY = 246.0
-"""Of each colour, through the surface."""
+"""Brightness of the sky through the surface, 0 to 255, of each colour."""
 SNELL, SNELL_RIM = 0.661, 0.05
-"""Sine of the elevation above which one sees through the surface; the critical angle is 48.6°."""
+"""Sine of the elevation above which the surface is transparent, and its edge; critical angle 48.6°."""
 SURFACE_NEAR = 0.05
-"""m from still water within which what is seen is the surface."""
+"""m from still water within which a visible point belongs to the surface."""
 NOISE_SHIFT = 64
-"""Pixels by which the sheet of noise is larger than the picture."""
+"""Pixels by which the array of noise is larger than the picture."""
 LENS = 0.6
-"""Pixels, standard deviation of the spot that a lens makes of a point. Assumed."""
+"""Pixels, standard deviation of the lens's point spread function. Assumed."""
 BLUR = 5
-"""Pixels of half the picture's size over which scattered light spreads."""
+"""Pixels of the half-size picture over which scattered light spreads."""
 
 
 class UnderwaterOptics:
-    """For pictures of `width` × `height` pixels with this upright field of view (°)."""
+    """Applies the optics to pictures of `width` × `height` pixels with this vertical field of view (°)."""
 
     def __init__(self, width: int, height: int, field_of_view: float) -> None:
         self._size = (width, height)
@@ -73,11 +73,10 @@ class UnderwaterOptics:
         time: float,
         noise: float,
     ) -> Picture:
-        """The picture as it is seen through water; blue, green, red.
+        """Returns the picture as seen through water, uint8 of shape (height, width, 3), blue, green, red.
 
-        `depth` (m) is along the camera's axis. `position` (m) and `axes`, which turn forward, right, down of
-        the camera into the world, say where the camera is and where it looks. `noise` is the standard
-        deviation of a byte.
+        `depth` (m) is measured along the camera's axis. `position` (m) and `axes`, from forward, right, down
+        to world axes, are the camera's pose. `noise` is the standard deviation of a byte.
         """
         light = self._light(depth, water, position, axes, time)
         up = self._up(axes)
@@ -95,7 +94,7 @@ class UnderwaterOptics:
             plane *= transmission
             plane += behind
             planes.append(plane)
-        # The lens, which also takes the steps from slanting edges.
+        # The lens's blur also smooths the steps of slanting edges.
         lens = cv2.GaussianBlur(cv2.convertScaleAbs(cv2.merge(planes)), (3, 3), LENS)
         sharp = _floats(cv2.exp(distance * np.float32(-water.scattering)))
         seen = self._blur(_bytes(lens), sharp)
@@ -130,7 +129,7 @@ class UnderwaterOptics:
                     borderMode=cv2.BORDER_WRAP,
                 )
             )  # fmt: skip
-        # None on the surface itself, and less far away, where they are finer than the pixels.
+        # None on the surface, and fewer far away, where they are finer than the pixels.
         np.maximum(below, 0, out=below)
         far *= np.float32(-1 / CAUSTICS_DISTANCE)
         far -= below * np.float32(1 / CAUSTICS_DEPTH)
@@ -140,7 +139,7 @@ class UnderwaterOptics:
         return _floats(cv2.resize(light, self._size, interpolation=cv2.INTER_LINEAR))
 
     def _up(self, axes: Matrix) -> Floats:
-        """The sine of each line of sight's elevation."""
+        """Returns the sine of each pixel's elevation."""
         ahead, aside, under = (np.float32(-part) for part in axes[2])
         up: Floats = _floats(ahead + aside * self._right + under * self._down) / self._stretch
         return up
@@ -159,14 +158,14 @@ class UnderwaterOptics:
         return _bytes(cv2.blendLinear(picture, soft, sharp, 1 - sharp))
 
     def _grain(self, picture: Picture, time: float, noise: float) -> Picture:
-        """Noise of the sensor: a piece of a larger sheet, another one at each time."""
+        """Returns the picture with the sensor's noise: a part of a larger array, another one at each time."""
         width, height = self._size
         x, y = np.random.default_rng(int(time * 1000)).integers(0, NOISE_SHIFT, 2).tolist()
         grain = _sheet(width, height, noise)[y : y + height, x : x + width]
         return _bytes(cv2.add(picture, grain, dtype=cv2.CV_8U))
 
 
-# OpenCV's stubs do not tell what type of numbers an answer has.
+# OpenCV's stubs do not declare the type of the returned numbers.
 def _floats(values: NDArray[Any]) -> Floats:
     return values.astype(np.float32, copy=False)
 

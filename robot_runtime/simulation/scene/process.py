@@ -1,7 +1,7 @@
 """The scene as a process: it receives the robot's position, and renders on request or for viewers.
 
-One thread renders, as OpenGL wants it. MuJoCo is loaded with the first picture: who never asks for one pays
-for nothing.
+One thread renders, as OpenGL requires. MuJoCo is loaded with the first picture, so that it costs nothing
+while none is requested.
 """
 
 import logging
@@ -36,23 +36,23 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-ASK_PERIOD = 1.0
-"""s after which the simulator is asked again what surrounds the robot."""
-ASK_TIMEOUT = 0.3
+QUERY_PERIOD = 1.0
+"""s between two queries of the simulator's surroundings."""
+QUERY_TIMEOUT = 0.3
 ANSWER_TIMEOUT = 15.0
 """s; the first picture waits for MuJoCo and all textures."""
 OBSERVER_PERIOD = 1 / 12
-"""s between two pictures of the bystander's."""
+"""s between two pictures of the observer."""
 OBSERVER_SIZE = (640, 360)
-LOOK_PERIOD = 0.25
-"""s between two looks whether there is a bystander."""
+CHECK_PERIOD = 0.25
+"""s between two checks for viewers of the observer's picture."""
 JPEG_QUALITY = 80
 
 Question = dict[str, Any]
 
 
 class SceneProcess:
-    """Answers and publishes until `end`; `run` must be called in the thread that is to render."""
+    """Answers requests and publishes until `end`; `run` renders in the thread that calls it."""
 
     def __init__(self, messages: ZenohTransport, clock: Clock) -> None:
         self._messages = messages
@@ -65,7 +65,7 @@ class SceneProcess:
         self._scene: SceneRenderer | None = None
         self._problem = missing()
         self._jobs: queue.Queue[tuple[Request, Future[Picture]]] = queue.Queue()
-        self._asked = float("-inf")
+        self._queried = float("-inf")
         self._observe_due = clock.now()
         self._observed: tuple[float, ObserverView] | None = None
         self._observer_number = 0
@@ -78,14 +78,14 @@ class SceneProcess:
             "world": self._set_place,
             "targets": self._set_targets,
             "view": self._set_view,
-            "contents": self._tell_contents,
+            "contents": self._describe_contents,
         }
         for name, handler in handlers.items():
             messages.serve(f"scene/{name}", handler)
         messages.serve_bytes("scene/picture", self._answer_picture)
 
     def run(self) -> None:
-        """Render until `end` is called."""
+        """Renders until `end` is called."""
         try:
             while not self._ending:
                 try:
@@ -108,7 +108,7 @@ class SceneProcess:
         try:
             time, truth = read_rows(read_blocks(data)[-1])[-1]
         except (LayoutError, TypeError, IndexError) as problem:
-            log.warning("a truth was thrown away: %s", problem)
+            log.warning("an invalid truth was dropped: %s", problem)
             return
         if isinstance(truth, Truth):
             self._truth = (time, truth)
@@ -123,8 +123,8 @@ class SceneProcess:
         with self._lock:
             self._contents = replace(self._contents, targets=targets)
 
-    def _tell_contents(self, _: Question) -> Question:
-        """The questions that would make place and targets as they are."""
+    def _describe_contents(self, _: Question) -> Question:
+        """Returns the requests that restore the present place and targets."""
         with self._lock:
             contents = self._contents
         place = {name: value for name, value in asdict(contents.place).items() if value is not None}
@@ -143,12 +143,12 @@ class SceneProcess:
             raise RefusedError(f"the scene takes longer than {ANSWER_TIMEOUT:g} s for a picture") from None
 
     def _render(self, request: Request) -> Picture:
-        """The picture of the newest truth.
+        """Renders the picture of the newest truth.
 
-        Raises RefusedError where there is none, or nothing to render with.
+        Raises RefusedError if there is none, or if nothing can be rendered.
         """
         if self._truth is None:
-            raise RefusedError("the simulator has not told yet where the robot is")
+            raise RefusedError("the simulator has not sent the robot's position yet")
         time, truth = self._truth
         self._card = request.card
         pixels = self._ready_scene().render_camera(
@@ -157,11 +157,11 @@ class SceneProcess:
         return Picture(time, pixels)
 
     def _observe(self) -> float:
-        """Publish what a bystander sees, where there is one and it is time. Returns s until it is again."""
+        """Publishes the observer's picture if it is viewed and due. Returns the s until the next one."""
         now = self._clock.now()
         if now < self._observe_due:
             return self._observe_due - now
-        period = LOOK_PERIOD
+        period = CHECK_PERIOD
         if not self._messages.watched("observer"):
             self._observed = None
         elif self._truth is not None and self._problem is None:
@@ -169,9 +169,9 @@ class SceneProcess:
             try:
                 self._publish_observer(*self._truth)
             except RefusedError as problem:
-                log.warning("a bystander sees nothing: %s", problem)
+                log.warning("no picture for the observer: %s", problem)
         done = self._clock.now()
-        # Where a picture takes long, no more than half of the time goes into those of the bystander's.
+        # Slow rendering of the observer's pictures takes at most half of the time.
         self._observe_due = max(self._observe_due + period, done + (done - now))
         return self._observe_due - done
 
@@ -187,8 +187,8 @@ class SceneProcess:
         self._messages.publish("observer", block.data)
 
     def _ready_scene(self) -> "SceneRenderer":
-        """The scene with everything in it. Raises RefusedError where nothing can be rendered."""
-        self._ask_surroundings()
+        """Returns the renderer with the present contents. Raises RefusedError if nothing can be rendered."""
+        self._query_surroundings()
         if self._problem is not None:
             raise RefusedError(self._problem)
         with self._lock:
@@ -201,12 +201,12 @@ class SceneProcess:
 
     def _make(self, contents: Contents) -> "SceneRenderer":
         try:
-            # Here and not above: this loads MuJoCo and OpenGL.
+            # Imported here, because it loads MuJoCo and OpenGL.
             from robot_runtime.simulation.scene.scene import SceneRenderer
 
             return SceneRenderer(contents, SimulationParameters())
         except Exception as problem:
-            # PyOpenGL and MuJoCo raise ImportError, AttributeError, RuntimeError and others of their own.
+            # PyOpenGL and MuJoCo raise ImportError, AttributeError, RuntimeError and others.
             log.exception("the scene cannot be rendered")
             self._problem = (
                 f"OpenGL does not start ({problem}); "
@@ -214,21 +214,21 @@ class SceneProcess:
             )
             raise RefusedError(self._problem) from problem
 
-    def _ask_surroundings(self) -> None:
-        """Floor, walls and beacons are the simulator's; without an answer they stay as they are."""
+    def _query_surroundings(self) -> None:
+        """Queries floor, walls and beacons from the simulator; without an answer they stay as they are."""
         now = self._clock.now()
-        if now - self._asked < ASK_PERIOD:
+        if now - self._queried < QUERY_PERIOD:
             return
-        self._asked = now
+        self._queried = now
         try:
-            answer = self._messages.query("simulator/surroundings", {}, ASK_TIMEOUT)
+            answer = self._messages.query("simulator/surroundings", {}, QUERY_TIMEOUT)
             basin = parse(Basin, answer["world"])
             beacons = tuple((north, east, down) for north, east, down in answer["beacons"]["positions"])
             check_beacons(beacons)
         except (NoAnswerError, RefusedError):
             return
         except (ConfigError, KeyError, TypeError, ValueError) as problem:
-            log.warning("the simulator's surroundings are not understood: %s", problem)
+            log.warning("the simulator sent invalid surroundings: %s", problem)
             return
         with self._lock:
             self._contents = replace(self._contents, basin=basin, beacons=beacons)

@@ -1,4 +1,4 @@
-"""Renders the pictures of the robot's camera and of an observer from the robot's position."""
+"""The renderer of the pictures of the robot's camera and of an observer."""
 
 from dataclasses import dataclass
 from math import degrees, floor
@@ -25,9 +25,9 @@ from robot_runtime.simulation.water.parameters import SimulationParameters, Vect
 Floats = NDArray[np.float32]
 
 DRIFT = 0.12
-"""m/s at which the surface's ripples pass."""
-OBSERVER_CLEARER = 2.5
-"""Times that a bystander sees farther than the camera: the picture is for a person."""
+"""m/s, speed of the surface's ripples."""
+OBSERVER_VISIBILITY = 2.5
+"""Factor of the observer's visibility over the camera's, because the picture is for people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +41,15 @@ class _Eye:
 
 
 class SceneRenderer:
-    """Renders by MuJoCo, in the thread that makes it, and in no other. Close it.
+    """Renders by MuJoCo, only in the thread that makes it. `close` releases OpenGL.
 
-    The same contents, truth and time give the same pictures. Raises RuntimeError or ImportError where there
-    is no OpenGL to render with.
+    The same contents, truth and time give the same pictures. Raises RuntimeError or ImportError without
+    OpenGL.
     """
 
     def __init__(self, contents: Contents, parameters: SimulationParameters) -> None:
         self._parameters = parameters
-        self._looks: dict[tuple[int, int, float], UnderwaterOptics] = {}
+        self._optics: dict[tuple[int, int, float], UnderwaterOptics] = {}
         self._gl: Any = GLContext(modelling.WIDTH_MAX, modelling.HEIGHT_MAX)
         self._gl.make_current()
         self._context: Any = None
@@ -57,11 +57,11 @@ class SceneRenderer:
         self._nose = mujoco.MjvCamera()
         self._nose.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self.contents = contents
-        """What is in it; change it with `fill`."""
+        """The contents of the scene; `fill` changes them."""
         self.fill(contents)
 
     def fill(self, contents: Contents) -> None:
-        """Have these contents instead."""
+        """Replaces the contents of the scene."""
         if self._context is not None:
             self._context.free()
         self.contents = contents
@@ -90,10 +90,10 @@ class SceneRenderer:
     ) -> Picture:
         """Renders the robot's camera at this time (s), uint8 of shape (height, width, 3); blue, green, red.
 
-        `card` is the paint of the card that is held before it, `marked` whether the marker is printed on it.
+        `card` is the paint of the card before the camera, `marked` is True if the marker is printed on it.
         """
         picture, depth, eye = self.draw_camera(time, truth, width, height, card, marked)
-        return self.look(picture, depth, eye, time)
+        return self.apply_water(picture, depth, eye, time)
 
     def render_observer(
         self,
@@ -109,8 +109,8 @@ class SceneRenderer:
         position, axes = view.eye(truth)
         eye = _Eye(position, axes, _camera(view, truth), self._groups(position, card, modelling.ROBOT))
         picture, depth = self._render(eye, width, height)
-        seen = self._water.clearer(OBSERVER_CLEARER)
-        return self._look(width, height, OBSERVER_VIEW).apply(
+        seen = self._water.with_visibility(OBSERVER_VISIBILITY)
+        return self._optics_for(width, height, OBSERVER_VIEW).apply(
             picture, depth, seen, position, axes, time, noise=0.0
         )
 
@@ -123,7 +123,7 @@ class SceneRenderer:
         card: Paint | None = None,
         marked: bool = False,
     ) -> tuple[Picture, Floats, _Eye]:
-        """The camera's picture without water, the depth (m) of each pixel, and the eye that took it."""
+        """Returns the camera's picture without water, the depth (m) of each pixel, and the point of view."""
         self._pose(time, truth, card)
         axes = rotation(normalize(truth.attitude))
         nose = to_world(axes, (modelling.NOSE, 0.0, 0.0))
@@ -133,15 +133,15 @@ class SceneRenderer:
         eye = _Eye(position, axes, self._nose, self._groups(position, card, *printed))
         return *self._render(eye, width, height), eye
 
-    def look(self, picture: Picture, depth: Floats, eye: _Eye, time: float) -> Picture:
-        """Such a picture as it is through the water."""
+    def apply_water(self, picture: Picture, depth: Floats, eye: _Eye, time: float) -> Picture:
+        """Returns a picture of `draw_camera` as seen through the water."""
         height, width = depth.shape
-        return self._look(width, height, modelling.FIELD_OF_VIEW).apply(
+        return self._optics_for(width, height, modelling.FIELD_OF_VIEW).apply(
             picture, depth, self._water, eye.position, eye.axes, time, NOISE
         )
 
     def close(self) -> None:
-        """Give the memory of OpenGL back."""
+        """Releases the memory of OpenGL."""
         if self._gl is not None:
             self._context.free()
             self._gl.free()
@@ -159,11 +159,11 @@ class SceneRenderer:
     def _water(self) -> WaterOptics:
         return water(self.contents.kind, self.contents.place.turbidity)
 
-    def _look(self, width: int, height: int, field_of_view: float) -> UnderwaterOptics:
+    def _optics_for(self, width: int, height: int, field_of_view: float) -> UnderwaterOptics:
         key = (width, height, field_of_view)
-        if key not in self._looks:
-            self._looks[key] = UnderwaterOptics(*key)
-        return self._looks[key]
+        if key not in self._optics:
+            self._optics[key] = UnderwaterOptics(*key)
+        return self._optics[key]
 
     @staticmethod
     def _groups(eye: Vector, card: Paint | None, *more: int) -> tuple[int, ...]:
@@ -173,7 +173,7 @@ class SceneRenderer:
         return (modelling.ALWAYS, *surface, *held, *more)
 
     def _pose(self, time: float, truth: Truth, card: Paint | None) -> None:
-        """Put everything where it is."""
+        """Sets the pose of the robot and what moves with it."""
         north, east, down = truth.position
         w, x, y, z = truth.attitude
         self._data.qpos[:3] = north, -east, -down
@@ -217,7 +217,7 @@ class SceneRenderer:
 
 
 def _camera(view: ObserverView, truth: Truth) -> Any:
-    """MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
+    """Returns MuJoCo's camera of this view. Its azimuth counts from its x axis towards its y axis, west."""
     azimuth, elevation = view.line_of_sight(truth)
     north, east, down = truth.position
     camera = mujoco.MjvCamera()

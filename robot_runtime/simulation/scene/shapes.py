@@ -1,4 +1,4 @@
-"""Meshes of stones and water plants, made by computing; vertices in m, faces as triples of their numbers."""
+"""Computed meshes of stones and water plants; vertices in m, faces as triples of vertex numbers."""
 
 from math import cos, pi, sin
 
@@ -9,14 +9,14 @@ Vertices = NDArray[np.float64]
 Faces = NDArray[np.int32]
 
 KINDS = 7
-"""Different stones, and different plants; turned they look like many."""
+"""Number of different stones, and of different plants."""
 LEAVES = 7
 JOINTS = 7
 """Pairs of vertices along a leaf."""
 
 
 def stone(seed: int) -> tuple[Vertices, Faces]:
-    """A rounded stone, 7 to 30 cm high; `seed` makes it another one."""
+    """Returns a rounded stone, 7 to 30 cm high; each `seed` gives another one."""
     rng = np.random.default_rng(seed)
     size = 0.07 + 0.22 * (seed / KINDS) ** 2
     around, up = 14, 8
@@ -45,7 +45,7 @@ def stone(seed: int) -> tuple[Vertices, Faces]:
 
 
 def plant(seed: int) -> tuple[Vertices, Faces]:
-    """A tuft of leaves, 20 to 60 cm high; each leaf has two sides."""
+    """Returns a tuft of leaves, 20 to 60 cm high; each leaf has two sides."""
     rng = np.random.default_rng(seed)
     size = 0.22 + 0.4 * seed / KINDS
     vertices: list[tuple[float, float, float]] = []
@@ -67,5 +67,5 @@ def plant(seed: int) -> tuple[Vertices, Faces]:
             faces += [(a, a + 1, a + 2), (a + 2, a + 1, a + 3)]
     flat = size * np.array(vertices)
     front = np.array(faces, np.int32)
-    # The back has vertices of its own, for normals that point its way.
+    # The back has vertices of its own, for its own normals.
     return np.concatenate((flat, flat)), np.concatenate((front, front[:, ::-1] + len(flat)))

@@ -1,7 +1,4 @@
-"""Textures, made by computing: each is uint8 of shape (height, width, 3), red first as OpenGL has it.
-
-All repeat without a seam. The same every time.
-"""
+"""Computed textures, uint8 of shape (height, width, 3), red first as in OpenGL; all repeat without a seam."""
 
 from functools import cache
 
@@ -30,7 +27,7 @@ def tiles() -> Texture:
     for at in range(0, SIDE, size):
         joint[at : at + 3] = joint[:, at : at + 3] = 1.0
     soft = cv2.GaussianBlur(joint, (3, 3), 0)[:, :, np.newaxis]
-    # Dark joints: pale ones are lost among pale tiles.
+    # Dark, because pale joints are invisible between pale tiles.
     return _bytes(plain * (1 - soft) + 0.72 * ground * soft)
 
 
@@ -47,7 +44,7 @@ def sand() -> Texture:
 
 @cache
 def stone() -> Texture:
-    """Dark stone, overgrown in patches."""
+    """Dark stone with patches of growth."""
     light = 1 + 0.22 * _cloud(6, 2.2) + 0.12 * _cloud(7, 1.2)
     growth = np.clip(0.5 + 0.8 * _cloud(8, 3.0), 0, 1)[:, :, np.newaxis]
     paint = np.array((92, 94, 98)) * (1 - growth) + np.array((58, 66, 66)) * growth
@@ -56,7 +53,7 @@ def stone() -> Texture:
 
 @cache
 def surface_below(glow: tuple[int, int, int]) -> Texture:
-    """The water's surface from below: it mirrors the water, broken by bright ripples of the sky."""
+    """The water's surface from below: the colour of the water with bright ripples of the sky."""
     crest = np.clip(1 - np.abs(_ripples(10, 7.0)) * 1.5, 0, 1) ** 2
     patch = np.clip(0.5 + 0.5 * _ripples(12, 3.0), 0, 1)
     light = (0.86 + 0.16 * patch + 0.4 * crest * (0.35 + patch))[:, :, np.newaxis]
@@ -67,7 +64,7 @@ def surface_below(glow: tuple[int, int, int]) -> Texture:
 def caustics() -> Floats:
     """Light on a floor under ripples, about 1 on average, float32 of shape (SIDE, SIDE).
 
-    Rays straight from above are bent by the slope of a random surface, and counted where they arrive.
+    Vertical rays are refracted by the slope of a random surface and counted on the floor.
     """
     height = _ripples(14, 6.0) + 0.35 * _ripples(17, 12.0)
     slope_down, slope_across = np.gradient(np.pad(height, 1, mode="wrap"))
@@ -86,7 +83,7 @@ def caustics() -> Floats:
 
 @cache
 def marker() -> Texture:
-    """The marker on a card, without the white around it."""
+    """The marker on a card, without its white border."""
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
     printed = cv2.aruco.generateImageMarker(dictionary, MARKER_CARD, SIDE)
     return cv2.cvtColor(printed, cv2.COLOR_GRAY2RGB).astype(np.uint8, copy=False)
@@ -94,7 +91,7 @@ def marker() -> Texture:
 
 @cache
 def relief(side: int) -> Floats:
-    """Heights of an uneven floor, 0 to 1, float32 of shape (side, side), the first line like the last."""
+    """Heights of an uneven floor, 0 to 1, float32 of shape (side, side); the first line equals the last."""
     hills = cv2.resize(_cloud(15, 3.2), (side - 1, side - 1), interpolation=cv2.INTER_AREA)
     small = cv2.resize(_cloud(16, 2.4), (side - 1, side - 1), interpolation=cv2.INTER_AREA)
     heights = hills + 0.18 * small
@@ -103,11 +100,11 @@ def relief(side: int) -> Floats:
 
 
 def _cloud(seed: int, smoothness: float) -> Floats:
-    """Noise of standard deviation 1 whose spectrum falls with frequency to this power, and that repeats."""
+    """Returns periodic noise of standard deviation 1 whose spectrum falls with frequency to this power."""
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     frequency = np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     frequency[0, 0] = 1.0
-    # Nothing larger than a third of the texture, or its repeating would show.
+    # Nothing larger than a third of the texture, or its repetition would be visible.
     low = 1 - np.exp(-((frequency * SIDE / 3.0) ** 4))
     spectrum = white * low * frequency ** (-smoothness / 2 - 0.5)
     spectrum[0, 0] = 0.0
@@ -117,7 +114,7 @@ def _cloud(seed: int, smoothness: float) -> Floats:
 
 
 def _ripples(seed: int, cycles: float) -> Floats:
-    """Waves every way, about so many across the texture, of standard deviation 1; repeats."""
+    """Returns periodic waves in all directions, about `cycles` per texture, of standard deviation 1."""
     white = np.fft.rfft2(np.random.default_rng(seed).standard_normal((SIDE, SIDE)))
     number = SIDE * np.hypot(np.fft.fftfreq(SIDE)[:, np.newaxis], np.fft.rfftfreq(SIDE)[np.newaxis])
     waves = np.fft.irfft2(white * np.exp(-(((number - cycles) / (0.45 * cycles)) ** 2)), (SIDE, SIDE))

@@ -1,4 +1,4 @@
-"""Where a bystander looks from."""
+"""The view of an observer of the robot."""
 
 from dataclasses import dataclass
 from math import atan2, cos, radians, sin
@@ -10,7 +10,7 @@ from robot_runtime.simulation.water.geometry import Matrix, rotation
 from robot_runtime.simulation.water.parameters import Vector
 
 FIELD_OF_VIEW = 45.0
-"""°, upright: MuJoCo's own for free cameras."""
+"""°, vertical: MuJoCo's default for free cameras."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class ObserverView:
     """m."""
 
     def line_of_sight(self, truth: Truth) -> tuple[float, float]:
-        """Its azimuth from north to the right, and its elevation downwards (rad)."""
+        """Returns azimuth, from north to the right, and elevation, downwards, of the line of sight (rad)."""
         heading = 0.0
         if self.name == "follow":
             axes = rotation(truth.attitude)
@@ -34,7 +34,7 @@ class ObserverView:
         return radians(self.azimuth) + heading, radians(self.elevation)
 
     def eye(self, truth: Truth) -> tuple[Vector, Matrix]:
-        """Where one looks from (m), and the axes forward, right, down of who does, as of `rotation`."""
+        """Returns the observer's position (m) and its axes forward, right, down, as `rotation` does."""
         azimuth, elevation = self.line_of_sight(truth)
         c, s, level, steep = cos(azimuth), sin(azimuth), cos(elevation), sin(elevation)
         axes = ((c * level, -s, -c * steep), (s * level, c, -s * steep), (steep, 0.0, level))

@@ -1,4 +1,4 @@
-"""Every number of how the water looks, with its origin.
+"""Every optical property of the water, with its origin.
 
 A picture is taken through I·e^(-βz) + B·(1 - e^(-βz)), for each of the three colours: of the light I that a
 thing sends out, β (1/m) takes away so much on the way z (m), and the water puts its own light B in its place
@@ -18,15 +18,15 @@ Colours = tuple[float, float, float]
 
 TURBIDITY = Range(0, 1)
 TURBIDITY_ATTENUATION = 30.0
-"""1/m that a turbidity of 1 adds to all three: a black thing on pale ground is lost at 0.1 m. Chosen."""
+"""1/m that a turbidity of 1 adds to all colours: black on pale ground is invisible at 0.1 m. Chosen."""
 TURBIDITY_POWER = 3
-"""Its power that counts, so that 0.1 is hardly noticed and 0.3 is a harbour. Chosen."""
+"""Exponent of the turbidity, so that 0.1 is hardly visible and 0.3 is a harbour. Chosen."""
 SILT: Colours = (135.0, 132.0, 70.0)
 """The light of particles. Assumed: pale, and greenish as the water around them."""
 SCATTERING = 0.04
 """1/m, share of the light that is scattered forwards, and blurs. Assumed: a tenth of pure sea water's β."""
 TURBIDITY_SCATTERING = 0.3
-"""Share of what turbidity adds that only blurs. Assumed, within a factor of two."""
+"""Share of the added attenuation that only blurs. Assumed, within a factor of two."""
 NOISE = 2.5
 """Standard deviation of each byte of the camera's picture. Assumed: a small sensor in dim light."""
 
@@ -40,14 +40,14 @@ class WaterOptics:
     glow: Colours
     """B, 0 to 255, of the water itself, looking level."""
     scattering: float
-    """1/m by which sharpness is lost."""
+    """1/m, loss of sharpness."""
     caustics: float
-    """Contrast, 0 to 1, of the light that ripples gather on what is just under the surface."""
+    """Contrast, 0 to 1, of caustics just below the surface."""
 
-    def clearer(self, times: float) -> "WaterOptics":
-        """Water through which one sees so many times as far."""
-        blue, green, red = (beta / times for beta in self.attenuation)
-        return WaterOptics((blue, green, red), self.glow, self.scattering / times, self.caustics)
+    def with_visibility(self, factor: float) -> "WaterOptics":
+        """Returns water with this factor of visibility."""
+        blue, green, red = (beta / factor for beta in self.attenuation)
+        return WaterOptics((blue, green, red), self.glow, self.scattering / factor, self.caustics)
 
 
 CLEAN = {
@@ -61,7 +61,7 @@ CLEAN = {
 
 
 def water(kind: Kind, turbidity: float) -> WaterOptics:
-    """The water of this kind of scene with so much turbidity, 0 to 1."""
+    """Returns the water of this kind of scene with this turbidity, 0 to 1."""
     clean = CLEAN[kind]
     added = TURBIDITY_ATTENUATION * turbidity**TURBIDITY_POWER
     blue, green, red = (beta + added for beta in clean.attenuation)

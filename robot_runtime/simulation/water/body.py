@@ -42,7 +42,7 @@ class Body:
         self.start()
 
     def start(self, start: StartPose = FLOATING) -> None:
-        """Be there at rest at time 0."""
+        """Puts the hull there, at rest, at time 0."""
         depth = self.world.floating_depth(self.trim.buoyancy) if start.down is None else start.down
         self.time = 0.0
         self.state = at_rest(depth, start.north, start.east, start.heading)
@@ -63,7 +63,7 @@ class Body:
         self.time += duration
 
     def derivative(self, state: BodyState, angles: Four, speeds: Four, later: float = 0.0) -> BodyState:
-        """Time derivative of each part of a state that is reached `later` (s) than now."""
+        """Returns the time derivative of a state that is reached `later` (s) than now."""
         position, attitude, velocity, rate = state
         matrix = rotation(attitude)
         water = self.world.flow(self.time + later, position)
@@ -96,7 +96,7 @@ class Body:
         )
 
     def _restoring(self, depth: float, matrix: Matrix, through: Vector) -> tuple[float, ...]:
-        """Weight, buoyancy and waves: force (N) and torque (N m) in body axes.
+        """Returns force (N) and torque (N m) of weight, buoyancy and waves in body axes.
 
         `depth` (m) is that below the surface as it is above the hull, `through` (m/s) the velocity through
         the water.

@@ -4,9 +4,8 @@ The hull is an ellipsoid, so that it touches each plane at one point. Its speed 
 impulses, with the mass that it has in water: one along the plane's normal, which returns `restitution` of the
 approach (Newton), then one along the plane against the sliding, at most `friction` times the first (Coulomb).
 An impulse -(1+e)·v/K along a line in which the hull has the speed v and the mass 1/K changes the energy by
--(1-e²)·v²/2K; neither impulse can create any. What the hull has moved too far is taken back in the same
-direction as the first impulse pushes, turning included: a hull that lies on the floor lies still. Fins touch
-nothing.
+-(1-e²)·v²/2K; neither impulse can create any. The penetration is undone in the direction of the first
+impulse, rotation included, so that a hull on the floor is at rest. Fins touch nothing.
 """
 
 from math import sqrt
@@ -39,7 +38,7 @@ class Contact:
         self._friction = parameters.friction
 
     def settle(self, state: BodyState, basin: Basin) -> BodyState:
-        """The state of a hull that may have gone through floor or walls, put back and stopped there."""
+        """Returns the state of a hull that may have passed floor or walls, put back and stopped there."""
         reach, (north, east, down) = self._reach, state.position
         if down + reach > basin.depth:
             state = self._touch(state, 2, 1.0, basin.depth)
@@ -51,7 +50,7 @@ class Contact:
         return state
 
     def _touch(self, state: BodyState, axis: int, side: float, limit: float) -> BodyState:
-        """One plane: across this world axis, at `side`·`limit` (m)."""
+        """Returns the state after contact with a plane across this world axis, at `side`·`limit` (m)."""
         matrix = rotation(state.attitude)
         x, y, z = matrix[axis]
         a, b, c = self._half
@@ -71,7 +70,7 @@ class Contact:
     def _take_back(
         self, state: BodyState, matrix: Matrix, point: Vector, inwards: Vector, depth: float
     ) -> BodyState:
-        """The state moved and turned as a push at the point would, so far that the point is back inside."""
+        """Returns the state moved and turned as by a push at the point, until the point is inside."""
         size = depth * self._mass_along(point, inwards)
         x, y, z, roll, pitch, yaw = (
             size * part / mass
@@ -103,7 +102,7 @@ class Contact:
         return self._push(state, point, against, grip)
 
     def _mass_along(self, point: Vector, line: Vector) -> float:
-        """kg with which the hull resists a push at this point along this line."""
+        """Returns the effective mass, kg, at this point along this line."""
         lever = cross(point, line)
         yielding = sum(part * part / mass for part, mass in zip((*line, *lever), self._mass, strict=True))
         return 1 / yielding

@@ -27,17 +27,17 @@ _NUMBERS: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedFault:
-    """A sensor's fault. Raises ValueError where the numbers do not belong to the kind."""
+    """A sensor's fault. Raises ValueError if the numbers do not belong to the kind."""
 
     kind: Kind = "none"
-    """stuck: shows its last reading for ever. dropout: some readings never come, and the last one stays.
+    """stuck: repeats its last reading. dropout: some readings are lost, and the last one is repeated.
     spike: some readings jump up or down. drift: the offset grows steadily. bus: the part does not answer."""
     share: float | None = None
-    """Of the readings that drop out or jump, above 0, at most 1."""
+    """Share of the readings that drop out or jump, above 0, at most 1."""
     size: float | None = None
-    """By which a reading jumps, in the sensor's unit, above 0."""
+    """Jump of a reading, in the sensor's unit, above 0."""
     speed: float | None = None
-    """At which the offset grows, in the sensor's unit per second."""
+    """Growth of the offset, in the sensor's unit per second."""
 
     def __post_init__(self) -> None:
         if self.kind not in get_args(Kind):
@@ -60,8 +60,8 @@ NO_FAULT = SimulatedFault()
 
 
 def check_sensor(sensor: str, fault: SimulatedFault) -> None:
-    """Raises ValueError where there is no such sensor, or it cannot have this fault."""
+    """Raises ValueError if there is no such sensor, or it cannot have this fault."""
     if sensor not in SENSORS:
         raise ValueError(f"there is no sensor {sensor!r}; there are {', '.join(SENSORS)}")
     if fault.kind == "bus" and sensor not in DEVICES:
-        raise ValueError(f"{sensor} has a wire of its own and is on no bus; take stuck or dropout")
+        raise ValueError(f"{sensor} is on no bus; choose stuck or dropout")

@@ -12,7 +12,7 @@ class Propulsion(Protocol):
     """The source of the propulsive force."""
 
     def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
-        """Force (N) and torque (N m) on the body, in body axes."""
+        """Returns force (N) and torque (N m) on the body, in body axes."""
         ...
 
 
@@ -36,7 +36,7 @@ class Fins:
         self._normal = half * parameters.fin_normal
 
     def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
-        """Force (N) and torque (N m) in body axes.
+        """Returns force (N) and torque (N m) in body axes.
 
         `angles` in rad, `speeds` in rad/s; `velocity` (m/s) of the hull through the water and its turn `rate`
         (rad/s) in body axes.

@@ -1,8 +1,8 @@
 """The simulator of a robot with its hardware in the loop: receives the fins' angles, sends sensor readings.
 
-The board computes how its fins move and sends their angles, fifty times a second, with its own time. The
-water moves on by the time between two of them, so that a slow or uneven network delays what it answers, and
-changes nothing else. Answers go out as the bytes of a `Sense`, the newest only.
+The board computes the motion of its fins and sends their angles, 50 times a second, with its own time. The
+water advances by the time between two messages, so that a slow or uneven network only delays the answers. An
+answer is the bytes of a `Sense`; only the newest is sent.
 """
 
 import logging
@@ -26,13 +26,13 @@ from robot_runtime.transport.zenoh_transport import ZenohTransport
 log = logging.getLogger(__name__)
 
 GAP = 0.2
-"""s between two angles of a fin above which nobody knows how it moved: it is taken to have rested."""
+"""s between two angles of a fin above which its motion is unknown; it then counts as resting."""
 GAP_MAX = 1.0
-"""s of such a gap that the water moves on for; a board that was away longer finds it as it was then."""
+"""s by which the water advances in such a gap at most."""
 WAITING_MAX = 1000
-"""Messages that wait, twenty seconds of them; of more the oldest are lost, which is a gap."""
+"""Messages in the queue, 20 s of them; the oldest of more are dropped, which makes a gap."""
 QUIET = 2.0
-"""s without a word of the fins after which it is said."""
+"""s without a message of the fins after which a warning is logged."""
 
 
 class HilSimulator:
@@ -53,21 +53,21 @@ class HilSimulator:
         messages.subscribe("motor", self._receive)
 
     def run(self) -> None:
-        """Swim as the fins are heard to move, until `end` is called."""
-        heard = True
+        """Simulates the received motion of the fins until `end` is called."""
+        receiving = True
         while not self._ending:
             if not self._arrived.wait(QUIET):
-                if heard:
-                    log.warning("no fins are heard; waiting for the robot's runtime and its board")
-                heard = False
+                if receiving:
+                    log.warning("no motion of the fins is received; waiting for the robot and its board")
+                receiving = False
                 continue
             self._arrived.clear()
-            reading = self._swim()
+            reading = self._advance()
             if reading is None:
                 continue
-            if not heard:
-                log.info("the fins are heard")
-            heard = True
+            if not receiving:
+                log.info("motion of the fins is received")
+            receiving = True
             self._messages.publish("sense", _sense(reading).to_bytes())
             self._outbox.flush()
 
@@ -81,14 +81,14 @@ class HilSimulator:
         self._waiting.append(data)
         self._arrived.set()
 
-    def _swim(self) -> Reading | None:
-        """Move on by all that waits; what the sensors show at its end."""
+    def _advance(self) -> Reading | None:
+        """Advances by all queued messages; returns the last reading."""
         reading = None
         while self._waiting:
             try:
                 rows = [row for block in read_blocks(self._waiting.popleft()) for row in read_rows(block)]
             except (LayoutError, TypeError) as problem:
-                log.warning("what is no motor block was dropped: %s", problem)
+                log.warning("an invalid motor block was dropped: %s", problem)
                 continue
             for time, motor in rows:
                 assert isinstance(motor, Motor)
@@ -99,7 +99,7 @@ class HilSimulator:
         before, self._time = self._time, time
         angles_before, self._angles = self._angles, motor.angle
         if before is None or time <= before:
-            # The first of a runtime; or the board's clock was corrected by some milliseconds.
+            # The first of a run, or the board's clock was corrected by some milliseconds.
             return None
         period = time - before
         speeds: Four = (0.0, 0.0, 0.0, 0.0)

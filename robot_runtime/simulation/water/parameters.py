@@ -1,12 +1,12 @@
-"""Every number of the simulated robot and its water, with its origin and how far it may be trusted.
+"""Every number of the simulated robot and its water, with its origin and uncertainty.
 
 Three origins occur. *Published*: from the robot's own published code, good to some per cent. *Assumed*:
 estimated from the hull's size and shape, since nobody published it; may be wrong by a factor of two.
 *Chosen*: a free choice about the surroundings. Numbers of the large U-CAT (19 kg), which circulate under
 this robot's name, are not used.
 
-Sensors have a fourth: *data sheet*, of the part named; what it says is typical, and one robot's own part may
-differ by a factor of two.
+Sensors have a fourth: *data sheet*, of the part named; its values are typical; a single part may differ by a
+factor of two.
 
 Fins: front right, back right, back left, front left. Body axes: forward, right, down.
 """
@@ -23,17 +23,17 @@ class SensorQuality:
     """The error model of a sensor, in the units of its reading. Raises ValueError below 0."""
 
     rate: float = 200.0
-    """Hz of new readings, at most 200, as often as the water is asked; what is faster in reality has that."""
+    """Hz of new readings, at most 200, the rate of the simulation; faster sensors have that."""
     latency: float = 0.0
-    """s from feeling to showing, besides what the emulated part takes; counts in steps of 5 ms."""
+    """s from input to reading, besides the delay of the emulated part; in steps of 5 ms."""
     noise: float = 0.0
     """Standard deviation of each reading: Gaussian, without memory."""
     bias: float = 0.0
     """Standard deviation of the offset that is drawn at the start."""
     walk: float = 0.0
-    """Standard deviation by which the offset has wandered after one second; it grows with √time."""
+    """Standard deviation of the offset's random walk after one second; it grows with √time."""
     step: float = 0.0
-    """Readings are multiples of this; 0: they are not rounded here."""
+    """Quantization of the readings; 0: they are not rounded."""
 
     def __post_init__(self) -> None:
         if not self.rate > 0:
@@ -58,7 +58,7 @@ class SimulationParameters:
     buoyancy: float = 1.003
     """Buoyancy under water as a share of the weight. Assumed; published is "slightly positive"."""
     buoyancy_height: float = 0.010
-    """m, centre of buoyancy above the centre of mass. Assumed. Both can be changed while it swims: `trim`."""
+    """m, centre of buoyancy above the centre of mass. Assumed. `Trim` changes both while it swims."""
     restitution: float = 0.2
     """Share of the speed towards a wall or the floor with which the hull comes back. Assumed: plastic on
     tiles under water, which damps; within 0 to 0.5."""

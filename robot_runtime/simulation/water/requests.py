@@ -49,13 +49,13 @@ class SensorFaultRequest:
 
 @dataclass(frozen=True, slots=True)
 class Nothing:
-    """The arguments of a question that has none."""
+    """The arguments of a request without any."""
 
 
 def changes(simulator: Simulator) -> dict[str, Change]:
-    """The function of each request. They raise ValueError, in words, and change nothing then.
+    """Returns the function of each request. On a ValueError nothing is changed.
 
-    `surroundings` changes nothing and is answered with the questions that would make everything as it is.
+    `surroundings` changes nothing; its answer holds the requests that restore the present state.
     """
 
     def reset(question: Question) -> None:
@@ -88,12 +88,12 @@ def changes(simulator: Simulator) -> dict[str, Change]:
         parse(Nothing, question)
         basin, current, waves, trim, positions, faults = simulator.surroundings()
         return {
-            "world": _given(basin),
-            "current": _given(current),
-            "waves": _given(waves),
-            "trim": _given(trim),
+            "world": _set_fields(basin),
+            "current": _set_fields(current),
+            "waves": _set_fields(waves),
+            "trim": _set_fields(trim),
             "beacons": {"positions": [list(one) for one in positions]},
-            "faults": [{"sensor": sensor, **_given(fault)} for sensor, fault in faults.items()],
+            "faults": [{"sensor": sensor, **_set_fields(fault)} for sensor, fault in faults.items()],
         }
 
     made = (reset, current, waves, trim, world, beacons, fault, surroundings)
@@ -110,11 +110,11 @@ def serve_requests(messages: ZenohTransport, requests: Mapping[str, Change], clo
 
 
 def _require(question: Question, *names: str) -> None:
-    """In a question these have no defaults."""
+    """Raises ConfigError unless the request names these, which have no defaults in it."""
     missing = [f"{name} is missing" for name in names if name not in question]
     if missing:
         raise ConfigError(*missing)
 
 
-def _given(setting: Basin | Current | Waves | Trim | SimulatedFault) -> dict[str, Any]:
+def _set_fields(setting: Basin | Current | Waves | Trim | SimulatedFault) -> dict[str, Any]:
     return {name: value for name, value in asdict(setting).items() if value is not None}

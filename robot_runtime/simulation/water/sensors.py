@@ -1,4 +1,4 @@
-"""The robot's sensors in the simulated motion."""
+"""The robot's simulated sensors: latency, noise, offset, quantization and faults."""
 
 from collections import deque
 from math import cos, hypot, nan, pi, remainder, sin
@@ -14,17 +14,17 @@ from robot_runtime.simulation.water.world import World
 
 Numbers = tuple[float, ...]
 
-WANDERING = 1.0
+WALK_PERIOD = 1.0
 """s between two steps of an offset's random walk."""
 SAME_TIME = 1e-9
-"""s; moments closer than this are one, as times are sums of many periods."""
+"""s within which times are equal, since they are sums of many periods."""
 
 
 class Sensor:
     """A sensor of one or more axes.
 
-    It has random numbers of its own, from the seed and its name, and others for its faults: what happens to
-    another sensor, and what is wrong with this one, leaves its noise as it is.
+    Its random numbers come from the seed and its name, those of its faults from another generator, so that
+    neither other sensors nor its own faults change its noise.
     """
 
     def __init__(self, name: str, quality: SensorQuality, axes: int, seed: int) -> None:
@@ -35,26 +35,26 @@ class Sensor:
         self._chance = Random(f"{seed} {name} fault").random
         self._offset = [self._gauss(0, quality.bias) for _ in range(axes)]
         self._due = 0.0
-        self._wanders = WANDERING
+        self._walk_due = WALK_PERIOD
         self._shown: Numbers | None = None
         self._coming: deque[tuple[float, Numbers]] = deque()
         self._fault = NO_FAULT
         self._since = 0.0
-        self.holds = False
+        self.repeats = False
         """True if its newest reading was lost, so that it repeats an older one."""
 
     def set_fault(self, fault: SimulatedFault, time: float) -> None:
         """Sets the fault from `time` (s) on, in place of any other."""
         self._fault = fault
         self._since = time
-        self.holds = False
+        self.repeats = False
 
     def read(self, time: float, actual: Numbers) -> Numbers:
         """Returns the reading at this time (s) for these actual values. The first reading has no latency."""
         if time > self._due - SAME_TIME:
             self._due = max(self._due + self._interval, time)
             reading = self._apply_fault(time, self._add_noise(time, actual))
-            self.holds = reading is None
+            self.repeats = reading is None
             if self._shown is None:
                 self._shown = reading or actual
             elif reading is not None and self._latency == 0:
@@ -68,15 +68,15 @@ class Sensor:
 
     def _add_noise(self, time: float, actual: Numbers) -> Numbers:
         gauss, noise = self._gauss, self._noise
-        while time > self._wanders - SAME_TIME:
-            self._wanders += WANDERING
+        while time > self._walk_due - SAME_TIME:
+            self._walk_due += WALK_PERIOD
             self._offset = [offset + gauss(0, self._walk) for offset in self._offset]
         return tuple(
             [value + offset + gauss(0, noise) for value, offset in zip(actual, self._offset, strict=True)]
         )
 
     def _apply_fault(self, time: float, reading: Numbers) -> Numbers | None:
-        """The reading as it comes out in steps; None where it is lost."""
+        """Returns the reading with fault and quantization; None if it is lost."""
         fault = self._fault
         if fault is not NO_FAULT:
             if fault.kind == "stuck" or (fault.kind == "dropout" and self._chance() < (fault.share or 0)):
@@ -85,8 +85,8 @@ class Sensor:
                 jump = (fault.size or 0) if self._chance() < 0.5 else -(fault.size or 0)
                 reading = tuple([value + jump for value in reading])
             elif fault.kind == "drift":
-                gone = (fault.speed or 0) * (time - self._since)
-                reading = tuple([value + gone for value in reading])
+                drifted = (fault.speed or 0) * (time - self._since)
+                reading = tuple([value + drifted for value in reading])
         step = self._step
         return tuple([step * round(value / step) for value in reading]) if step else reading
 
@@ -107,7 +107,7 @@ class Reading(NamedTuple):
     battery: float
     """V."""
     encoders: Four = (0.0, 0.0, 0.0, 0.0)
-    """rad by which each fin's encoder shows too much; nan where it goes on showing what it last showed."""
+    """rad, error of each fin's encoder; nan while it repeats its last reading."""
 
 
 class Sensors:
@@ -117,13 +117,13 @@ class Sensors:
         self._parameters = parameters
         self._world = world
         self.seed = seed
-        """Of all their noise, from the next start on."""
+        """Seed of all noise, from the next start on."""
         self.faults = dict.fromkeys(SENSORS, NO_FAULT)
         self.beacons = parameters.beacons
         self.start()
 
     def start(self) -> None:
-        """Begin anew at time 0, with the same readings for the same motion; beacons and faults stay."""
+        """Restarts at time 0, with the same readings for the same motion; beacons and faults stay."""
         self._sensors = {
             name: Sensor(name, quality, axes, self.seed)
             for name, (quality, axes) in _qualities(self._parameters).items()
@@ -133,13 +133,13 @@ class Sensors:
         self._encoders = [self._sensors[f"encoder{fin}"] for fin in range(4)]
 
     def set_fault(self, sensor: str, fault: SimulatedFault, time: float) -> None:
-        """Sets a sensor's fault from `time` (s) on. Raises ValueError where that sensor cannot have it."""
+        """Sets a sensor's fault from `time` (s) on. Raises ValueError if that sensor cannot have it."""
         check_sensor(sensor, fault)
         self.faults[sensor] = fault
         self._sensors[sensor].set_fault(fault, time)
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
-        """Have light beacons here (m) and nowhere else. Raises ValueError; see `check_beacons`."""
+        """Sets the positions (m) of all light beacons. Raises ValueError; see `check_beacons`."""
         check_beacons(positions)
         self.beacons = positions
 
@@ -157,7 +157,7 @@ class Sensors:
         pressure = sensors["pressure"].read(time, (self._pressure(time, state, matrix),))
         fx, fy, fz = sensors["accelerometer"].read(time, force)
         p, q, r = sensors["gyroscope"].read(time, state.rate)
-        right, left = self._seen(state, matrix)
+        right, left = self._beacon_margins(state, matrix)
         first, second, third, fourth = [_encoder_error(encoder, time) for encoder in self._encoders]
         return Reading(
             pressure=max(pressure[0], 0.0),
@@ -175,10 +175,10 @@ class Sensors:
         north, east, down = state.position
         return self._world.pressure(time, (north + x, east + y, down + z))
 
-    def _seen(self, state: BodyState, matrix: Matrix) -> tuple[float, float]:
+    def _beacon_margins(self, state: BodyState, matrix: Matrix) -> tuple[float, float]:
         """Returns the margins of the right and the left detector in range and view; above 0 a beacon is seen.
 
-        A detector sees a beacon that is near enough and within its view; the brightest counts.
+        A detector sees a beacon within its range and view; the brightest counts.
         """
         parameters = self._parameters
         best = (-1.0, -1.0)
@@ -201,7 +201,7 @@ class Sensors:
 
 def _encoder_error(encoder: Sensor, time: float) -> float:
     (error,) = encoder.read(time, (0.0,))
-    return nan if encoder.holds else remainder(error, 2 * pi)
+    return nan if encoder.repeats else remainder(error, 2 * pi)
 
 
 def _qualities(parameters: SimulationParameters) -> dict[str, tuple[SensorQuality, int]]:

@@ -29,7 +29,7 @@ DRIVE_MAX = 63
 
 
 class FinMotion(NamedTuple):
-    """The fins at one moment, as the board tells of them."""
+    """The fins at one moment, as the board reports them."""
 
     angles: Four
     """rad."""
@@ -38,7 +38,7 @@ class FinMotion(NamedTuple):
     drives: Four
     """H-bridge commands, -63 to 63."""
     powered: bool
-    """Whether the motors have power."""
+    """True if the motors have power."""
 
 
 class SimulationSetup(NamedTuple):
@@ -80,7 +80,7 @@ class Simulator:
             self._angles = fins.angles
             self._drain(period, fins)
             after = self._velocity()
-            # The mean over the period, so that the blow of reaching the floor is felt.
+            # The mean over the period contains the shock of reaching the floor.
             acceleration = (
                 (after[0] - before[0]) / period,
                 (after[1] - before[1]) / period,
@@ -89,10 +89,10 @@ class Simulator:
             return self._sensors.read(self._body.time, self._body.state, acceleration, self._battery)
 
     def reset(self, start: StartPose = FLOATING, seed: int | None = None) -> None:
-        """Back to the start: time 0, at rest, by default floating and looking north, with a full battery.
+        """Restarts at time 0, at rest, by default floating and heading north, with a full battery.
 
-        The sensors' noise begins anew, too, by another `seed` where one is given. Water, trim, beacons and
-        faults stay as they are. Raises ValueError where floor or walls are in the way.
+        The sensors' noise restarts, too, with another `seed` if one is given. Water, trim, beacons and
+        faults stay as they are. Raises ValueError if floor or walls are in the way.
         """
         with self._lock:
             check_start(start, self._world.basin, self._parameters.size)
@@ -106,7 +106,7 @@ class Simulator:
             self._world.set_current(current, self._body.time)
 
     def set_waves(self, waves: Waves) -> None:
-        """Sets the waves. Raises ValueError where they would break in water of this depth."""
+        """Sets the waves. Raises ValueError if they would break in water of this depth."""
         with self._lock:
             self._world.set_waves(waves)
 
@@ -116,26 +116,26 @@ class Simulator:
             self._body.trim = trim
 
     def set_basin(self, basin: Basin) -> None:
-        """Put floor and walls elsewhere, and go back to the start, as what was free water may now be wall.
+        """Sets floor and walls, and resets, because the hull may now be inside a wall.
 
-        Raises ValueError where the present waves would break there.
+        Raises ValueError if the present waves would break there.
         """
         with self._lock:
             self._world.set_basin(basin)
             self._start()
 
     def set_beacons(self, positions: tuple[Vector, ...]) -> None:
-        """Have light beacons here (m north, east, down) and nowhere else. Raises ValueError."""
+        """Sets the positions (m north, east, down) of all light beacons. Raises ValueError."""
         with self._lock:
             self._sensors.set_beacons(positions)
 
     def set_fault(self, sensor: str, fault: SimulatedFault) -> None:
-        """Break a sensor, or mend it. Raises ValueError where it cannot have this fault."""
+        """Sets or clears the fault of a sensor. Raises ValueError if it cannot have this fault."""
         with self._lock:
             self._sensors.set_fault(sensor, fault, self._body.time)
 
     def surroundings(self) -> SimulationSetup:
-        """Everything that can be set, as it is now."""
+        """Returns the present value of everything that can be set."""
         with self._lock:
             world, sensors = self._world, self._sensors
             return SimulationSetup(

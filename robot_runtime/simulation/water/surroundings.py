@@ -6,18 +6,18 @@ from math import hypot
 from robot_runtime.simulation.water.parameters import Vector
 
 CURRENT_MAX = 2.0
-"""m/s; ten times what the robot swims."""
+"""m/s; ten times the robot's speed."""
 TURNING_MAX = 1.0
 """rad/s."""
 PERIOD_MIN, PERIOD_MAX = 0.8, 30.0
-"""s. Waves of 0.8 s are 1 m long, four times the hull; shorter ones differ too much from bow to stern."""
+"""s. Waves of 0.8 s are 1 m long, four times the hull; shorter ones vary too much along the hull."""
 AMPLITUDE_MAX = 10.0
 """m."""
 DIRECTION_MAX = 6.2832
 """rad; a full turn either way."""
 BUOYANCY_MIN, BUOYANCY_MAX = 0.9, 1.1
 OFFSET_MAX = 0.05
-"""m; beyond it the centre of buoyancy would leave the hull."""
+"""m; farther the centre of buoyancy would leave the hull."""
 DEPTH_MIN, DEPTH_MAX = 0.5, 1000.0
 SIDE_MIN, SIDE_MAX = 1.0, 1000.0
 """m."""
@@ -46,12 +46,12 @@ class Current:
 
 @dataclass(frozen=True, slots=True)
 class Waves:
-    """One regular wave. Raises ValueError on numbers that no wave can have; see also `World.set_waves`."""
+    """One regular wave. Raises ValueError on impossible numbers; see also `World.set_waves`."""
 
     amplitude: float = 0.0
     """m, half of the height from trough to crest; 0: still water."""
     period: float = 2.0
-    """s, as one sees it who stands on the floor."""
+    """Period in s, in the earth-fixed frame."""
     direction: float = 0.0
     """rad from north to east, towards which it runs."""
 
@@ -123,7 +123,7 @@ class Basin:
 
 
 def check_start(start: StartPose, basin: Basin, size: Vector) -> None:
-    """Raises ValueError where a hull of this size (m) would be in the floor or in a wall."""
+    """Raises ValueError if a hull of this size (m) would be in the floor or in a wall."""
     reach = max(size) / 2
     if start.down is not None and start.down + size[2] / 2 > basin.depth:
         raise ValueError(f"a start at {start.down:g} m is in the floor, which is at {basin.depth:g} m")

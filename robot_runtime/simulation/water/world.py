@@ -19,7 +19,7 @@ class Flow(NamedTuple):
     acceleration: Vector
     """m/s², of the water that is there: ∂u/∂t + (u·∇)u."""
     rise: float
-    """m by which the surface above is higher than still water."""
+    """m, elevation of the surface above still water."""
 
 
 class World:
@@ -31,10 +31,10 @@ class World:
     η = a·cos θ, the water moves along x with aω·cosh k(h-z)/sinh kh·cos θ and downwards with
     -aω·sinh k(h-z)/sinh kh·sin θ, and its pressure is higher by ρga·cosh k(h-z)/cosh kh·cos θ, where k
     follows from ω² = gk·tanh kh. In deep water all these decay with e^(-kz). Above still water they are
-    taken as at it. Current and waves do not act on each other.
+    taken as at it. Current and waves do not interact.
 
-    The hull counts as an upright box: what of its height is above the surface does not float, and while it
-    breaks the surface it makes waves of its own, which takes energy. Fins work everywhere alike.
+    The hull counts as an upright box: its part above the surface has no buoyancy, and while it breaks the
+    surface it loses energy to waves of its own. Fins work everywhere alike.
     """
 
     def __init__(self, parameters: SimulationParameters) -> None:
@@ -55,13 +55,13 @@ class World:
         self._calm = Flow((current.north, current.east, current.down), NOWHERE, 0.0)
 
     def set_waves(self, waves: Waves) -> None:
-        """Sets the waves. Raises ValueError where they would break in water of this depth."""
+        """Sets the waves. Raises ValueError if they would break in water of this depth."""
         number = self._wave_number(waves, self.basin)
         self.waves = waves
         self._tune_waves(number)
 
     def set_basin(self, basin: Basin) -> None:
-        """Put floor and walls elsewhere. Raises ValueError where the present waves would break then."""
+        """Sets floor and walls. Raises ValueError if the present waves would break there."""
         number = self._wave_number(self.waves, basin)
         self.basin = basin
         self._tune_waves(number)
@@ -78,7 +78,7 @@ class World:
         swing, bob = cos(phase), sin(phase)
         level, upright = self._speed * (near + far), self._speed * (near - far)
         ahead, under = level * swing, -upright * bob
-        # Phase and decay change as the water itself moves on: θ by k·u less ω, e^(-kz) with its depth.
+        # Phase and decay change with the motion of the water itself: θ by k·u less ω, e^(-kz) with its depth.
         passing = self._frequency - self._number * (north * x + east * y + ahead)
         sinking = self._number * (down + under)
         ahead_rate = passing * level * bob - sinking * upright * swing
@@ -88,7 +88,7 @@ class World:
         return Flow(velocity, acceleration, self.waves.amplitude * swing)
 
     def pressure(self, time: float, position: Vector) -> float:
-        """Pa, absolute: hydrostatic, and the wave's; in the air that of the surface."""
+        """Returns the absolute pressure, Pa: hydrostatic and of the wave; in air that of the surface."""
         head = position[2]
         if self.waves.amplitude:
             deep, phase = self._place(time, position)
@@ -96,20 +96,20 @@ class World:
         return self._surface_pressure + self._specific_weight * max(head, 0.0)
 
     def floating_depth(self, buoyancy: float) -> float:
-        """Depth (m) of the centre of a hull that floats at rest; of one that sinks, just covered."""
+        """Returns the depth (m) of the centre of a floating hull at rest; a sinking one is just covered."""
         return min(self._height / buoyancy, self._height) - self._height / 2
 
     def submerged(self, depth: float) -> float:
-        """Share of the hull under water, 0 to 1, when its centre is this deep (m) below the surface."""
+        """Returns the share of the hull under water, 0 to 1, with its centre at this depth (m)."""
         return min(max(depth / self._height + 0.5, 0.0), 1.0)
 
     def wave_drag(self, depth: float, sinking: float) -> float:
-        """Force (N, downwards) of the waves on a hull that sinks at this speed (m/s) through the surface."""
+        """Returns the force (N, downwards) of the waves of a hull that sinks through the surface (m/s)."""
         half = self._height / 2
         return -self._damping * sinking if -half < depth < half else 0.0
 
     def _drift(self, time: float) -> tuple[Vector, Vector]:
-        """Velocity and acceleration of the current."""
+        """Returns velocity and acceleration of the current."""
         current = self.current
         if not current.turning:
             return self._calm.velocity, NOWHERE
@@ -119,14 +119,14 @@ class World:
         return (north, east, current.down), (-current.turning * east, current.turning * north, 0.0)
 
     def _place(self, time: float, position: Vector) -> tuple[tuple[float, float], float]:
-        """e^(-kz) and e^(-k(2h-z)), of which all the decays are made, and the phase (rad)."""
+        """Returns e^(-kz) and e^(-k(2h-z)), from which all decays follow, and the phase (rad)."""
         depth = min(max(position[2], 0.0), self.basin.depth)
         deep = exp(-self._number * depth), exp(-self._number * (2 * self.basin.depth - depth))
         x, y = self._direction
         return deep, self._number * (position[0] * x + position[1] * y) - self._frequency * time
 
     def _wave_number(self, waves: Waves, basin: Basin) -> float:
-        """k (rad/m) of ω² = gk·tanh kh, by Newton's method. Raises ValueError where the wave would break."""
+        """Returns k (rad/m) of ω² = gk·tanh kh, by Newton's method. Raises ValueError if the wave breaks."""
         frequency = 2 * pi / waves.period
         deep = frequency**2 / self._gravity
         number = deep / sqrt(tanh(deep * basin.depth))
@@ -138,7 +138,7 @@ class World:
         if waves.amplitude > highest:
             raise ValueError(
                 f"waves of {waves.amplitude:g} m amplitude and {waves.period:g} s period break in water of "
-                f"{basin.depth:g} m; {highest:.2g} m is the most there: take lower or longer waves"
+                f"{basin.depth:g} m; {highest:.2g} m is the most there: choose lower or longer waves"
             )
         return number
 

@@ -164,7 +164,7 @@ class LiveSetup:
 
 def _order(socket: Path, command: str) -> None:
     with EmulatorClient(socket) as board:
-        board.order(command)
+        board.command(command)
 
 
 def _water_of(scenario: Scenario) -> Question:
