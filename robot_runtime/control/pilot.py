@@ -44,7 +44,7 @@ class Pilot:
     def change_lease(self, epoch: int) -> None:
         """Accepts only input of this lease from now on. Raises RefusedError for an older epoch."""
         if epoch < self.lease:
-            raise RefusedError(f"the lease {epoch} is older than the present one, {self.lease}")
+            raise RefusedError(f"the lease {epoch} is older than {self.lease}, the present one")
         if epoch > self.lease:
             self.lease, self._sequence, self._command = epoch, -1, NEUTRAL
 

@@ -37,7 +37,7 @@ class Swimmer(Core):
         depth = Depth(time=0, depth=1.0, pressure=111_000, temperature=20.0)
         self.bus.publish_row("depth", clock.now(), depth.to_bytes())
 
-    def look(self) -> None:
+    def check_faults(self) -> None:
         """Nothing is wrong."""
 
 

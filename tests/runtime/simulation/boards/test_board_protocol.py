@@ -45,7 +45,7 @@ def test_fins_line_is_read() -> None:
     ],
 )
 def test_what_is_no_fins_line_is_refused(line: str) -> None:
-    with pytest.raises(BoardLineError, match=r"is not|cannot be|could not convert"):
+    with pytest.raises(BoardLineError, match=r"is not|impossible fins|could not convert"):
         read_fins(line)
 
 

@@ -96,7 +96,7 @@ def link() -> Iterator[Ends]:
 @rendered
 def test_a_picture_is_of_the_newest_truth_and_says_when_that_was() -> None:
     with link() as ends:
-        with pytest.raises(RefusedError, match="not told yet where the robot is"):
+        with pytest.raises(RefusedError, match="not sent the robot's position yet"):
             ends.picture()
         ends.tell(12.5, truth((0.0, 0.0, 1.0)))
         first = ends.picture()
