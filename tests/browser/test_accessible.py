@@ -7,9 +7,9 @@ import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
 from tests.browser.conftest import DESKTOP, PHONE
+from tests.browser.driving import hold_to_arm
 from tests.browser.pages import PAGES, View, fill, settle, show
 from tests.browser.people import make_link
-from tests.browser.test_swim import hold_to_arm
 from tests.stack import ROOT, Stack
 
 AXE = ROOT / "frontend/node_modules/axe-core/axe.min.js"

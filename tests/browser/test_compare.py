@@ -5,7 +5,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.test_swim import hold_to_arm
+from tests.browser.driving import hold_to_arm
 from tests.stack import Stack
 
 STEP_MS = 20_000

@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expec
 
 from server.platform.settings import DataFolder
 from tests.browser.conftest import PHONE, put_to_rest
-from tests.browser.test_swim import hold_to_arm
+from tests.browser.driving import arm_by_hand, expect_surge
 from tests.exports import export_session
 from tests.proofs.watching import Fins
 from tests.stack import Stack
@@ -45,18 +45,6 @@ globalThis.WebSocket = class extends WebSocket {
   }
 };
 """
-
-
-def arm_by_hand(page: Page) -> None:
-    page.get_by_role("button", name="Manual", exact=True).click()
-    hold_to_arm(page)
-    expect(page.get_by_role("region", name="Drive")).to_be_visible()
-
-
-def expect_surge(page: Page, words: str) -> None:
-    """The navigation command says this of the way ahead."""
-    command = page.get_by_role("region", name="Navigation command")
-    expect(command.locator(".word").first).to_have_text(words)
 
 
 def expect_full_speed(page: Page) -> None:

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.test_swim import hold_to_arm
+from tests.browser.driving import hold_to_arm
 from tests.stack import Stack
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.test_drive import arm_by_hand, expect_surge
+from tests.browser.driving import arm_by_hand, expect_surge
 from tests.stack import Stack
 
 EXPIRES_MS = 10_000

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.test_swim import hold_to_arm
+from tests.browser.driving import hold_to_arm
 from tests.stack import ROOT, Stack
 
 NOSY = """

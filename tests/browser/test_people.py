@@ -4,8 +4,8 @@ import re
 
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.driving import hold_to_arm
 from tests.browser.people import make_link, somebody
-from tests.browser.test_swim import hold_to_arm
 from tests.stack import Stack
 
 

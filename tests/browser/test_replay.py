@@ -6,7 +6,7 @@ from playwright.sync_api import Page, expect
 
 from robot_runtime.contract.packets import Depth
 from robot_runtime.transport.blocks import read_blocks, read_rows
-from tests.browser.test_swim import hold_to_arm, wait_for_depth
+from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.stack import Stack
 
 

@@ -16,37 +16,13 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
+from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.stack import Stack
-
-DIVE_MS = 30_000
 
 
 def depth(page: Page) -> float:
     """The depth that the page shows, m."""
     return float(page.locator(".reading", has_text="Depth").locator(".value").inner_text())
-
-
-def wait_for_depth(page: Page, low: float, high: float) -> None:
-    """Wait until the shown depth lies between these, m."""
-    page.wait_for_function(
-        """([low, high]) => {
-            const readings = [...document.querySelectorAll('.reading')];
-            const shown = readings.find((one) => one.textContent.includes('Depth'));
-            const depth = Number(shown?.querySelector('.value')?.textContent.replace('\u2212', '-'));
-            return depth >= low && depth <= high;
-        }""",
-        arg=[low, high],
-        timeout=DIVE_MS,
-    )
-
-
-def hold_to_arm(page: Page) -> None:
-    button = page.get_by_role("button", name="Hold to arm")
-    expect(button).to_be_enabled()
-    button.hover()
-    page.mouse.down()
-    expect(page.get_by_text("The fins may move")).to_be_visible()
-    page.mouse.up()
 
 
 def read_zip(data: bytes) -> dict[str, list[dict[str, str]]]:

@@ -28,7 +28,7 @@ from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders
 from server.platform.store import Store, StoreError
 from tests.server.blocks import depth_record
-from tests.server.features.comm_tests.test_comm_tests import LOST, begin
+from tests.server.features.comm_tests.stored_runs import LOST, begin
 
 LEFT_BYTES = 400_000
 """Room for the database when recording begins."""

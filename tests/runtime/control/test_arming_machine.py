@@ -10,7 +10,7 @@ from robot_runtime.contract.documents import Mode
 from robot_runtime.contract.packets import Start, StatusFlag, Stop
 from robot_runtime.control.transitions import ARMED, TRANSITIONS
 from robot_runtime.errors import RefusedError
-from tests.runtime.control.test_supervisor import Rig
+from tests.runtime.control.supervisor_rig import Rig
 
 HEARTBEAT = 4.0
 LOOK = 0.1
@@ -42,11 +42,11 @@ class Arming(RuleBasedStateMachine):
             if self.speaks:
                 self.rig.report()
                 if self.depth and self.imu:
-                    self.rig.feel(frozen=self.frozen)
+                    self.rig.sense(frozen=self.frozen)
                 elif self.depth:
-                    self.rig.feel_depth(frozen=self.frozen)
+                    self.rig.sense_depth(frozen=self.frozen)
                 elif self.imu:
-                    self.rig.feel_attitude()
+                    self.rig.sense_attitude()
             if self.server:
                 detector.see_server()
             if self.pilot:

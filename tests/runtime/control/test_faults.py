@@ -10,16 +10,16 @@ from robot_runtime.contract.packets import SensorFault, StatusFlag
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
 from robot_runtime.control.fault_detector import REPEATS
 from robot_runtime.control.faults import BY_NAME, FAULTS
-from tests.runtime.control.test_supervisor import Rig
+from tests.runtime.control.supervisor_rig import Rig
 
 MS = 0.001
 
 
-def live(rig: Rig, seconds: float, feel: Callable[[], None]) -> None:
+def live(rig: Rig, seconds: float, sense: Callable[[], None]) -> None:
     """Let time pass in steps of 20 ms, in each of which the board says something."""
     for _ in range(round(seconds / 0.02)):
         rig.clock.forward(0.02)
-        feel()
+        sense()
 
 
 def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
@@ -29,14 +29,14 @@ def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
 def all_but(rig: Rig, missing: str) -> Callable[[], None]:
     """What a board says, one of whose sensors is silent."""
 
-    def feel() -> None:
+    def sense() -> None:
         rig.report()
         if missing != "depth":
-            rig.feel_depth()
+            rig.sense_depth()
         if missing != "imu":
-            rig.feel_attitude()
+            rig.sense_attitude()
 
-    return feel
+    return sense
 
 
 @pytest.fixture
@@ -51,14 +51,14 @@ def rig() -> Rig:
     [("depth_stale", 0.4, "depth"), ("imu_stale", 0.15, "imu")],
 )
 def test_a_silent_sensor_is_missed_after_its_limit(rig: Rig, name: str, limit: float, missing: str) -> None:
-    feel = all_but(rig, missing)
+    sense = all_but(rig, missing)
     rig.clock.forward(limit - MS)
-    feel()
+    sense()
     assert name not in wrong(rig)
     rig.clock.forward(2 * MS)
-    feel()
+    sense()
     assert name in wrong(rig)
-    rig.feel()
+    rig.sense()
     assert wrong(rig) == set()
 
 
@@ -72,11 +72,11 @@ def test_a_silent_board_is_no_silent_imu(rig: Rig) -> None:
 
 
 def test_a_frozen_pressure_is_one_that_repeats_often_and_long(rig: Rig) -> None:
-    live(rig, 0.38, lambda: rig.feel(frozen=True))
+    live(rig, 0.38, lambda: rig.sense(frozen=True))
     assert wrong(rig) == set()
-    live(rig, 0.04, lambda: rig.feel(frozen=True))
+    live(rig, 0.04, lambda: rig.sense(frozen=True))
     assert wrong(rig) == {"depth_frozen"}
-    rig.feel()
+    rig.sense()
     assert wrong(rig) == set()
 
 
@@ -85,39 +85,39 @@ def test_on_a_slow_line_a_few_equal_readings_are_not_frozen() -> None:
     rig.ready()
     for _ in range(REPEATS - 1):
         rig.clock.forward(0.5)
-        rig.feel(frozen=True)
+        rig.sense(frozen=True)
     assert wrong(rig) == set()
-    rig.feel(frozen=True)
+    rig.sense(frozen=True)
     assert wrong(rig) == {"depth_frozen"}
 
 
 @pytest.mark.parametrize("depth", [-1.01, 20.01, 32.767])
 def test_a_depth_that_cannot_be_is_soon_a_fault_and_one_jump_is_not(rig: Rig, depth: float) -> None:
-    live(rig, 0.38, lambda: rig.feel(depth))
+    live(rig, 0.38, lambda: rig.sense(depth))
     assert wrong(rig) == set()
-    live(rig, 0.04, lambda: rig.feel(depth))
+    live(rig, 0.04, lambda: rig.sense(depth))
     assert wrong(rig) == {"depth_range"}
     assert f"{depth:.1f} m" in rig.supervisor.detector.depth_refusals()[0]
-    rig.feel(20.0)
+    rig.sense(20.0)
     assert wrong(rig) == set()
 
 
 @pytest.mark.parametrize(("tilt", "faults"), [(74.0, set()), (76.0, {"capsized"}), (180.0, {"capsized"})])
 def test_a_tilt_counts_once_it_lasts(rig: Rig, tilt: float, faults: set[str]) -> None:
-    live(rig, 1.88, lambda: rig.feel(tilt=radians(tilt)))
+    live(rig, 1.88, lambda: rig.sense(tilt=radians(tilt)))
     assert wrong(rig) == set()
-    live(rig, 0.04, lambda: rig.feel(tilt=radians(tilt)))
+    live(rig, 0.04, lambda: rig.sense(tilt=radians(tilt)))
     assert wrong(rig) == faults
 
 
 def test_a_camera_counts_from_its_first_picture_on(rig: Rig) -> None:
     detector = rig.supervisor.detector
-    live(rig, 2.0, rig.feel)
+    live(rig, 2.0, rig.sense)
     assert wrong(rig) == set()
     detector.see_picture(rig.clock.now())
-    live(rig, 0.88, rig.feel)
+    live(rig, 0.88, rig.sense)
     assert wrong(rig) == set()
-    live(rig, 0.04, rig.feel)
+    live(rig, 0.04, rig.sense)
     assert wrong(rig) == {"vision_stale"}
     assert not BY_NAME["vision_stale"].stops("automatic")
 
@@ -136,7 +136,7 @@ def test_what_the_board_says_of_itself_is_a_fault(rig: Rig) -> None:
 
 
 def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:
-    live(rig, 4.1, rig.feel)
+    live(rig, 4.1, rig.sense)
     assert wrong(rig) == {"server_silent"}
     assert wrong(rig, "disarmed") == set()
     rig.supervisor.detector.see_server()

@@ -5,7 +5,6 @@ from random import Random
 
 import pytest
 
-from bench.control import BEST, THESIS, crossing_ratio, perform, variants
 from robot_runtime.control.controllers import Predictive
 from robot_runtime.control.controllers.heave import DOWN, TURNING_ROUND, Heave, Motion
 from robot_runtime.control.controllers.heave_observer import (
@@ -15,6 +14,7 @@ from robot_runtime.control.controllers.heave_observer import (
     HeaveObserver,
     InertialHeave,
 )
+from tests.runtime.control.depth_experiment import BEST, THESIS, crossing_ratio, perform, variants
 
 SECONDS = 0.1
 

@@ -11,11 +11,11 @@ from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, S
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.supervisor import ManagedProcess
-from tests.server.health.test_health import Bench
+from tests.server.health.monitor_rig import MonitorRig
 
 
-class Room(Bench):
-    """A bench with the server's alarms."""
+class AlarmRig(MonitorRig):
+    """A health monitor with the server's alarms."""
 
     def __init__(self, settings: Settings, store: Store) -> None:
         super().__init__(settings, store, *DOWN)
@@ -47,122 +47,122 @@ class Room(Bench):
 
 
 @pytest.fixture
-def room(settings: Settings, store: Store) -> Room:
-    room = Room(settings, store)
-    room.run_all()
-    room.spend(1.0, all=room.hear)
-    return room
+def rig(settings: Settings, store: Store) -> AlarmRig:
+    rig = AlarmRig(settings, store)
+    rig.run_all()
+    rig.spend(1.0, all=rig.receive)
+    return rig
 
 
-def test_all_is_well(room: Room) -> None:
-    room.spend(5.0, all=room.hear)
-    assert (room.alarms.listed(), room.told) == ([], [])
+def test_all_is_well(rig: AlarmRig) -> None:
+    rig.spend(5.0, all=rig.receive)
+    assert (rig.alarms.listed(), rig.told) == ([], [])
 
 
-def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(room: Room) -> None:
-    last_heard = room.clock.now()
-    while "runtime_silent" not in room.active():
-        room.spend(PERIOD)
-    assert room.clock.now() - last_heard <= SILENT_SECONDS + 2 * PERIOD
-    assert room.active() == {"runtime_silent", "simulator_silent"}
-    room.spend(PERIOD, all=room.hear)
-    assert room.active() == set()
-    alarm = room.find("runtime_silent")
+def test_whoever_falls_silent_is_an_alarm_until_it_speaks_again(rig: AlarmRig) -> None:
+    last_heard = rig.clock.now()
+    while "runtime_silent" not in rig.active():
+        rig.spend(PERIOD)
+    assert rig.clock.now() - last_heard <= SILENT_SECONDS + 2 * PERIOD
+    assert rig.active() == {"runtime_silent", "simulator_silent"}
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.active() == set()
+    alarm = rig.find("runtime_silent")
     assert alarm is not None
     assert (alarm.active, alarm.acknowledged) == (False, False)
-    assert [(event.kind, event.severity) for event in room.told] == [
+    assert [(event.kind, event.severity) for event in rig.told] == [
         ("runtime_silent", "alarm"),
         ("simulator_silent", "caution"),
         ("alarm_over", "info"),
         ("alarm_over", "info"),
     ]
-    room.alarms.acknowledge()
-    assert room.alarms.listed() == []
+    rig.alarms.acknowledge()
+    assert rig.alarms.listed() == []
 
 
-def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(room: Room) -> None:
-    room.spend(3.0)
-    room.alarms.acknowledge()
-    alarm = room.find("runtime_silent")
+def test_what_is_acknowledged_while_it_is_wrong_goes_when_it_is_over(rig: AlarmRig) -> None:
+    rig.spend(3.0)
+    rig.alarms.acknowledge()
+    alarm = rig.find("runtime_silent")
     assert alarm is not None
     assert (alarm.active, alarm.acknowledged) == (True, True)
-    room.spend(PERIOD, all=room.hear)
-    assert room.alarms.listed() == []
-    room.spend(3.0)
-    alarm = room.find("runtime_silent")
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.alarms.listed() == []
+    rig.spend(3.0)
+    alarm = rig.find("runtime_silent")
     assert alarm is not None
     assert not alarm.acknowledged
 
 
-def test_what_has_just_been_started_may_be_silent_for_longer(room: Room) -> None:
-    room.run_all()
-    room.spend(STARTING_SECONDS - PERIOD)
-    assert room.active() == set()
-    room.spend(1.0)
-    assert "runtime_silent" in room.active()
+def test_what_has_just_been_started_may_be_silent_for_longer(rig: AlarmRig) -> None:
+    rig.run_all()
+    rig.spend(STARTING_SECONDS - PERIOD)
+    assert rig.active() == set()
+    rig.spend(1.0)
+    assert "runtime_silent" in rig.active()
 
 
-def test_a_server_that_was_held_up_does_not_blame_the_others(room: Room) -> None:
-    room.clock.forward(30.0)
-    room.watchdog.check_once()
-    assert room.active() == set()
-    room.spend(1.0, all=room.hear)
-    assert room.told == []
+def test_a_server_that_was_held_up_does_not_blame_the_others(rig: AlarmRig) -> None:
+    rig.clock.forward(30.0)
+    rig.watchdog.check_once()
+    assert rig.active() == set()
+    rig.spend(1.0, all=rig.receive)
+    assert rig.told == []
 
 
 def test_a_runtime_that_stays_silent_is_ended_once_and_no_other_part(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    rig: AlarmRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended: list[str] = []
     monkeypatch.setattr(
         ManagedProcess, "end_hung", lambda part, problem: ended.append(f"{part.command.name} {problem}")
     )
-    last_heard = room.clock.now()
+    last_heard = rig.clock.now()
     while not ended:
-        room.spend(PERIOD)
-    assert HUNG_SECONDS <= room.clock.now() - last_heard <= HUNG_SECONDS + 2 * PERIOD
+        rig.spend(PERIOD)
+    assert HUNG_SECONDS <= rig.clock.now() - last_heard <= HUNG_SECONDS + 2 * PERIOD
     assert ended == ["runtime said nothing for 10 s, and was ended"]
-    room.spend(HUNG_SECONDS - SILENT_SECONDS - PERIOD)
+    rig.spend(HUNG_SECONDS - SILENT_SECONDS - PERIOD)
     assert len(ended) == 1
-    room.spend(PERIOD, all=room.hear)
-    room.spend(HUNG_SECONDS - PERIOD)
+    rig.spend(PERIOD, all=rig.receive)
+    rig.spend(HUNG_SECONDS - PERIOD)
     assert len(ended) == 1
 
 
 def test_a_server_that_is_held_up_again_and_again_ends_nobody(
-    room: Room, monkeypatch: pytest.MonkeyPatch
+    rig: AlarmRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended: list[ManagedProcess] = []
     monkeypatch.setattr(ManagedProcess, "end_hung", lambda part, _: ended.append(part))
     for _ in range(20):
-        room.clock.forward(30.0)
-        room.watchdog.check_once()
-        room.spend(2 * PERIOD)
-        room.spend(PERIOD, all=room.hear)
+        rig.clock.forward(30.0)
+        rig.watchdog.check_once()
+        rig.spend(2 * PERIOD)
+        rig.spend(PERIOD, all=rig.receive)
     assert ended == []
 
 
 @pytest.mark.parametrize("name", DOWN)
-def test_a_part_that_has_ended_is_an_alarm_until_it_runs_again(room: Room, name: str) -> None:
-    room.parts[name]._fail("was ended by signal SIGKILL", 0.0)
-    room.alarms.begin(DOWN[name], "It was ended.")
-    room.spend(PERIOD, all=room.hear)
-    assert room.active() == {DOWN[name]}
-    room.parts[name]._set("running")
-    room.spend(PERIOD, all=room.hear)
-    alarm = room.find(DOWN[name])
+def test_a_part_that_has_ended_is_an_alarm_until_it_runs_again(rig: AlarmRig, name: str) -> None:
+    rig.parts[name]._fail("was ended by signal SIGKILL", 0.0)
+    rig.alarms.begin(DOWN[name], "It was ended.")
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.active() == {DOWN[name]}
+    rig.parts[name]._set("running")
+    rig.spend(PERIOD, all=rig.receive)
+    alarm = rig.find(DOWN[name])
     assert alarm is not None
     assert (alarm.active, alarm.what) == (False, "It was ended.")
 
 
-def test_a_part_that_is_paused_is_not_wrong(room: Room) -> None:
-    for part in room.parts.values():
+def test_a_part_that_is_paused_is_not_wrong(rig: AlarmRig) -> None:
+    for part in rig.parts.values():
         part._set("paused")
-    room.spend(20.0)
-    assert room.alarms.listed() == []
+    rig.spend(20.0)
+    assert rig.alarms.listed() == []
 
 
-def test_a_disk_that_fills_up(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_disk_that_fills_up(rig: AlarmRig, monkeypatch: pytest.MonkeyPatch) -> None:
     disk = SimpleNamespace()
     monkeypatch.setattr(shutil, "disk_usage", lambda _: disk)
     for disk.total, disk.free, low in (
@@ -171,17 +171,17 @@ def test_a_disk_that_fills_up(room: Room, monkeypatch: pytest.MonkeyPatch) -> No
         (10**9, 49_000_000, True),
         (10**9, 51_000_000, False),
     ):
-        room.spend(PERIOD, all=room.hear)
-        assert room.active() == ({"disk_low"} if low else set())
+        rig.spend(PERIOD, all=rig.receive)
+        assert rig.active() == ({"disk_low"} if low else set())
 
 
-def test_a_database_that_fails(room: Room, store: Store) -> None:
+def test_a_database_that_fails(rig: AlarmRig, store: Store) -> None:
     store.failing = "the disk is full"
-    room.spend(PERIOD, all=room.hear)
-    assert room.active() == {"store_failing"}
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.active() == {"store_failing"}
     store.failing = None
-    room.spend(PERIOD, all=room.hear)
-    assert room.active() == set()
+    rig.spend(PERIOD, all=rig.receive)
+    assert rig.active() == set()
 
 
 def test_every_fault_says_the_likely_cause_and_what_to_do() -> None:

@@ -24,7 +24,7 @@ from server.platform.schema import prepare, read_revision
 from server.platform.settings import Settings
 from server.platform.store import Reader, Store
 from tests.server.blocks import depth_block
-from tests.server.features.exports.test_tables import record
+from tests.server.features.exports.recordings import record
 from tests.server.older import ROWS, make_session, upgrade_to
 from tests.stack import ROOT
 

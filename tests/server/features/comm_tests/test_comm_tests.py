@@ -18,7 +18,6 @@ from typing import Any
 import pytest
 
 from robot_runtime.experiments.comm_test.document import read_document
-from robot_runtime.experiments.comm_test.results import CellResult, Counts, GridCell, LineErrors
 from server.cli import main
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import read_table
@@ -28,24 +27,10 @@ from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.board.rig import ROOT, build
-from tests.runtime.experiments.comm_test.conftest import make_test
+from tests.server.features.comm_tests.stored_runs import ENTRY, LOST, begin
 from tests.server.older import upgrade_to
 
 pytestmark = pytest.mark.stack
-
-ENTRY: dict[str, Any] = {
-    "id": 1,
-    "name": "two delays",
-    "ino_path": "/micro_cat_test/arduino/test_6/test_6.ino",
-    "delay": [0.0, 0.5],
-    "baud_rate": [115200],
-    "from_val": 1,
-    "to_val": 13,
-    "expected": 12,
-    "arduinodelay": [0.1],
-}
-
-LOST = CellResult(GridCell(9600, 0.5, 1.0), "to_board", 100, None, Counts(), 0, 0, LineErrors(7, 0, 0), 3.0)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -202,10 +187,6 @@ def test_a_lost_result_is_kept_as_such(store: Store) -> None:
     whole = runs.whole(run)
     assert (whole.cells_done, whole.rate_mean, whole.rate_min) == (1, 0.0, 0.0)
     assert whole.results[0].causes == ["lost result", "line"]
-
-
-async def begin(runs: CommTestStore) -> int:
-    return await runs.start(make_test(), "emulated", "firmware", {}, "host")
 
 
 def test_what_is_no_cell_is_not_stored(store: Store) -> None:

@@ -15,7 +15,7 @@ from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import depth_block
-from tests.server.features.exports.test_tables import record
+from tests.server.features.exports.recordings import record
 from tests.server.serving import serve
 
 

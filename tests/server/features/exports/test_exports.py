@@ -34,7 +34,7 @@ from server.platform.models import BookmarkRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
-from tests.server.features.exports.test_tables import record
+from tests.server.features.exports.recordings import record
 
 AWKWARD = 'say "hi", then\nbreak; é, nan'
 

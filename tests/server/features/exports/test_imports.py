@@ -29,7 +29,7 @@ from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader, Store, StoreError
 from tests.server.blocks import debug_block, depth_block, state_block
-from tests.server.features.exports.test_tables import record
+from tests.server.features.exports.recordings import record
 from tests.server.serving import serve
 
 Members = dict[str, bytes]

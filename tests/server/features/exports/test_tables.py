@@ -11,7 +11,6 @@ from typing import Any, BinaryIO, cast
 import pytest
 from sqlalchemy import Connection, text
 
-from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Truth
 from robot_runtime.contract.packets import Motor
 from robot_runtime.contract.topics import BY_NAME
@@ -20,34 +19,12 @@ from server.features.exports.description import file_name
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
 from server.features.exports.tables import write_tables
-from server.features.sessions.recorder import Recorder
 from server.features.sessions.recording import CHUNKS_AT_ONCE, RecordingError
-from server.features.sessions.session import find_row, new_row
-from server.platform.notices import Notices
+from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
-
-STARTED_STEADY = 99.5
-
-
-def record(
-    store: Store, settings: Settings, *batches: list[Block], name: str = "Dive no. 1: Öresund/../x"
-) -> int:
-    """Record these batches, each in a commit of its own. Returns the session's number."""
-
-    async def scenario() -> int:
-        clock = SimulatedClock(STARTED_STEADY)
-        recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
-        session = await recorder.start(new_row(settings, clock, name, "calm", '{"mode": "disarmed"}'))
-        for batch in batches:
-            for block in batch:
-                recorder.add(block)
-            await recorder.flush()
-        await recorder.stop(session.id)
-        return session.id
-
-    return asyncio.run(scenario())
+from tests.server.features.exports.recordings import STARTED_STEADY, record
 
 
 def make(store: Store, session: int, **wanted: Any) -> ExportSelection:

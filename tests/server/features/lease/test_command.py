@@ -6,7 +6,7 @@ import pytest
 from server.features.lease.command import in_control, renew_control
 from server.platform.running_server import announce, ask
 from server.platform.settings import Settings, SetupError
-from tests.server.features.lease.test_control import free, open_page
+from tests.server.features.lease.pages import free, open_page
 from tests.server.serving import Served, play
 
 

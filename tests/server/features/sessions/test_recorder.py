@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy.exc import OperationalError
-from sqlmodel import col, select
+from sqlmodel import select
 
 import server.features.sessions.recorder as recorder_module
 from robot_runtime.clock import SimulatedClock
@@ -19,73 +19,19 @@ from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.chunks import decode_rows
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.recording import Recording
-from server.features.sessions.session import find_row, new_row
-from server.platform.models import Chunk, Gap
+from server.features.sessions.session import find_row
+from server.platform.models import Gap
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from tests.server.blocks import debug_block, depth_block, picture_block
+from tests.server.features.sessions.recorder_rig import RecorderRig
 from tests.server.waiting import until
 
 
-class Deck:
-    """A recorder and everything around it."""
-
-    def __init__(self, store: Store, settings: Settings) -> None:
-        self.store = store
-        self.settings = settings
-        self.clock = SimulatedClock(50.0)
-        self.told: list[str] = []
-        self.changes = 0
-        self._with_notices = False
-        self.recorder = Recorder(store, self.clock, Notices(self.clock, self._hear), self._count)
-
-    async def start(self, name: str = "dive") -> int:
-        row = new_row(self.settings, self.clock, name, "", "null")
-        return (await self.recorder.start(row)).id
-
-    def chunks(self, topic: str = "depth") -> list[Chunk]:
-        with self.store.read() as database:
-            return list(
-                database.exec(select(Chunk).where(Chunk.topic == topic).order_by(col(Chunk.id))).all()
-            )
-
-    def numbers(self, topic: str = "depth") -> list[int]:
-        return [
-            (chunk.first + place) % NUMBERS for chunk in self.chunks(topic) for place in range(chunk.count)
-        ]
-
-    def gaps(self) -> list[tuple[str, str, int]]:
-        with self.store.read() as database:
-            return [
-                (gap.topic, gap.kind, gap.missed) for gap in database.exec(select(Gap).order_by(col(Gap.id)))
-            ]
-
-    def fail(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Let every write from here on end as on a full disk."""
-        problem = sqlite3.OperationalError("database or disk is full")
-
-        def refuse(*_: object) -> None:
-            raise OperationalError("INSERT", {}, problem)
-
-        monkeypatch.setattr(recorder_module, "_insert", refuse)
-
-    def notices_too(self) -> None:
-        """Record what is told, as the server does."""
-        self._with_notices = True
-
-    def _hear(self, arrival: Block) -> None:
-        self.told.append(json.loads(arrival.payload)[0]["text"])
-        if self._with_notices:
-            self.recorder.add(arrival)
-
-    def _count(self) -> None:
-        self.changes += 1
-
-
 @pytest.fixture
-def deck(store: Store, settings: Settings) -> Deck:
-    return Deck(store, settings)
+def rig(store: Store, settings: Settings) -> RecorderRig:
+    return RecorderRig(store, settings)
 
 
 def play(scenario: Callable[[], Awaitable[Any]]) -> None:
@@ -95,47 +41,47 @@ def play(scenario: Callable[[], Awaitable[Any]]) -> None:
     asyncio.run(run())
 
 
-def test_what_arrives_is_stored_unchanged_and_in_order(deck: Deck) -> None:
+def test_what_arrives_is_stored_unchanged_and_in_order(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        await deck.start()
+        await rig.start()
         blocks = [depth_block(0, 5), depth_block(5, 5), depth_block(10, 5)]
-        deck.recorder.add(blocks[0])
-        deck.recorder.add(blocks[1])
-        await deck.recorder.flush()
-        deck.recorder.add(blocks[2])
-        await deck.recorder.flush()
-        stored = deck.chunks()
+        rig.recorder.add(blocks[0])
+        rig.recorder.add(blocks[1])
+        await rig.recorder.flush()
+        rig.recorder.add(blocks[2])
+        await rig.recorder.flush()
+        stored = rig.chunks()
         assert [(chunk.number, chunk.first, chunk.count) for chunk in stored] == [(0, 0, 10), (1, 10, 5)]
         size = BY_NAME["depth"].row_bytes
         assert b"".join(decode_rows(chunk.data, size) for chunk in stored) == b"".join(
             block.payload for block in blocks
         )
         assert (stored[0].first_time, stored[0].last_time) == (100.0, pytest.approx(100.18))
-        assert deck.gaps() == []
+        assert rig.gaps() == []
 
     play(scenario)
 
 
-def test_before_and_after_a_session_nothing_is_kept(deck: Deck) -> None:
+def test_before_and_after_a_session_nothing_is_kept(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        deck.recorder.add(depth_block(0, 5))
-        session = await deck.start()
-        deck.recorder.add(depth_block(5, 5))
-        await deck.recorder.stop(session)
-        deck.recorder.add(depth_block(10, 5))
-        assert deck.recorder._gathered.spans == []
-        second = await deck.start()
-        await deck.recorder.stop(second)
-        assert deck.numbers() == list(range(5, 10))
+        rig.recorder.add(depth_block(0, 5))
+        session = await rig.start()
+        rig.recorder.add(depth_block(5, 5))
+        await rig.recorder.stop(session)
+        rig.recorder.add(depth_block(10, 5))
+        assert rig.recorder._gathered.spans == []
+        second = await rig.start()
+        await rig.recorder.stop(second)
+        assert rig.numbers() == list(range(5, 10))
 
     play(scenario)
 
 
-def test_pictures_are_not_recorded(deck: Deck) -> None:
+def test_pictures_are_not_recorded(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start()
-        deck.recorder.add(picture_block(0))
-        assert (await deck.recorder.stop(session)).samples == 0
+        session = await rig.start()
+        rig.recorder.add(picture_block(0))
+        assert (await rig.recorder.stop(session)).samples == 0
 
     play(scenario)
 
@@ -161,153 +107,153 @@ def test_holes_are_counted_and_chunks_stay_without_holes(
     assert gaps == ({("depth", "missed"): missed} if missed else {})
 
 
-def test_a_writer_that_counts_anew_begins_a_new_chunk(deck: Deck) -> None:
+def test_a_writer_that_counts_anew_begins_a_new_chunk(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start()
-        deck.recorder.add(depth_block(1000, 5))
-        deck.recorder.add(depth_block(0, 5))
-        deck.recorder.add(depth_block(7, 1))
-        await deck.recorder.stop(session)
-        assert [(chunk.first, chunk.count) for chunk in deck.chunks()] == [(1000, 5), (0, 5), (7, 1)]
-        assert sorted(deck.gaps()) == [("depth", "missed", 2), ("depth", "restarted", 0)]
+        session = await rig.start()
+        rig.recorder.add(depth_block(1000, 5))
+        rig.recorder.add(depth_block(0, 5))
+        rig.recorder.add(depth_block(7, 1))
+        await rig.recorder.stop(session)
+        assert [(chunk.first, chunk.count) for chunk in rig.chunks()] == [(1000, 5), (0, 5), (7, 1)]
+        assert sorted(rig.gaps()) == [("depth", "missed", 2), ("depth", "restarted", 0)]
 
     play(scenario)
 
 
 def test_a_gap_is_noted_when_it_shows_however_late_it_is_stored(
-    deck: Deck, monkeypatch: pytest.MonkeyPatch
+    rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
-        session = await deck.start()
-        deck.clock.forward(1)
-        deck.recorder.add(depth_block(0, 1))
-        deck.recorder.add(depth_block(3, 1))
-        deck.clock.forward(1)
+        session = await rig.start()
+        rig.clock.forward(1)
+        rig.recorder.add(depth_block(0, 1))
+        rig.recorder.add(depth_block(3, 1))
+        rig.clock.forward(1)
         with monkeypatch.context() as broken:
-            deck.fail(broken)
+            rig.fail(broken)
             with pytest.raises(StoreError):
-                await deck.recorder.flush()
-        deck.recorder.add(depth_block(5, 1))
-        await deck.recorder.stop(session)
-        assert deck.gaps() == [("depth", "missed", 3)]
-        with deck.store.read() as database:
+                await rig.recorder.flush()
+        rig.recorder.add(depth_block(5, 1))
+        await rig.recorder.stop(session)
+        assert rig.gaps() == [("depth", "missed", 3)]
+        with rig.store.read() as database:
             assert database.exec(select(Gap.time)).all() == [51.0]
 
     play(scenario)
 
 
-def test_numbers_run_through_their_end_without_a_hole(deck: Deck) -> None:
+def test_numbers_run_through_their_end_without_a_hole(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start()
-        deck.recorder.add(depth_block(NUMBERS - 2, 2))
-        deck.recorder.add(depth_block(0, 2))
-        await deck.recorder.stop(session)
-        assert deck.numbers() == [NUMBERS - 2, NUMBERS - 1, 0, 1]
-        assert deck.gaps() == []
+        session = await rig.start()
+        rig.recorder.add(depth_block(NUMBERS - 2, 2))
+        rig.recorder.add(depth_block(0, 2))
+        await rig.recorder.stop(session)
+        assert rig.numbers() == [NUMBERS - 2, NUMBERS - 1, 0, 1]
+        assert rig.gaps() == []
 
     play(scenario)
 
 
-def test_a_session_knows_what_is_stored_of_it(deck: Deck) -> None:
+def test_a_session_knows_what_is_stored_of_it(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start("first")
-        deck.recorder.add(depth_block(0, 5))
-        deck.recorder.add(debug_block(0, "a", "b"))
-        deck.clock.forward(2.5)
-        await deck.recorder.flush()
-        (shown,) = Catalogue(deck.store).list()
+        session = await rig.start("first")
+        rig.recorder.add(depth_block(0, 5))
+        rig.recorder.add(debug_block(0, "a", "b"))
+        rig.clock.forward(2.5)
+        await rig.recorder.flush()
+        (shown,) = Catalogue(rig.store).list()
         assert (shown.samples, shown.duration, shown.state, shown.ended) == (7, 2.5, "recording", None)
-        assert shown.bytes == sum(len(chunk.data) for chunk in deck.chunks() + deck.chunks("debug"))
-        assert shown == deck.recorder.session
-        deck.clock.forward(1)
-        done = await deck.recorder.stop(session)
+        assert shown.bytes == sum(len(chunk.data) for chunk in rig.chunks() + rig.chunks("debug"))
+        assert shown == rig.recorder.session
+        rig.clock.forward(1)
+        done = await rig.recorder.stop(session)
         assert (done.state, done.duration) == ("complete", 3.5)
         assert done.ended is not None
-        assert done == Catalogue(deck.store).list()[0]
-        row = find_row(deck.store, session)
-        assert row.configuration == deck.settings.config.read_text()
-        assert deck.told == ["Recording of “first” has begun.", "Recording of “first” has ended."]
+        assert done == Catalogue(rig.store).list()[0]
+        row = find_row(rig.store, session)
+        assert row.configuration == rig.settings.config.read_text()
+        assert rig.told == ["Recording of “first” has begun.", "Recording of “first” has ended."]
 
     play(scenario)
 
 
-def test_one_session_at_a_time(deck: Deck) -> None:
+def test_one_session_at_a_time(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start()
+        session = await rig.start()
         with pytest.raises(RecordingRefusedError, match="stop it first"):
-            await deck.start()
+            await rig.start()
         with pytest.raises(RecordingRefusedError):
-            await deck.recorder.stop(session + 1)
-        await deck.recorder.stop(session)
+            await rig.recorder.stop(session + 1)
+        await rig.recorder.stop(session)
         with pytest.raises(RecordingRefusedError):
-            await deck.recorder.stop(session)
-        assert await deck.start() == session + 1
+            await rig.recorder.stop(session)
+        assert await rig.start() == session + 1
 
     play(scenario)
 
 
 def test_what_cannot_be_written_waits_and_is_written_later(
-    deck: Deck, monkeypatch: pytest.MonkeyPatch
+    rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
-        session = await deck.start()
+        session = await rig.start()
         with monkeypatch.context() as broken:
-            deck.fail(broken)
+            rig.fail(broken)
             for number in range(3):
-                deck.recorder.add(depth_block(5 * number, 5))
+                rig.recorder.add(depth_block(5 * number, 5))
                 with pytest.raises(StoreError, match="disk is full"):
-                    await deck.recorder.flush()
-            assert deck.numbers() == []
+                    await rig.recorder.flush()
+            assert rig.numbers() == []
             with pytest.raises(StoreError):
-                await deck.recorder.stop(session)
-        assert deck.recorder.session is not None
-        deck.recorder.add(depth_block(15, 5))
-        done = await deck.recorder.stop(session)
-        assert deck.numbers() == list(range(20))
-        assert (deck.gaps(), done.samples) == ([], 20)
+                await rig.recorder.stop(session)
+        assert rig.recorder.session is not None
+        rig.recorder.add(depth_block(15, 5))
+        done = await rig.recorder.stop(session)
+        assert rig.numbers() == list(range(20))
+        assert (rig.gaps(), done.samples) == ([], 20)
 
     play(scenario)
 
 
 def test_what_does_not_fit_into_memory_while_it_waits_is_counted(
-    deck: Deck, monkeypatch: pytest.MonkeyPatch
+    rig: RecorderRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(recorder_module, "BACKLOG_BYTES", 1000)
 
     async def scenario() -> None:
-        session = await deck.start()
+        session = await rig.start()
         with monkeypatch.context() as broken:
-            deck.fail(broken)
+            rig.fail(broken)
             for number in range(50):
-                deck.recorder.add(depth_block(5 * number, 5))
+                rig.recorder.add(depth_block(5 * number, 5))
                 with pytest.raises(StoreError):
-                    await deck.recorder.flush()
-        await deck.recorder.stop(session)
-        kept = deck.numbers()
+                    await rig.recorder.flush()
+        await rig.recorder.stop(session)
+        kept = rig.numbers()
         assert kept == list(range(kept[0], 250))
         assert 0 < len(kept) < 250
-        assert deck.gaps() == [("depth", "not stored", 250 - len(kept))]
+        assert rig.gaps() == [("depth", "not stored", 250 - len(kept))]
 
     play(scenario)
 
 
-def test_failing_and_recovering_are_told_once_each(deck: Deck, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failing_and_recovering_are_told_once_each(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recorder_module, "PERIOD", 0.005)
 
     async def scenario() -> None:
-        session = await deck.start()
-        work = asyncio.create_task(deck.recorder.run())
+        session = await rig.start()
+        work = asyncio.create_task(rig.recorder.run())
         with monkeypatch.context() as broken:
-            deck.fail(broken)
-            await until(lambda: deck.store.failing, "the failure")
-            deck.recorder.add(depth_block(0, 5))
-            await until(lambda: len(deck.told) == 2, "the alarm")
+            rig.fail(broken)
+            await until(lambda: rig.store.failing, "the failure")
+            rig.recorder.add(depth_block(0, 5))
+            await until(lambda: len(rig.told) == 2, "the alarm")
             await asyncio.sleep(0.05)
-        await until(lambda: len(deck.told) == 3, "the all-clear")
-        await until(lambda: deck.numbers() == list(range(5)), "the rows")
+        await until(lambda: len(rig.told) == 3, "the all-clear")
+        await until(lambda: rig.numbers() == list(range(5)), "the rows")
         work.cancel()
-        await deck.recorder.stop(session)
-        assert [text.split(":")[0] for text in deck.told[1:3]] == [
+        await rig.recorder.stop(session)
+        assert [text.split(":")[0] for text in rig.told[1:3]] == [
             "Nothing can be stored",
             "Storing works again.",
         ]
@@ -315,7 +261,7 @@ def test_failing_and_recovering_are_told_once_each(deck: Deck, monkeypatch: pyte
     play(scenario)
 
 
-def test_failing_without_a_session_is_tried_again(deck: Deck, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failing_without_a_session_is_tried_again(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recorder_module, "PERIOD", 0.002)
 
     async def scenario() -> None:
@@ -325,30 +271,30 @@ def test_failing_without_a_session_is_tried_again(deck: Deck, monkeypatch: pytes
         with monkeypatch.context() as broken:
             broken.setattr(recorder_module, "insert_row", refuse)
             with pytest.raises(StoreError, match="SD card"):
-                await deck.start()
-        assert deck.recorder.session is None
-        work = asyncio.create_task(deck.recorder.run())
-        await until(lambda: deck.store.failing is None, "the recovery")
-        await until(lambda: deck.told == ["Storing works again."], "the all-clear")
+                await rig.start()
+        assert rig.recorder.session is None
+        work = asyncio.create_task(rig.recorder.run())
+        await until(lambda: rig.store.failing is None, "the recovery")
+        await until(lambda: rig.told == ["Storing works again."], "the all-clear")
         work.cancel()
 
     play(scenario)
 
 
-def test_samples_that_cannot_be_read_are_counted_and_harm_no_others(deck: Deck) -> None:
+def test_samples_that_cannot_be_read_are_counted_and_harm_no_others(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        session = await deck.start()
+        session = await rig.start()
         bad = debug_block(0, "x")
-        deck.recorder.add(Block(bad.topic, 2, 0, b"\0" * 12 + b"no JSON"))
-        deck.recorder.add(depth_block(0, 5))
-        done = await deck.recorder.stop(session)
-        assert (deck.numbers(), done.samples) == (list(range(5)), 5)
-        assert deck.gaps() == [("debug", "damaged", 2)]
+        rig.recorder.add(Block(bad.topic, 2, 0, b"\0" * 12 + b"no JSON"))
+        rig.recorder.add(depth_block(0, 5))
+        done = await rig.recorder.stop(session)
+        assert (rig.numbers(), done.samples) == (list(range(5)), 5)
+        assert rig.gaps() == [("debug", "damaged", 2)]
 
     play(scenario)
 
 
-def test_a_cancelled_flush_stores_everything_once(deck: Deck, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cancelled_flush_stores_everything_once(rig: RecorderRig, monkeypatch: pytest.MonkeyPatch) -> None:
     writing, gate = threading.Event(), threading.Event()
     insert = recorder_module._insert
 
@@ -360,41 +306,41 @@ def test_a_cancelled_flush_stores_everything_once(deck: Deck, monkeypatch: pytes
     monkeypatch.setattr(recorder_module, "_insert", insert_slowly)
 
     async def scenario() -> None:
-        session = await deck.start()
-        deck.recorder.add(depth_block(0, 5))
-        flush = asyncio.create_task(deck.recorder.flush())
+        session = await rig.start()
+        rig.recorder.add(depth_block(0, 5))
+        flush = asyncio.create_task(rig.recorder.flush())
         await until(writing.is_set, "the writer")
         flush.cancel()
-        deck.recorder.add(depth_block(5, 5))
+        rig.recorder.add(depth_block(5, 5))
         gate.set()
-        await deck.recorder.stop(session)
-        assert deck.numbers() == list(range(10))
+        await rig.recorder.stop(session)
+        assert rig.numbers() == list(range(10))
 
     play(scenario)
 
 
-def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(deck: Deck) -> None:
+def test_what_a_crash_left_recording_is_marked_and_keeps_its_chunks(rig: RecorderRig) -> None:
     async def scenario() -> None:
-        await deck.start()
-        deck.recorder.add(depth_block(0, 5))
-        deck.clock.forward(4)
-        await deck.recorder.flush()
-        after = Deck(deck.store, deck.settings)
+        await rig.start()
+        rig.recorder.add(depth_block(0, 5))
+        rig.clock.forward(4)
+        await rig.recorder.flush()
+        after = RecorderRig(rig.store, rig.settings)
         left = await after.recorder.recover()
         assert left is not None
         await after.recorder.resume(left, {})
-        (session,) = Catalogue(deck.store).list()
+        (session,) = Catalogue(rig.store).list()
         assert (session.state, session.samples, session.duration) == ("interrupted", 5, 4)
         assert session.ended is not None
         assert (session.ended - session.started).total_seconds() == pytest.approx(4, abs=1e-5)
         assert after.numbers() == list(range(5))
         await after.start("next")
-        assert [one.state for one in Catalogue(deck.store).list()] == ["recording", "interrupted"]
+        assert [one.state for one in Catalogue(rig.store).list()] == ["recording", "interrupted"]
 
     play(scenario)
 
 
-def test_a_session_begins_with_the_parameters_in_force(deck: Deck, store: Store) -> None:
+def test_a_session_begins_with_the_parameters_in_force(rig: RecorderRig, store: Store) -> None:
     def told(number: int, kp: float) -> Block:
         listed = [{"name": "depth.pid.kp", "value": kp}]
         payload = json.dumps([{"time": 40.0 + number, "parameters": listed}]).encode()
@@ -402,14 +348,14 @@ def test_a_session_begins_with_the_parameters_in_force(deck: Deck, store: Store)
 
     async def scenario() -> None:
         for number, kp in enumerate((3.0, 4.0)):
-            deck.recorder.add(told(number, kp))
-        await deck.start()
-        deck.recorder.add(told(2, 5.0))
-        await deck.recorder.flush()
+            rig.recorder.add(told(number, kp))
+        await rig.start()
+        rig.recorder.add(told(2, 5.0))
+        await rig.recorder.flush()
 
     play(scenario)
     row = find_row(store, 1)
     documents = list(Recording(store, row).documents("parameters"))
     assert [(one["time"], one["parameters"][0]["value"]) for one in documents] == [(50.0, 4.0), (42.0, 5.0)]
-    assert deck.numbers("parameters") == [1, 2]
-    assert deck.gaps() == []
+    assert rig.numbers("parameters") == [1, 2]
+    assert rig.gaps() == []

@@ -9,7 +9,7 @@ from server.features.sessions.session import find_row
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, picture_block, state_block, thumbnail_block
-from tests.server.features.exports.test_tables import record
+from tests.server.features.exports.recordings import record
 
 
 def read(store: Store, session: int) -> Recording:

@@ -27,7 +27,7 @@ from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block, state_block
-from tests.server.features.exports.test_tables import STARTED_STEADY, record
+from tests.server.features.exports.recordings import STARTED_STEADY, record
 from tests.server.serving import Served, serve
 
 

@@ -19,7 +19,7 @@ from server.platform.models import Chunk, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.blocks import debug_block, depth_block
-from tests.server.features.sessions.test_recorder import Deck
+from tests.server.features.sessions.recorder_rig import RecorderRig
 
 
 def truth_block(first: int, count: int, start: float = 100.0) -> Block:
@@ -41,8 +41,8 @@ class Wreck:
     """A recorder that was forgotten in the middle, and senders that go on."""
 
     def __init__(self, store: Store, settings: Settings) -> None:
-        self.before = Deck(store, settings)
-        self.after = Deck(store, settings)
+        self.before = RecorderRig(store, settings)
+        self.after = RecorderRig(store, settings)
         self.runs = {name: f"{name} run" for name in SENT_BY}
         self.kept = {name: ReplayCache(run, self.before.clock) for name, run in self.runs.items()}
         self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
@@ -166,8 +166,8 @@ def test_a_session_of_which_nothing_is_stored_yet_goes_on_with_its_runtime_alone
 
 def test_notices_are_numbered_on(wreck: Wreck) -> None:
     async def scenario() -> None:
-        wreck.before.notices_too()
-        wreck.after.notices_too()
+        wreck.before.record_notices()
+        wreck.after.record_notices()
         await wreck.start()
         await wreck.resume()
         await wreck.after.recorder.stop(wreck.session)

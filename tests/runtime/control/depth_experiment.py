@@ -1,0 +1,218 @@
+"""An experiment with the depth controllers in simulated time: three steps and a sine, with its figures."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import pi, sin
+from statistics import fmean
+from typing import Any
+
+from robot_runtime.contract.documents import Truth
+from robot_runtime.experiments.scenario.boards import boards
+from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.simulation.water.geometry import rotation, to_world
+from robot_runtime.simulation.water.parameters import SimulationParameters, Six
+from robot_runtime.transport.blocks import read_blocks, read_rows
+
+BEST, THESIS = "predictive", "bang_bang"
+SEEDS = (3, 4, 5)
+"""Of the sensors' noise, which also decides the phase of a limit cycle when a step begins."""
+ARMED = 1.0
+"""s; the first step begins here, at the surface."""
+STEP = 20.0
+"""s between two steps."""
+SET_POINTS = (0.5, 1.0, 0.5)
+"""m."""
+STEADY = 8.0
+"""s at the end of each step over which peak-to-peak is taken."""
+BAND = 0.02
+"""m about the set point."""
+SINE_CENTRE, SINE_SIZE, SINE_PERIOD = 0.6, 0.1, 20.0
+"""m, m, s; the set point is moved five times a second."""
+_STROKE = 0.1
+"""rad that a fin must swing for it to count."""
+
+
+def variants() -> dict[str, SimulationParameters]:
+    """The simulated robots: the nominal one, and variants with one property 30 % off.
+
+    Buoyancy means what is left over the weight, 0.3 % of it: 30 % of the whole would throw the robot out
+    of the water. Mass is the hull's, trimmed anew; drag is the hull's, linear and quadratic; thrust is the fins'.
+    """
+    plain = SimulationParameters()
+    made = {"nominal": plain}
+    for sign, factor in (("-", 0.7), ("+", 1.3)):
+        x, y, z = plain.inertia
+        made |= {
+            f"mass {sign}30 %": replace(
+                plain, mass=plain.mass * factor, inertia=(x * factor, y * factor, z * factor)
+            ),
+            f"buoyancy {sign}30 %": replace(plain, buoyancy=1 + (plain.buoyancy - 1) * factor),
+            f"drag {sign}30 %": replace(
+                plain,
+                damping_linear=_scaled(plain.damping_linear, factor),
+                damping_quadratic=_scaled(plain.damping_quadratic, factor),
+            ),
+            f"thrust {sign}30 %": replace(plain, fin_drag=plain.fin_drag * factor),
+        }
+    return made
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Figures of one controller on one robot: the worst of the three steps, unless stated otherwise."""
+
+    rmse: float
+    """m, over all three."""
+    overshoot: float
+    """Share of the step."""
+    settling: float
+    """s until it stays within ±2 cm; the step's whole time if it does not."""
+    steady: float
+    """m, from peak to peak."""
+    crossings: tuple[float, ...]
+    """s until the set point is reached, of each step."""
+    strokes: int
+    """Of all four fins together, over all three."""
+    sine: float
+    """m, RMSE while the set point follows a sine."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The true state: time (s), depth of the sensor (m) and fin angles (rad)."""
+
+    time: float
+    depth: float
+    fins: tuple[float, ...]
+
+
+class _TruthRecorder:
+    def __init__(self, sensor: tuple[float, float, float]) -> None:
+        self.samples: list[Sample] = []
+        self._sensor = sensor
+
+    def blocks(self, data: bytes) -> None:
+        """Stores the truth."""
+        for block in read_blocks(data):
+            if block.topic.name == "truth":
+                for time, truth in read_rows(block):
+                    assert isinstance(truth, Truth)
+                    above = to_world(rotation(truth.attitude), self._sensor)[2]
+                    self.samples.append(Sample(time, truth.position[2] + above, truth.fins))
+
+    def event(self, event: str, **more: Any) -> None:
+        """Ignores it."""
+
+
+def experiment(
+    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+) -> Scenario:
+    """The scenario: three steps, and a sine."""
+    steps_end = ARMED + STEP * len(SET_POINTS)
+    duration = steps_end + (SINE_PERIOD if sine else 0.0)
+    events = [(ARMED + STEP * number, depth) for number, depth in enumerate(SET_POINTS) if number]
+    if sine:
+        events += [(steps_end + 0.2 * number, _sine(0.2 * number)) for number in range(int(SINE_PERIOD * 5))]
+    text = (
+        f'name = "control"\ntitle = "Control"\nduration = {duration}\nseed = {seed}\n'
+        '[scene]\nkind = "natural"\ndepth = 5\n'
+        f'[control]\ncontroller = "{controller}"\nset_point = {SET_POINTS[0]}\n'
+        f'[[events]]\nat = {ARMED}\ndo = "arm"\n'
+    )
+    text += "".join(f'[[events]]\nat = {at}\ndo = "set_points"\ndefault = {depth}\n' for at, depth in events)
+    return replace(read_scenario(text), robot=robot)
+
+
+def perform(
+    controller: str, robot: SimulationParameters, *, sine: bool = True, seed: int = SEEDS[0]
+) -> Figures:
+    """Runs the scenario and returns its figures."""
+    taken = _TruthRecorder(robot.pressure_position)
+    ScenarioRun(experiment(controller, robot, sine=sine, seed=seed), boards()["host"], taken).perform(
+        lambda _: {}
+    )
+    return judge(taken.samples)
+
+
+def judge(samples: Sequence[Sample]) -> Figures:
+    """The figures of the whole experiment; `sine` is NaN without one."""
+    starts = [ARMED + STEP * number for number in range(len(SET_POINTS))]
+    overshoots, settlings, steadies, crossings = [], [], [], []
+    squares: list[float] = []
+    before = 0.0
+    for start, set_point in zip(starts, SET_POINTS, strict=True):
+        part = [(one.time - start, one.depth) for one in samples if start <= one.time < start + STEP]
+        size, side = abs(set_point - before), 1 if set_point > before else -1
+        remaining = [(time, (set_point - depth) * side) for time, depth in part]
+        squares += [error**2 for _, error in remaining]
+        overshoots.append(max(0.0, -min(error for _, error in remaining)) / size)
+        settlings.append(max((time for time, error in remaining if abs(error) > BAND), default=0.0))
+        crossings.append(next((time for time, error in remaining if error <= 0), STEP))
+        rest = [depth for time, depth in part if time >= STEP - STEADY]
+        steadies.append(max(rest) - min(rest))
+        before = set_point
+    end = starts[-1] + STEP
+    # The first quarter is the transition to the sine.
+    waving = [one for one in samples if end + SINE_PERIOD / 4 <= one.time < end + SINE_PERIOD]
+    return Figures(
+        rmse=_root_mean(squares),
+        overshoot=max(overshoots),
+        settling=max(settlings),
+        steady=max(steadies),
+        crossings=tuple(crossings),
+        strokes=sum(_strokes([one.fins[fin] for one in samples if one.time < end]) for fin in range(4)),
+        sine=_root_mean([(one.depth - _sine(one.time - end)) ** 2 for one in waving]),
+    )
+
+
+def worst(runs: Sequence[Figures]) -> Figures:
+    """The worst of each figure."""
+    return Figures(
+        rmse=max(one.rmse for one in runs),
+        overshoot=max(one.overshoot for one in runs),
+        settling=max(one.settling for one in runs),
+        steady=max(one.steady for one in runs),
+        crossings=tuple(max(times) for times in zip(*(one.crossings for one in runs), strict=True)),
+        strokes=max(one.strokes for one in runs),
+        sine=max(one.sine for one in runs),
+    )
+
+
+def crossing_ratio(runs: Sequence[Figures], others: Sequence[Figures]) -> float:
+    """Ratio of the times to reach the set point, from the surface or in all three steps, whichever is worse.
+
+    The phase of a limit cycle at the beginning of a step is random. So single later steps are not compared,
+    and of the other controller the mean run counts.
+    """
+    first = fmean(one.crossings[0] for one in others)
+    every = fmean(sum(one.crossings) for one in others)
+    return max(max(one.crossings[0] / first, sum(one.crossings) / every) for one in runs)
+
+
+def _scaled(six: Six, factor: float) -> Six:
+    a, b, c, d, e, f = (one * factor for one in six)
+    return a, b, c, d, e, f
+
+
+def _sine(time: float) -> float:
+    return round(SINE_CENTRE + SINE_SIZE * sin(2 * pi * time / SINE_PERIOD), 4)
+
+
+def _root_mean(squares: Sequence[float]) -> float:
+    return (sum(squares) / len(squares)) ** 0.5 if squares else float("nan")
+
+
+def _strokes(angles: Sequence[float]) -> int:
+    """Count of strokes, there and back; jumps through ±π do not count."""
+    turned = [0.0]
+    for before, after in pairwise(angles):
+        turned.append(turned[-1] + (after - before + pi) % (2 * pi) - pi)
+    swings, far, rising = 0, turned[0], True
+    for angle in turned:
+        if (angle > far) == rising:
+            far = angle
+        elif abs(angle - far) >= _STROKE:
+            swings, far, rising = swings + 1, angle, not rising
+    return swings // 2
