@@ -38,7 +38,8 @@ def variants() -> dict[str, SimulationParameters]:
     """The simulated robots: the nominal one, and variants with one property 30 % off.
 
     Buoyancy means what is left over the weight, 0.3 % of it: 30 % of the whole would throw the robot out
-    of the water. Mass is the hull's, trimmed anew; drag is the hull's, linear and quadratic; thrust is the fins'.
+    of the water. Mass is the hull's, trimmed anew; drag is the hull's, linear and quadratic; thrust is the
+    fins'.
     """
     plain = SimulationParameters()
     made = {"nominal": plain}
