@@ -40,7 +40,7 @@ from robot_runtime.contract.packets import (
 )
 from robot_runtime.contract.topics import TELEMETRY, TOPICS, Kind
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.control.controllers import Controller
+from robot_runtime.control.controllers.base import Controller
 from robot_runtime.control.experiments import Experiments
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.loop import ControlLoop

@@ -12,8 +12,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.commands import RelayExperimentCommand, StepExperimentCommand
 from robot_runtime.contract.documents import Experiment, ExperimentKind, ExperimentPhase, Mode
 from robot_runtime.control.attitude import wrap_angle
-from robot_runtime.control.controllers import Controller
-from robot_runtime.control.controllers.base import GainLimits
+from robot_runtime.control.controllers.base import Controller, GainLimits
 from robot_runtime.control.loop import ControlLoop, LoopOverride
 from robot_runtime.errors import RefusedError
 

@@ -6,7 +6,8 @@ from typing import Literal
 
 from robot_runtime.contract.limits import SET_POINTS, LoopName
 from robot_runtime.control.attitude import wrap_angle
-from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.controllers.base import Controller
 from robot_runtime.errors import RefusedError
 
 Axis = Literal["z", "yaw", "pitch", "roll"]

@@ -6,7 +6,7 @@ from functools import partial
 
 from robot_runtime.contract.limits import SET_POINT, VISION_RATE
 from robot_runtime.contract.vision_settings import VisionSettings
-from robot_runtime.control.controllers import Controller
+from robot_runtime.control.controllers.base import Controller
 from robot_runtime.control.loop import ControlLoop
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.steering import STEERINGS

@@ -6,16 +6,6 @@ from robot_runtime.control.controllers.pid import HeadingPid, Pid, PitchPid, Rol
 from robot_runtime.control.controllers.predictive import Predictive
 from robot_runtime.control.controllers.tilt import Tilt
 
-__all__ = [
-    "CONTROLLERS",
-    "BangBang",
-    "BangBangDeadZone",
-    "Controller",
-    "Pid",
-    "Predictive",
-    "Tilt",
-]
-
 CONTROLLERS: dict[str, tuple[type[Controller], ...]] = {
     "depth": (BangBang, BangBangDeadZone, Pid, Predictive),
     "heading": (HeadingPid, TurnDeadZone, Tilt),

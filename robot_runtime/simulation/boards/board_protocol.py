@@ -46,8 +46,7 @@ def read_fins(line: str) -> FinMotion:
         raise BoardLineError(f"{line!r}: {problem}") from problem
     if not all(map(isfinite, numbers)) or max(map(abs, numbers[1:9])) > SWING_MAX:
         raise BoardLineError(f"{line!r} has impossible fins: angle or speed beyond {SWING_MAX:g}")
-    _, a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power, _ = numbers
-    return FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
+    return FinMotion.of(numbers[1:14])
 
 
 def write_sense(reading: Reading) -> str:

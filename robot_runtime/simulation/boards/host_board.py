@@ -61,9 +61,7 @@ class HostBoard(SteppedBoard):
             if size:
                 data += bytes(memoryview(received)[:size])
             library.board_fins(board, fins)
-            a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power = fins
-            motion = FinMotion((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
-            self._sense(self._water(motion))
+            self._sense(self._water(FinMotion.of(list(fins))))
         return data
 
     def write(self, data: bytes) -> None:

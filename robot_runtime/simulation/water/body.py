@@ -10,7 +10,7 @@ forward, right, down; the world's north, east, down.
 """
 
 from robot_runtime.simulation.water.contact import Contact
-from robot_runtime.simulation.water.fins import Four, Propulsion
+from robot_runtime.simulation.water.fins import Fins, Four
 from robot_runtime.simulation.water.geometry import (
     BodyState,
     Matrix,
@@ -30,8 +30,8 @@ from robot_runtime.simulation.water.world import World
 class Body:
     """A hull in water, pushed by fins."""
 
-    def __init__(self, parameters: SimulationParameters, propulsion: Propulsion, world: World) -> None:
-        self._propulsion = propulsion
+    def __init__(self, parameters: SimulationParameters, fins: Fins, world: World) -> None:
+        self._fins = fins
         self.world = world
         self._contact = Contact(parameters)
         self._mass = parameters.total_mass
@@ -69,7 +69,7 @@ class Body:
         water = self.world.flow(self.time + later, position)
         flow = to_body(matrix, water.velocity)
         through = (velocity[0] - flow[0], velocity[1] - flow[1], velocity[2] - flow[2])
-        push = self._propulsion.push(angles, speeds, through, rate)
+        push = self._fins.push(angles, speeds, through, rate)
         restoring = self._restoring(position[2] + water.rise, matrix, through)
 
         mass = self._mass

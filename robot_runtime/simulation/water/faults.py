@@ -10,10 +10,7 @@ DEVICES = {
     "pressure": "pressure",
     "gyroscope": "imu",
     "accelerometer": "imu",
-    "encoder0": "encoder0",
-    "encoder1": "encoder1",
-    "encoder2": "encoder2",
-    "encoder3": "encoder3",
+    **{f"encoder{fin}": f"encoder{fin}" for fin in range(4)},
 }
 """The emulated board's device behind each sensor on a bus. Gyroscope and accelerometer are one chip."""
 SENSORS = (*DEVICES, "beacon_right", "beacon_left", "battery")

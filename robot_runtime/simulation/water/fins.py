@@ -1,19 +1,10 @@
 """Force and torque of four flapping fins."""
 
 from math import cos, sin
-from typing import Protocol
 
 from robot_runtime.simulation.water.parameters import SimulationParameters, Six, Vector
 
 Four = tuple[float, float, float, float]
-
-
-class Propulsion(Protocol):
-    """The source of the propulsive force."""
-
-    def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:
-        """Returns force (N) and torque (N m) on the body, in body axes."""
-        ...
 
 
 class Fins:

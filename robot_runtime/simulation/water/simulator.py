@@ -1,6 +1,7 @@
 """The whole simulated robot apart from its board: fins in, sensor readings out."""
 
 import threading
+from collections.abc import Sequence
 from math import ceil
 from typing import NamedTuple
 
@@ -39,6 +40,12 @@ class FinMotion(NamedTuple):
     """H-bridge commands, -63 to 63."""
     powered: bool
     """True if the motors have power."""
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> "FinMotion":
+        """Makes it from 13 numbers: four angles, four speeds, four drives and the power, not 0 if on."""
+        a0, a1, a2, a3, s0, s1, s2, s3, d0, d1, d2, d3, power = numbers
+        return cls((a0, a1, a2, a3), (s0, s1, s2, s3), (d0, d1, d2, d3), power != 0)
 
 
 class SimulationSetup(NamedTuple):

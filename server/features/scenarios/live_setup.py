@@ -18,7 +18,8 @@ from robot_runtime.contract.commands import (
     VisionCommand,
 )
 from robot_runtime.contract.limits import SET_POINTS, LoopName
-from robot_runtime.control.controllers import CONTROLLERS, Controller
+from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.controllers.base import Controller
 from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario

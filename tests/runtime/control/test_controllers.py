@@ -9,7 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_runtime.control.controllers import CONTROLLERS, BangBang, BangBangDeadZone, Controller, Pid
+from robot_runtime.control.controllers import CONTROLLERS
+from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
+from robot_runtime.control.controllers.base import Controller
+from robot_runtime.control.controllers.pid import Pid
 
 SECONDS = 0.1
 

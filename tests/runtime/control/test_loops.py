@@ -9,7 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.documents import Mode, Turning
 from robot_runtime.contract.packets import Depth, Imu, Navigation
 from robot_runtime.control.attitude import GRAVITY
-from robot_runtime.control.controllers import BangBang
+from robot_runtime.control.controllers.bang_bang import BangBang
 from robot_runtime.control.loop import LoopOverride
 from robot_runtime.control.node import ControlNode
 from robot_runtime.control.pilot import Pilot

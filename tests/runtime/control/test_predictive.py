@@ -5,7 +5,6 @@ from random import Random
 
 import pytest
 
-from robot_runtime.control.controllers import Predictive
 from robot_runtime.control.controllers.heave import DOWN, TURNING_ROUND, Heave, Motion
 from robot_runtime.control.controllers.heave_observer import (
     ACCELERATION_AGE,
@@ -14,6 +13,7 @@ from robot_runtime.control.controllers.heave_observer import (
     HeaveObserver,
     InertialHeave,
 )
+from robot_runtime.control.controllers.predictive import Predictive
 from tests.runtime.control.depth_experiment import BEST, THESIS, crossing_ratio, perform, variants
 
 SECONDS = 0.1

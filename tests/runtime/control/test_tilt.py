@@ -7,7 +7,7 @@ import pytest
 
 from robot_runtime.contract.documents import Truth
 from robot_runtime.control.attitude import euler_angles, wrap_angle
-from robot_runtime.control.controllers import Tilt
+from robot_runtime.control.controllers.tilt import Tilt
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun

@@ -9,7 +9,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.commands import Commands
 from robot_runtime.config import Config
 from robot_runtime.contract.packets import Depth
-from robot_runtime.control.controllers import Pid
+from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.core import Core
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox

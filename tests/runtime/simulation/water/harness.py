@@ -25,10 +25,11 @@ NEUTRAL = SimulationParameters(buoyancy=1.0, floor=1000.0)
 UNDAMPED = replace(NEUTRAL, damping_linear=(0.0,) * 6, damping_quadratic=(0.0,) * 6)
 
 
-class SteadyPush:
-    """A propulsion that pushes with the same wrench whatever the fins do."""
+class SteadyPush(Fins):
+    """Fins that push with the same wrench whatever they do."""
 
     def __init__(self, wrench: Six = (0.0,) * 6) -> None:
+        super().__init__(NEUTRAL)
         self.wrench = wrench
 
     def push(self, angles: Four, speeds: Four, velocity: Vector, rate: Vector) -> Six:

@@ -6,7 +6,9 @@ from statistics import stdev
 
 import pytest
 
-from robot_runtime.control.controllers import BangBang, BangBangDeadZone, Controller, Pid
+from robot_runtime.control.controllers.bang_bang import BangBang, BangBangDeadZone
+from robot_runtime.control.controllers.base import Controller
+from robot_runtime.control.controllers.pid import Pid
 from robot_runtime.simulation.water.fins import Four
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.sensors import Reading
