@@ -156,8 +156,8 @@ class RelayExperiment(LoopExperiment):
     def _observe(self, value: float) -> None:  # noqa: ARG002 - the relay gets a newer value
         settings = self._settings
         if self._clock.now() - self._began >= settings.duration:
-            words = f"There were {self.cycles} of {settings.cycles} cycles within {settings.duration:g} s."
-            self.end("failed", words)
+            text = f"There were {self.cycles} of {settings.cycles} cycles within {settings.duration:g} s."
+            self.end("failed", text)
 
     def _switch(self) -> None:
         """Takes a switching of the relay; every second one completes a cycle."""

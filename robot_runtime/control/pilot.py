@@ -86,9 +86,9 @@ class Pilot:
         return NEUTRAL if self.quiet else self._command
 
 
-def _read(words: Any) -> tuple[int, int, float, list[float]]:
+def _read(table: Any) -> tuple[int, int, float, list[float]]:
     """Returns the fields of an input. Raises ValueError, TypeError, KeyError or OverflowError."""
-    lease, sequence, taken, axes = (words[name] for name in ("lease", "sequence", "taken", "axes"))
+    lease, sequence, taken, axes = (table[name] for name in ("lease", "sequence", "taken", "axes"))
     if type(lease) is not int or type(sequence) is not int or type(axes) is not list:
         raise TypeError("lease and sequence are whole numbers, axes a list")
     numbers = [taken, *axes]

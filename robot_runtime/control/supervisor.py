@@ -216,8 +216,8 @@ class Supervisor:
             if failed:
                 moved = "; ".join(f"{fin} {how}" for fin, how in failed.items())
                 self._alarms.begin("fin_failing", f"({moved})", active=False)
-            words = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _ALL_FINS_FOLLOWED
-            self._leave("checked", "caution" if failed else "info", words, kind="fin_check")
+            text = f"Fin check: {len(failed)} of 4 fins did not follow." if failed else _ALL_FINS_FOLLOWED
+            self._leave("checked", "caution" if failed else "info", text, kind="fin_check")
         self._line.send(Stop())
 
     def tick(self) -> None:

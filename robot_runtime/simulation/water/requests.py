@@ -48,7 +48,7 @@ class SensorFaultRequest:
 
 
 @dataclass(frozen=True, slots=True)
-class Nothing:
+class NoArguments:
     """The arguments of a request without any."""
 
 
@@ -85,7 +85,7 @@ def changes(simulator: Simulator) -> dict[str, Change]:
         simulator.set_fault(named.sensor, fault)
 
     def surroundings(question: Question) -> Question:
-        parse(Nothing, question)
+        parse(NoArguments, question)
         basin, current, waves, trim, positions, faults = simulator.surroundings()
         return {
             "world": _set_fields(basin),
