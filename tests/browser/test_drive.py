@@ -48,7 +48,7 @@ globalThis.WebSocket = class extends WebSocket {
 
 
 def expect_full_speed(page: Page) -> None:
-    """The navigation command has grown ahead to its end."""
+    """The navigation command has grown forwards to its end."""
     command = page.get_by_role("region", name="Navigation command")
     expect(command.locator(".value").first).to_have_text(re.compile(r"^\s*1\.00$"))
 

@@ -23,7 +23,7 @@ def test_a_fault_is_told_acknowledged_and_left_behind(page: Page, stack: Stack) 
     alarms.click()
     expect(
         page.get_by_role("listitem").filter(has_text="The depth is too old for control.").first
-    ).to_contain_text("Do:")
+    ).to_contain_text("What to do:")
     page.get_by_role("button", name="Close", exact=True).click()
     expect(page.get_by_label("Connection lost")).to_be_hidden()
     arm.get_by_role("button", name="Acknowledge").click()

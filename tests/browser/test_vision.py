@@ -74,7 +74,7 @@ def test_a_colour_is_picked_and_acted_on(settings: dict[str, Any], any_page: Pag
     )
     expect(seen(page)).to_have_text("buoy")
 
-    page.get_by_label("Set point while buoy is seen").fill("0.8")
+    page.get_by_label("Set point while buoy is detected").fill("0.8")
     page.keyboard.press("Enter")
     expect(page.get_by_text("set point 0.80 m", exact=True)).to_be_visible()
     page.wait_for_function("async () => (await (await fetch('/api/robot')).json()).set_point === 0.8")

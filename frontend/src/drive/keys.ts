@@ -22,7 +22,7 @@ const key = (code: string, cap: string, what: string, axis: Push['axis'], amount
 export const LEFT_HAND: readonly (readonly Key[])[] = [
   [
     key('KeyQ', 'Q', texts.keys.left, Y, -1),
-    key('KeyW', 'W', texts.keys.ahead, X, 1),
+    key('KeyW', 'W', texts.keys.forwards, X, 1),
     key('KeyE', 'E', texts.keys.right, Y, 1),
     key('KeyR', 'R', texts.keys.up, Z, -1),
   ],
@@ -42,7 +42,7 @@ export const RIGHT_HAND: readonly (readonly Key[])[] = [
   ],
 ];
 const PUSHES = new Map([...LEFT_HAND, ...RIGHT_HAND].flat().map(({ code, push }) => [code, push]));
-/** With shift the arrows alone will do: ahead, back and turning. */
+/** With shift the arrows alone will do: forwards, back and turning. */
 const SHIFTED = new Map<string, Push>([
   ['ArrowUp', { axis: X, amount: 1 }],
   ['ArrowDown', { axis: X, amount: -1 }],

@@ -54,7 +54,7 @@ export const panels = {
   beacons: {
     left: 'left',
     right: 'right',
-    seen: 'detected',
+    detected: 'detected',
     dark: 'dark',
     lastMinute: 'last minute',
     none: 'No data yet',
@@ -109,8 +109,6 @@ export const panels = {
     filterLabel: 'Filter by text',
     pause: 'Pause',
     resume: (waiting: string) => `Resume (${waiting})`,
-    copied: 'Copied',
-    copyRefused: 'The browser refused',
     clear: 'Clear',
     none: 'The debug output of the firmware appears here.',
     noMatch: 'No matching lines.',

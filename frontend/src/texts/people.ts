@@ -62,6 +62,4 @@ export const people = {
     programExample: 'depth logger',
     create: 'Create token',
   },
-  copy: 'Copy',
-  copied: 'Copied',
 } as const;

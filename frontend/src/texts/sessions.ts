@@ -4,7 +4,6 @@ import { pages } from './pages';
 export const sessions = {
   title: pages.sessions,
   about: 'A session stores every sample, event and console line while it records.',
-  record: 'Record a session',
   recorded: 'Recorded',
   storage: {
     title: 'Storage',
@@ -72,7 +71,6 @@ export const sessions = {
     since: (time: string) => `since ${time}`,
     bookmarks: 'Bookmarks',
     samples: 'Samples',
-    stop: 'Stop recording',
     stopping: 'Stopping…',
   },
   session: {
@@ -90,7 +88,6 @@ export const sessions = {
   bookmarks: {
     title: 'Bookmarks',
     none: 'No bookmarks. Add one while recording (Mark button or key M) or during replay.',
-    text: 'Text of the bookmark',
     noText: 'no text',
     edit: (time: string) => `Edit bookmark at ${time}`,
     remove: (time: string) => `Remove bookmark at ${time}`,

@@ -95,8 +95,7 @@ export const tune = {
     live: 'now',
   },
   start: {
-    replay: 'This is a replay. Commands are not possible.',
-    unknown: 'Robot state unknown.',
+    replay: 'This is a replay. Commands are not possible here.',
     armHint: 'The robot must be armed in automatic. It then dives to its set point.',
     moves: 'The robot moves. STOP or Esc disarms at once.',
     automatic: 'Switch to automatic',
@@ -124,7 +123,7 @@ export const tune = {
   },
   parameters: {
     title: 'Parameters',
-    empty: { title: 'No parameters yet', text: 'They appear here once the robot runtime reports them.' },
+    empty: { title: 'No parameters yet', text: 'They appear here when the runtime is connected.' },
     allDefault: 'all at default',
     changedCount: (count: number) => `${count} changed`,
     search: 'Find parameters',

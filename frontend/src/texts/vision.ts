@@ -2,7 +2,7 @@
 export const vision = {
   about: 'Click a colour in the picture to measure its range. Changes take effect with the next frame.',
   none: 'No data yet',
-  noneText: 'The vision settings appear here as soon as the robot’s runtime is connected.',
+  noneText: 'The vision settings appear here when the runtime is connected.',
   picker: {
     title: 'Camera',
     titleBalanced: 'Camera, after white balance',
@@ -115,8 +115,8 @@ export const vision = {
     setPoint: 'Set point',
     order: 'Order',
     target: 'target, goes first',
-    whileSeen: (name: string) => `Set point while ${name} is seen`,
-    whileNone: 'Set point while none of these is seen',
+    whileDetected: (name: string) => `Set point while ${name} is detected`,
+    whileNone: 'Set point while none of these is detected',
     none: 'none of these',
     markersOff: 'markers are off',
     moveUp: (name: string) => `Move ${name} up`,
