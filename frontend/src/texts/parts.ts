@@ -82,7 +82,7 @@ export const parts = {
     recordingNamed: (name: string) => `Recording “${name}”`,
     start: 'Start recording',
     stop: 'Stop recording',
-    nameHint: 'empty: date and time of the start',
+    nameHint: 'default: date and time',
     noteHint: 'purpose, settings',
   },
   mark: {
