@@ -14,6 +14,7 @@ from typing import Any
 
 from robot_runtime.experiments.comm_test.builder import SKETCHES
 from robot_runtime.experiments.comm_test.document import CommTest, read_document
+from robot_runtime.experiments.comm_test.framings import FramingName
 from robot_runtime.experiments.comm_test.lab import EmulatedLab
 from robot_runtime.experiments.comm_test.line import Cancellation
 from robot_runtime.experiments.comm_test.results import Direction
@@ -21,7 +22,7 @@ from server import VERSION
 
 FOLDER = Path("server/features/comm_tests/samples")
 BUILD = Path("build")
-SAMPLES: dict[str, tuple[str, Direction, str]] = {
+SAMPLES: dict[str, tuple[FramingName, Direction, str]] = {
     "grid-thesis": ("thesis", "to_board", "The thesis's grid, its own packets"),
     "grid-plain": ("plain", "to_board", "The thesis's grid, plain numbers"),
     "grid-robot": ("robot", "to_board", "The thesis's grid, the robot's link"),

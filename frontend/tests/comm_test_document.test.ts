@@ -99,20 +99,20 @@ describe('the form', () => {
 describe('problems', () => {
   it('stand with their fields', () => {
     const problems = [
-      'test 1: delay[1]: -1 is not a delay from 0 to 10 seconds',
-      'test 1: expected: 5 numbers, but from_val 1 up to, and without, to_val 3 are 2',
-      'test 1: faults.bit_errors: 2 is above 0.1',
-      'test 1: faults.stall[1]: 9 is above 1',
+      'test 1: delay[1] is -1; it must lie between 0 and 10',
+      'test 1: expected is 5; it must be 2, the count of numbers from from_val, 1, up to, and without, to_val, 3',
+      'test 1: faults: bit_errors is 2; it must lie between 0 and 0.1',
+      'test 1: faults: stall[1] is 9; it must be above 0 and below the period, 1 s',
       'test 1: it must be an object in braces',
-      'test 12: name: it is missing',
+      'test 12: name is missing',
       'the document has 600 cells; at most 500 can be run at once',
     ];
     const first = problemsByField(problems, 0);
     expect([...first.keys()]).toEqual(['delay', 'expected', 'faults.bit_errors', 'faults.stall', '']);
-    expect(first.get('faults.bit_errors')).toEqual(['2 is above 0.1']);
-    expect(first.get('faults.stall')).toEqual(['entry 2: 9 is above 1']);
-    expect(first.get('delay')).toEqual(['entry 2: -1 is not a delay from 0 to 10 seconds']);
-    expect(first.get('expected')?.[0]).toContain('but from_val 1');
+    expect(first.get('faults.bit_errors')).toEqual(['It is 2; it must lie between 0 and 0.1']);
+    expect(first.get('faults.stall')).toEqual(['Entry 2 is 9; it must be above 0 and below the period, 1 s']);
+    expect(first.get('delay')).toEqual(['Entry 2 is -1; it must lie between 0 and 10']);
+    expect(first.get('expected')?.[0]).toContain('from from_val, 1');
     expect([...problemsByField(problems, 11).keys()]).toEqual(['name']);
     expect(problemsByField(problems, 1).size).toBe(0);
   });

@@ -114,7 +114,7 @@ def _plain(hint: Any, value: Any, where: str) -> Any:
     if origin is tuple and isinstance(value, list):
         hints = (inner[0],) * len(value) if inner[-1] is Ellipsis else inner
         if len(hints) != len(value):
-            raise ConfigError(f"{where} is {_shown(value)}; it must have {len(hints)} numbers")
+            raise ConfigError(f"{where} is {_shown(value)}; it must be a list of {len(hints)} numbers")
         entries = enumerate(zip(hints, value, strict=True))
         return tuple(_values((hint, one, f"{where}[{index}]") for index, (hint, one) in entries))
     if origin is dict and isinstance(value, dict):

@@ -8,7 +8,6 @@ from fastapi.responses import JSONResponse
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.errors import RefusedError
-from robot_runtime.experiments.comm_test.document import DocumentError
 from server.platform.errors import ApiError
 
 
@@ -16,8 +15,7 @@ def add_error_handlers(app: FastAPI) -> None:
     """Add answers for the server's errors, the runtime's, and invalid requests."""
     app.add_exception_handler(ApiError, _answer_api_error)
     app.add_exception_handler(RefusedError, _answer_refusal)
-    app.add_exception_handler(ConfigError, _answer_document_error)
-    app.add_exception_handler(DocumentError, _answer_document_error)
+    app.add_exception_handler(ConfigError, _answer_config_error)
     app.add_exception_handler(RequestValidationError, _answer_invalid_request)
     app.add_exception_handler(400, _answer_unreadable_body)
 
@@ -31,8 +29,8 @@ async def _answer_refusal(_: Request, problem: Exception) -> JSONResponse:
     return _answer(409, str(problem))
 
 
-async def _answer_document_error(_: Request, problem: Exception) -> JSONResponse:
-    assert isinstance(problem, ConfigError | DocumentError)
+async def _answer_config_error(_: Request, problem: Exception) -> JSONResponse:
+    assert isinstance(problem, ConfigError)
     return _answer(422, "\n".join(problem.problems))
 
 

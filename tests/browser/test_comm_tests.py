@@ -158,7 +158,7 @@ def test_a_bad_document_is_told_field_by_field(page: Page) -> None:
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_label("Bauds, bit/s").fill("9600, 300000")
     expect(page.get_by_role("textbox", name="Bauds, bit/s")).to_have_attribute("aria-invalid", "true")
-    expect(page.get_by_text("entry 2:")).to_be_visible()
+    expect(page.get_by_text("Entry 2 is")).to_be_visible()
     expect(page.get_by_role("button", name="Start the test")).to_be_disabled()
     page.get_by_label("Bauds, bit/s").fill("9600, 250000")
     expect(page.get_by_role("button", name="Start the test")).to_be_enabled()

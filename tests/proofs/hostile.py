@@ -11,6 +11,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import MISSING, fields
 from http.client import HTTPConnection
 from io import BytesIO
 from pathlib import Path
@@ -18,16 +19,10 @@ from urllib.parse import quote, urlsplit
 
 import requests
 
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.comm_test.builder import _macros
-from robot_runtime.experiments.comm_test.document import (
-    NEEDED,
-    OPTIONAL,
-    SKETCH,
-    DocumentError,
-    read_document,
-)
-from robot_runtime.experiments.scenario.document import ScenarioError
+from robot_runtime.experiments.comm_test.document import SKETCH, CommTest, read_document
 from server.features.exports.archive_reader import ArchiveError, open_archive
 from server.features.scenarios.library import keep_scenario
 from server.http.page import Page
@@ -108,7 +103,8 @@ def document(words: Words) -> list[dict[str, object]]:
         "framing": "plain",
         "direction": "to_board",
     }
-    field = words.choose((*NEEDED, *OPTIONAL, *NEEDED, words.word()))
+    required = [one.name for one in fields(CommTest) if one.default is MISSING]
+    field = words.choose((*(one.name for one in fields(CommTest)), *required, words.word()))
     value = words.value()
     test[field] = [value] if field in ("delay", "baud_rate", "arduinodelay") else value
     if field == "faults":
@@ -133,7 +129,7 @@ def scenario(words: Words) -> str:
 @entrance("compiler")
 def compile_arguments(field: Field) -> None:
     """A document that is accepted makes arguments of letters and digits alone."""
-    with suppress(DocumentError):
+    with suppress(ConfigError):
         for test in read_document(json.dumps(document(field.words))):
             for cell in test.cells:
                 macros = _macros(test, cell.baud, cell.arduino_delay)
@@ -164,7 +160,7 @@ def run_number(field: Field) -> None:
 @entrance("scenario's file")
 def scenario_file(field: Field) -> None:
     """It is kept under a name of its own kind, or not at all."""
-    with suppress(ScenarioError, RefusedError):
+    with suppress(ConfigError, RefusedError):
         keep_scenario(field.data.scenarios, scenario(field.words))
 
 

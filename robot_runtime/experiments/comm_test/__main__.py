@@ -11,7 +11,8 @@ import signal
 import sys
 from pathlib import Path
 
-from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, DocumentError, read_document
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, read_document
 from robot_runtime.experiments.comm_test.lab import (
     TROUBLE,
     CommTestLab,
@@ -48,7 +49,7 @@ def main() -> int:
     writer = EventWriter(sys.stdout)
     try:
         tests = read_document(_decode(sys.stdin.buffer.read(DOCUMENT_BYTES_MAX + 1)))
-    except DocumentError as problem:
+    except ConfigError as problem:
         writer.tell("refused", problems=problem.problems)
         return REFUSED
     lab: CommTestLab = EmulatedLab(arguments.build, stop)
@@ -75,7 +76,7 @@ def _decode(document: bytes) -> str:
     try:
         return document.decode()
     except UnicodeDecodeError as problem:
-        raise DocumentError([f"the document is not UTF-8: {problem}"]) from problem
+        raise ConfigError(f"the document is not UTF-8: {problem}") from problem
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,9 +1,7 @@
 """A host at the serial port of a paused emulated board: time passes only while the host waits."""
 
 from pathlib import Path
-from typing import get_args
 
-from robot_runtime.experiments.comm_test.faults import RateKind
 from robot_runtime.experiments.comm_test.line import (
     TIME_MIN,
     WRITE_BUFFER_BYTES,
@@ -13,10 +11,9 @@ from robot_runtime.experiments.comm_test.line import (
 )
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
 from robot_runtime.simulation.boards.emulated_board import PausedPort
-from robot_runtime.simulation.boards.emulator_process import EmulatorClient, LineDirection
+from robot_runtime.simulation.boards.emulator_process import EmulatorClient
 
 READ_STEP_BYTES = 1024
-DIRECTIONS: tuple[LineDirection, ...] = get_args(LineDirection)
 
 
 class EmulatedLine(CommTestLine):
@@ -47,8 +44,8 @@ class EmulatedLine(CommTestLine):
             faults=FaultCounts.add_up(stats),
         )
 
-    def _wire(self) -> "_EmulatedWire":
-        return _EmulatedWire(self._board)
+    def _order(self, command: str) -> None:
+        self._board.order(command)
 
     def _hand_over(self, data: bytes) -> None:
         # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
@@ -64,31 +61,3 @@ class EmulatedLine(CommTestLine):
             check(self._stop)
             self.now = self._board.run(min(left, step))
             self.heard += self._port.receive()
-
-
-class _EmulatedWire:
-    def __init__(self, board: EmulatorClient) -> None:
-        self._board = board
-
-    def seed(self, seed: int) -> None:
-        self._board.seed_line(seed)
-
-    def rate(self, kind: RateKind, rate: float) -> None:
-        for direction in DIRECTIONS:
-            self._board.disturb_line(direction, kind, rate)
-
-    def burst(self, rate: float, bits: int) -> None:
-        for direction in DIRECTIONS:
-            self._board.burst_line(direction, rate, bits)
-
-    def stall(self, seconds: float) -> None:
-        for direction in DIRECTIONS:
-            self._board.stall_line(direction, seconds)
-
-    def cut(self, cut: bool) -> None:
-        for direction in DIRECTIONS:
-            self._board.cut_line(direction, cut)
-
-    def clean(self) -> None:
-        for direction in DIRECTIONS:
-            self._board.clean_line(direction)

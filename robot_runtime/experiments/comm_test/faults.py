@@ -1,78 +1,74 @@
 """Line faults of a test, in both directions: rates for each bit or byte, and timed stalls and cuts.
 
-Everything follows from one seed.
+All faults follow from one seed.
 """
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Annotated, Literal
 
-RateKind = Literal["bit_errors", "drop", "double", "insert"]
-RATE_KINDS: tuple[RateKind, ...] = ("bit_errors", "drop", "double", "insert")
-Moment = tuple[float, Literal["stall", "cut", "mend"], float]
-"""When (s of the test), what, and for how long (s)."""
+from robot_runtime.contract.limits import Range
+from robot_runtime.experiments.line_faults.faults import DIRECTIONS, KINDS
 
-
-class LineFaultInjector(Protocol):
-    """Injects faults into a line, in both directions."""
-
-    def seed(self, seed: int) -> None:
-        """Seeds all faults from now on."""
-
-    def rate(self, kind: RateKind, rate: float) -> None:
-        """Sets the probability of this fault for each bit or byte."""
-
-    def burst(self, rate: float, bits: int) -> None:
-        """Sets the probability that a burst of errors begins at a bit, and its length in bit times."""
-
-    def stall(self, seconds: float) -> None:
-        """Delays all bytes for this many s."""
-
-    def cut(self, cut: bool) -> None:
-        """Cuts the line, or restores it."""
-
-    def clean(self) -> None:
-        """Removes all faults."""
+TimedKind = Literal["stall", "cut", "mend"]
+TimedFault = tuple[float, TimedKind, float]
+"""Its time (s of the test), its kind, and how long it lasts (s)."""
+Order = Callable[[str], object]
+"""Gives a line one of the emulated board's commands for faults; see docs/reference/emulator.md."""
+FaultRate = Annotated[float, Range(0, 0.1)]
+Recurring = tuple[Annotated[float, Range(0.05, 3600)], float]
+"""The period and the duration, both in s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """Rates from 0 to 1; `burst` is a rate and a length in bits; `stall` and `cut` come every so many s, for
-    so many s.
-    """
+    """Rates for each bit or byte; `burst` is a rate and a length in bits; `stall` and `cut` recur."""
 
-    seed: int = 0
-    bit_errors: float = 0.0
-    drop: float = 0.0
-    double: float = 0.0
-    insert: float = 0.0
-    burst: tuple[float, int] | None = None
-    stall: tuple[float, float] | None = None
-    cut: tuple[float, float] | None = None
+    seed: Annotated[int, Range(0, 2**32 - 1)] = 0
+    bit_errors: FaultRate = 0.0
+    drop: FaultRate = 0.0
+    double: FaultRate = 0.0
+    insert: FaultRate = 0.0
+    burst: tuple[FaultRate, Annotated[int, Range(1, 10_000)]] | None = None
+    stall: Recurring | None = None
+    cut: Recurring | None = None
 
-    def begin(self, wire: LineFaultInjector) -> None:
-        """Starts the faults that have rates; `moments` gives the others."""
-        wire.seed(self.seed)
-        for kind in RATE_KINDS:
+    def __post_init__(self) -> None:
+        problems = [
+            f"{name}[1] is {one[1]:g}; it must be above 0 and below the period, {one[0]:g} s"
+            for name, one in (("stall", self.stall), ("cut", self.cut))
+            if one is not None and not 0 < one[1] < one[0]
+        ]
+        if problems:
+            raise ValueError("; ".join(problems))
+
+    def begin(self, order: Order) -> None:
+        """Starts the faults that have rates; `timed` gives the others."""
+        order(f"seed {self.seed}")
+        for kind in KINDS:
             if rate := getattr(self, kind):
-                wire.rate(kind, rate)
+                order_both(order, f"{kind} {rate!r}")
         if self.burst:
-            wire.burst(*self.burst)
+            order_both(order, f"burst {self.burst[0]!r} {self.burst[1]}")
 
-    def moments(self, start: float) -> Iterator[Moment]:
+    def timed(self, start: float) -> Iterator[TimedFault]:
         """Yields the timed faults in order, without end; `start` is when the faults began (s of the test)."""
         streams = []
         if self.stall:
-            streams.append(_every(start, *self.stall, "stall"))
+            streams.append(_repeat(start, *self.stall, "stall"))
         if self.cut:
-            streams += [_every(start, *self.cut, "cut"), _every(start + self.cut[1], *self.cut, "mend")]
+            streams += [_repeat(start, *self.cut, "cut"), _repeat(start + self.cut[1], *self.cut, "mend")]
         return heapq.merge(*streams)
 
 
-def _every(
-    start: float, period: float, seconds: float, kind: Literal["stall", "cut", "mend"]
-) -> Iterator[Moment]:
+def order_both(order: Order, fault: str) -> None:
+    """Gives the command `line` with this fault for both directions."""
+    for direction in DIRECTIONS:
+        order(f"line {direction} {fault}")
+
+
+def _repeat(start: float, period: float, seconds: float, kind: TimedKind) -> Iterator[TimedFault]:
     number = 0
     while True:
         number += 1

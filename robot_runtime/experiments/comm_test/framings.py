@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import reduce
 from operator import xor
+from typing import Literal
 
 from robot_runtime.experiments.comm_test.results import Counts
 
@@ -21,6 +22,7 @@ TEST_MSG = 0x01
 REQUEST_RESULT = 0x02
 CHECKSUM_BYTES = 4
 COUNT_DIGITS = 4
+NUMBER_MAX = 32767
 ANSWER_BYTES = 2 + COUNT_DIGITS * len(fields(Counts)) + CHECKSUM_BYTES + 1
 PLAIN_REQUEST = b"\xff"
 MESSAGE_CONTENT = 1 + 2 + CHECKSUM_BYTES
@@ -135,7 +137,8 @@ def _count_thesis(stream: bytes, start: int, end: int) -> Counts:
     return Counts(sequence.right, sequence.out_of_sequence, checksum_errors, framing_errors, 0, len(stream))
 
 
-STREAM_FRAMINGS = {
+FramingName = Literal["plain", "thesis", "robot"]
+STREAM_FRAMINGS: Mapping[FramingName, StreamFraming] = {
     "plain": StreamFraming(
         code="COMM_TEST_PLAIN",
         number_max=254,
@@ -145,11 +148,11 @@ STREAM_FRAMINGS = {
     ),
     "thesis": StreamFraming(
         code="COMM_TEST_THESIS",
-        number_max=32767,
+        number_max=NUMBER_MAX,
         request=make_packet(REQUEST_RESULT),
         message=_thesis_message,
         count=_count_thesis,
     ),
 }
-ROBOT = Framing(code="COMM_TEST_ROBOT", number_max=32767, bauds=(1200, 500_000), library=True)
-FRAMINGS: Mapping[str, Framing] = {**STREAM_FRAMINGS, "robot": ROBOT}
+ROBOT = Framing(code="COMM_TEST_ROBOT", number_max=NUMBER_MAX, bauds=(1200, 500_000), library=True)
+FRAMINGS: Mapping[FramingName, Framing] = {**STREAM_FRAMINGS, "robot": ROBOT}

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import Self
 
-from robot_runtime.experiments.comm_test.faults import Faults, LineFaultInjector, Moment
+from robot_runtime.experiments.comm_test.faults import Faults, TimedFault, order_both
 from robot_runtime.experiments.comm_test.results import LineErrors
 
 BITS_PER_BYTE = 10
@@ -58,10 +58,10 @@ class CommTestLine(ABC):
         self.heard = b""
         self.now = 0.0
         self._line_free = 0.0
-        self._stretch = 1.0
+        self._airtime_factor = 1.0
         self._disturbed = False
-        self._moments: Iterator[Moment] = iter(())
-        self._moment: Moment | None = None
+        self._timed_faults: Iterator[TimedFault] = iter(())
+        self._next_fault: TimedFault | None = None
 
     @abstractmethod
     def errors(self) -> LineErrors:
@@ -72,8 +72,8 @@ class CommTestLine(ABC):
         """Closes port and board."""
 
     @abstractmethod
-    def _wire(self) -> LineFaultInjector:
-        """Returns the fault injector of this line."""
+    def _order(self, command: str) -> None:
+        """Gives the line a command for its faults."""
 
     @abstractmethod
     def _hand_over(self, data: bytes) -> None:
@@ -99,17 +99,17 @@ class CommTestLine(ABC):
         if faults == Faults(seed=faults.seed):
             return
         self._disturbed = True
-        faults.begin(self._wire())
-        self._stretch = 1 + faults.double + faults.insert
-        self._moments = faults.moments(self.now)
-        self._moment = next(self._moments, None)
+        faults.begin(self._order)
+        self._airtime_factor = 1 + faults.double + faults.insert
+        self._timed_faults = faults.timed(self.now)
+        self._next_fault = next(self._timed_faults, None)
 
     def clear_faults(self) -> None:
         """Removes all faults from the line."""
         if self._disturbed:
-            self._wire().clean()
-        self._moment = None
-        self._stretch = 1.0
+            order_both(self._order, "clean")
+        self._next_fault = None
+        self._airtime_factor = 1.0
 
     def drain(self) -> None:
         """Waits until all written bytes have passed the line, which a stall may delay."""
@@ -119,7 +119,7 @@ class CommTestLine(ABC):
     def write(self, data: bytes) -> None:
         """Writes bytes to the port; waits for the line while its buffer is full."""
         room = WRITE_BUFFER_BYTES * self.byte_time
-        airtime = len(data) * self.byte_time * self._stretch
+        airtime = len(data) * self.byte_time * self._airtime_factor
         while self.busy + airtime > room + TIME_MIN:
             self.wait(self.busy + airtime - room)
         self._hand_over(data)
@@ -129,17 +129,17 @@ class CommTestLine(ABC):
         """Waits in test time and adds received bytes to `heard`. Raises StoppedError."""
         end = self.now + seconds
         while end - self.now > TIME_MIN:
-            pause = end if self._moment is None else min(end, self._moment[0])
+            pause = end if self._next_fault is None else min(end, self._next_fault[0])
             if pause - self.now > TIME_MIN:
                 self._pass(pause - self.now)
-            while self._moment is not None and self._moment[0] - self.now <= TIME_MIN:
-                self._apply_fault(self._moment)
-                self._moment = next(self._moments, None)
+            while self._next_fault is not None and self._next_fault[0] - self.now <= TIME_MIN:
+                self._apply_fault(self._next_fault)
+                self._next_fault = next(self._timed_faults, None)
 
-    def _apply_fault(self, moment: Moment) -> None:
-        _, kind, seconds = moment
+    def _apply_fault(self, fault: TimedFault) -> None:
+        _, kind, seconds = fault
         if kind == "stall":
-            self._wire().stall(seconds)
+            order_both(self._order, f"stall {seconds!r}")
             self._line_free = self.now + self.busy + seconds
         else:
-            self._wire().cut(kind == "cut")
+            order_both(self._order, "cut on" if kind == "cut" else "cut off")

@@ -4,10 +4,9 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from robot_runtime.experiments.comm_test.faults import RateKind
 from robot_runtime.experiments.comm_test.line import Cancellation, CommTestLine, check
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
-from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, PtyProxy
+from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, obey
 from robot_runtime.link.port import Port
 
 LOOK = 0.1
@@ -49,20 +48,11 @@ class PortLine(CommTestLine):
         """Returns the injected faults; the errors that the UARTs saw are not known."""
         if self._faulty is None:
             return LineErrors()
-        channels = self._faulty.channels.items()
-        return LineErrors(
-            faults=FaultCounts.add_up(
-                {
-                    f"{name}_{what}": many
-                    for name, channel in channels
-                    for what, many in channel.counts.items()
-                }
-            )
-        )
+        return LineErrors(faults=FaultCounts.add_up(self._faulty.stats()))
 
-    def _wire(self) -> "_FaultyWire":
+    def _order(self, command: str) -> None:
         assert self._faulty
-        return _FaultyWire(self._faulty)
+        obey(self._faulty, command)
 
     def _hand_over(self, data: bytes) -> None:
         self._port.write(data)
@@ -75,31 +65,3 @@ class PortLine(CommTestLine):
             if self._port.wait(min(left, LOOK)):
                 self.heard += self._port.read()
         self.now = time.monotonic() - self._began
-
-
-class _FaultyWire:
-    def __init__(self, line: PtyProxy) -> None:
-        self._line = line
-
-    def seed(self, seed: int) -> None:
-        self._line.seed(seed)
-
-    def rate(self, kind: RateKind, rate: float) -> None:
-        for channel in self._line.channels.values():
-            channel.set_rate(kind, rate)
-
-    def burst(self, rate: float, bits: int) -> None:
-        for channel in self._line.channels.values():
-            channel.burst(rate, bits)
-
-    def stall(self, seconds: float) -> None:
-        for direction in DIRECTIONS:
-            self._line.stall(direction, seconds)
-
-    def cut(self, cut: bool) -> None:
-        for channel in self._line.channels.values():
-            channel.cut(cut)
-
-    def clean(self) -> None:
-        for direction in DIRECTIONS:
-            self._line.clean(direction)

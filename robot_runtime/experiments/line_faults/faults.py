@@ -10,8 +10,9 @@ from collections.abc import Iterable
 from random import Random
 from typing import Literal, get_args
 
+Direction = Literal["to_board", "from_board"]
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 Kind = Literal["bit_errors", "drop", "double", "insert"]
-
 KINDS: tuple[Kind, ...] = get_args(Kind)
 COUNTS = ("bit_errors", "drops", "doubles", "inserts", "bursts", "burst_errors", "cuts", "stalls", "lost")
 """The names of the counts; `cuts` and `lost` are bytes, the latter those that the host did not read."""

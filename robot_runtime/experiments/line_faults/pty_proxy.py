@@ -19,16 +19,13 @@ import threading
 import time
 import tty
 from pathlib import Path
-from typing import Literal, Self, get_args
+from typing import Self
 
 import serial
 
-from robot_runtime.experiments.line_faults.faults import COUNTS, KINDS, FaultyChannel
+from robot_runtime.experiments.line_faults.faults import COUNTS, DIRECTIONS, KINDS, Direction, FaultyChannel
 from robot_runtime.link.port import PortError
 
-Direction = Literal["to_board", "from_board"]
-
-DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 _READ_BYTES = 1024
 _STALL_MAX = 3600.0  # s
 _LOOK = 0.1  # s between two looks whether the line has ended
@@ -99,6 +96,11 @@ class PtyProxy:
         self._stalled_until[direction] = 0.0
         self._wake()
 
+    def stats(self) -> dict[str, int]:
+        """Returns the counts of both directions, by names that begin with the direction."""
+        channels = self.channels.items()
+        return {f"{name}_{count}": channel.counts[count] for name, channel in channels for count in COUNTS}
+
     def running(self) -> bool:
         """True until it ends by itself."""
         return self._thread.is_alive()
@@ -159,10 +161,7 @@ def obey(line: PtyProxy, command: str) -> str:
     """Executes a command and returns the answer. Raises ValueError for an invalid one."""
     match command.split():
         case ["stats"]:
-            counts = ((name, channel.counts) for name, channel in line.channels.items())
-            return " ".join(
-                ["stats", *(f"{name}_{what}={many[what]}" for name, many in counts for what in COUNTS)]
-            )
+            return " ".join(["stats", *(f"{name}={count}" for name, count in line.stats().items())])
         case ["seed", seed]:
             line.seed(int(seed))
         case ["line", ("to_board" | "from_board") as direction, *words]:

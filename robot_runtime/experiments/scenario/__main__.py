@@ -20,8 +20,9 @@ from typing import IO, Any
 
 import cv2
 
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.boards import boards
-from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.link.port import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
@@ -63,7 +64,7 @@ def main() -> int:
         messages = RunOutput(stream)
         try:
             scenario = read_scenario(sys.stdin.buffer.read().decode("utf-8", "replace"))
-        except ScenarioError as problem:
+        except ConfigError as problem:
             messages.event("refused", problems=list(problem.problems))
             return REFUSED
         run = ScenarioRun(scenario, made[options.board], messages)

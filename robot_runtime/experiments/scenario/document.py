@@ -57,10 +57,6 @@ _LIMITS: dict[str, tuple[float, float]] = {
 _ELSEWHERE = {"floor": "[scene] depth", "beacons": "[scene] beacons"}
 
 
-class ScenarioError(ConfigError):
-    """A scenario that cannot be run; `problems` says in words what is wrong, field by field."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TargetBall:
     """A coloured ball that the camera can see; position in m north, east, down, size in m across."""
@@ -192,21 +188,21 @@ _STAND_IN: dict[str, Any] = {
 
 
 def read_scenario(text: str) -> Scenario:
-    """The scenario that a TOML text says. Raises ScenarioError with all problems."""
+    """The scenario that a TOML text says. Raises ConfigError with all problems."""
     if len(text.encode("utf-8", "replace")) > TEXT_BYTES_MAX:
-        raise ScenarioError(f"the scenario is larger than {TEXT_BYTES_MAX} bytes")
+        raise ConfigError(f"the scenario is larger than {TEXT_BYTES_MAX} bytes")
     try:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
-        raise ScenarioError(f"the scenario is not TOML: {problem}") from problem
+        raise ConfigError(f"the scenario is not TOML: {problem}") from problem
     problems: list[str] = []
     values = _read_entries(table, problems)
     try:
         scenario = Scenario(**(_STAND_IN | values))
     except ConfigError as problem:
-        raise ScenarioError(*problems, *problem.problems) from problem
+        raise ConfigError(*problems, *problem.problems) from problem
     if problems:
-        raise ScenarioError(*problems)
+        raise ConfigError(*problems)
     return scenario
 
 

@@ -123,12 +123,13 @@ def _rates(runs: "CommTestRuns", name: str) -> "dict[Cell, float]":
 
 
 def _read(file: Path) -> "tuple[str, list[CommTest]]":
-    from robot_runtime.experiments.comm_test.document import DocumentError, read_document
+    from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.experiments.comm_test.document import read_document
 
     try:
         text = file.read_text(encoding="utf-8")
         return text, read_document(text)
     except (OSError, UnicodeDecodeError) as problem:
         raise SetupError(f"{file} cannot be read: {problem}") from problem
-    except DocumentError as problem:
+    except ConfigError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem

@@ -5,7 +5,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from fastapi.responses import Response
 
-from robot_runtime.experiments.comm_test.document import CommTest, DocumentError
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.experiments.comm_test.document import CommTest
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests import tables
 from server.features.comm_tests.reference import TABLES, TITLES, read_table
@@ -50,8 +51,8 @@ def check_test_document(document: DocumentText) -> Check:
     """Check a document: its problems field by field, or its tests with about how long they take."""
     try:
         return Check(problems=[], tests=[_describe(test) for test in read_limited(document.text)])
-    except DocumentError as problem:
-        return Check(problems=problem.problems, tests=[])
+    except ConfigError as problem:
+        return Check(problems=list(problem.problems), tests=[])
 
 
 @router.post(

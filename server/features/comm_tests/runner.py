@@ -18,8 +18,9 @@ from signal import SIGKILL, SIGTERM
 from typing import Any
 
 from robot_runtime.clock import Clock
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.errors import RefusedError
-from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, read_document
+from robot_runtime.experiments.comm_test.document import CommTest, read_document
 from robot_runtime.experiments.comm_test.runner import estimate_seconds
 from server.features.comm_tests.runs import CommTestStore, End
 from server.features.comm_tests.schemas import Cell, Phase, Place
@@ -103,7 +104,7 @@ class CommTestRunner:
     async def start(self, text: str, place: Place) -> int:
         """Run a document; returns the number of its first run as soon as that has begun.
 
-        Raises DocumentError, RefusedError where it cannot be run now, StoreError.
+        Raises ConfigError, RefusedError where it cannot be run now, StoreError.
         """
         tests = read_limited(text)
         if self.busy:
@@ -250,15 +251,13 @@ class CommTestRunner:
 
 
 def read_limited(text: str) -> list[CommTest]:
-    """The tests of a document that may be run here. Raises DocumentError."""
+    """The tests of a document that may be run here. Raises ConfigError."""
     tests = read_document(text)
     seconds = sum(estimate_seconds(test, cell) for test in tests for cell in test.cells)
     if seconds > TEST_SECONDS_MAX:
-        raise DocumentError(
-            [
-                f"the document's cells take about {seconds / 3600:.0f} hours; at most "
-                f"{TEST_SECONDS_MAX / 3600:g} can be run at once. Take fewer numbers, or shorter delays"
-            ]
+        raise ConfigError(
+            f"the document's cells take about {seconds / 3600:.0f} hours; at most "
+            f"{TEST_SECONDS_MAX / 3600:g} can be run at once. Take fewer numbers, or shorter delays"
         )
     return tests
 

@@ -68,7 +68,8 @@ def run(
 
 
 def _read(file: str, own: Path) -> "tuple[str, Scenario]":
-    from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+    from robot_runtime.contract.limits import ConfigError
+    from robot_runtime.experiments.scenario.document import read_scenario
     from server.features.scenarios.library import list_scenarios
 
     there = {one.name: one.text for one in list_scenarios(own)}
@@ -78,7 +79,7 @@ def _read(file: str, own: Path) -> "tuple[str, Scenario]":
     except (OSError, UnicodeDecodeError) as problem:
         known = ", ".join(there)
         raise SetupError(f"{file} cannot be read: {problem}. Scenarios that there are: {known}") from problem
-    except ScenarioError as problem:
+    except ConfigError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
 
 

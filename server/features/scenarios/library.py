@@ -4,9 +4,10 @@ import logging
 from importlib.resources import files
 from pathlib import Path
 
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
-from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, ScenarioError, read_scenario
+from robot_runtime.experiments.scenario.document import TEXT_BYTES_MAX, Scenario, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
 
 log = logging.getLogger(__name__)
@@ -25,7 +26,7 @@ def list_scenarios(own: Path) -> list[ScenarioText]:
 def keep_scenario(own: Path, text: str) -> Scenario:
     """Write a scenario into the folder `own`, under its own name.
 
-    Raises ScenarioError where it cannot be run, RefusedError where it may not or cannot be written.
+    Raises ConfigError where it cannot be run, RefusedError where it may not or cannot be written.
     """
     scenario = read_scenario(text)
     if scenario.name in SHIPPED:
@@ -58,7 +59,7 @@ def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
     """Its title is the file's name where there is something wrong with it; the check says what."""
     try:
         summary = summarize(read_scenario(text))
-    except ScenarioError:
+    except ConfigError:
         summary = None
     title = summary.title if summary else name
     return ScenarioText(name=name, title=title, text=text, shipped=shipped, summary=summary)

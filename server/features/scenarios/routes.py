@@ -3,7 +3,8 @@
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 
-from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.experiments.scenario.document import read_scenario
 from server.features.lease.admission import require_control
 from server.features.scenarios import library
 from server.features.scenarios.runs import ScenarioRunner
@@ -48,7 +49,7 @@ def check_scenario(document: ScenarioDocument) -> ScenarioCheck:
     """Check a scenario: its problems field by field, or its summary."""
     try:
         return ScenarioCheck(problems=[], summary=summarize(read_scenario(document.text)))
-    except ScenarioError as problem:
+    except ConfigError as problem:
         return ScenarioCheck(problems=list(problem.problems), summary=None)
 
 

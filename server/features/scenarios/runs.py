@@ -65,7 +65,7 @@ class ScenarioRunner:
         )
 
     def start(self, text: str, place: Place, board: BoardKind, who: str = "") -> int:
-        """Run a scenario, or let it wait for its turn; its number. Raises ScenarioError, RefusedError."""
+        """Run a scenario, or let it wait for its turn; its number. Raises ConfigError, RefusedError."""
         scenario = read_scenario(text)
         if place == "live" and self._active is not None:
             raise RefusedError(

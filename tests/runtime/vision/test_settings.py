@@ -63,8 +63,8 @@ def test_robot_toml_shows_the_defaults() -> None:
     [
         ({"hue": [20, 180]}, r"vision: colours.sky: hue\[1\] is 180; it must lie between 0 and 179"),
         ({"hue": [-1, 20]}, "between 0 and 179"),
-        ({"hue": [20]}, "must have 2 numbers"),
-        ({"hue": [1, 2, 3]}, "must have 2 numbers"),
+        ({"hue": [20]}, "must be a list of 2 numbers"),
+        ({"hue": [1, 2, 3]}, "must be a list of 2 numbers"),
         ({"hue": [1.5, 2]}, "a whole number"),
         ({"hue": [True, 2]}, "a whole number"),
         ({"saturation": [0, 256]}, "between 0 and 255"),

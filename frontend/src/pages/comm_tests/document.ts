@@ -136,6 +136,8 @@ export function faultWords(test: Fields): string {
     .join(', ');
 }
 
+const PROBLEM = /^test (\d+): (?:(?!it )(?:(faults): )?'?(\w+)'?(?:\[(\d+)\])? (?=is |must ))?(.*)$/s;
+
 /**
  * Problems of the test at `index`, without its number, by the field that they name: delay, faults.drop; '' where
  * they name none.
@@ -143,8 +145,10 @@ export function faultWords(test: Fields): string {
 export function problemsByField(problems: readonly string[], index: number): ReadonlyMap<string, readonly string[]> {
   const found = new Map<string, string[]>();
   for (const problem of problems) {
-    const [, test, field = '', entry, words = ''] = /^test (\d+): (?:(\w+(?:\.\w+)?)(?:\[(\d+)\])?: )?(.*)$/s.exec(problem) ?? [];
-    const placed = entry === undefined ? words : `entry ${Number(entry) + 1}: ${words}`;
+    const [, test, faults = '', name = '', entry, words = ''] = PROBLEM.exec(problem) ?? [];
+    const field = faults === '' ? name : `${faults}.${name}`;
+    const subject = entry === undefined ? 'It' : `Entry ${Number(entry) + 1}`;
+    const placed = field === '' ? words : `${subject} ${words}`;
     if (Number(test) === index + 1) found.set(field, [...(found.get(field) ?? []), placed]);
   }
   return found;

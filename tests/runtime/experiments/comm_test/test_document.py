@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from robot_runtime.experiments.comm_test.document import CommTest, DocumentError, chip_baud, read_document
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.experiments.comm_test.document import CommTest, chip_baud, read_document
 from robot_runtime.experiments.comm_test.faults import Faults
 from robot_runtime.experiments.comm_test.results import GridCell
 
@@ -21,9 +22,9 @@ def changed(**changes: Any) -> str:
 
 
 def problems(text: str) -> list[str]:
-    with pytest.raises(DocumentError) as refused:
+    with pytest.raises(ConfigError) as refused:
         read_document(text)
-    return refused.value.problems
+    return list(refused.value.problems)
 
 
 def test_the_thesis_s_own_example_is_75_cells() -> None:
@@ -67,59 +68,68 @@ def test_faults_are_read_and_what_was_stored_can_be_read_again() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"bauds": [1]}, "bauds: there is no such field"),
-        ({"id": "1"}, "id: '1' is not a whole number"),
-        ({"id": True}, "id: True is not a whole number"),
-        ({"name": " "}, "name: it must be a text"),
-        ({"ino_path": "/etc/passwd"}, "ino_path: '/etc/passwd' is not among the sketches"),
+        ({"bauds": [1]}, "'bauds' is not known here; known are id, name, ino_path"),
+        ({"id": "1"}, "id is '1'; it must be a whole number"),
+        ({"id": True}, "id is True; it must be a whole number"),
+        ({"name": " "}, "name must be a text of 1 to 200 characters"),
+        ({"ino_path": "/etc/passwd"}, "ino_path is '/etc/passwd'; it must be comm_test/comm_test.ino"),
         ({"ino_path": "comm_test/../robot/robot.ino"}, "ino_path"),
         ({"ino_path": "/micro_cat_test/arduino/test_6/test_7.ino"}, "ino_path"),
-        ({"ino_path": 3}, "ino_path: 3 is not"),
-        ({"delay": [0, -0.5]}, "delay[1]: -0.5 is not a delay"),
-        ({"delay": [float("nan")]}, "delay[0]: nan"),
-        ({"delay": [float("inf")]}, "delay[0]: inf"),
-        ({"delay": [False]}, "delay[0]: False"),
-        ({"delay": [11]}, "delay[0]: 11"),
-        ({"delay": []}, "delay: it must be a list of one or more"),
-        ({"delay": 0.5}, "delay: it must be a list of one or more"),
-        ({"arduinodelay": [0.5, "1"]}, "arduinodelay[1]: '1' is not a delay"),
-        ({"arduinodelay": [0.5, 0.5]}, "arduinodelay[1]: 0.5 is there twice"),
-        ({"baud_rate": []}, "baud_rate: it must be a list"),
-        ({"baud_rate": [9600, 230400]}, "baud_rate[1]: the chip at 16 MHz makes 222222 of it, -3.5%"),
-        ({"baud_rate": [0]}, "baud_rate[0]: 0 is not a baud rate"),
-        ({"baud_rate": [9600.0]}, "baud_rate[0]: 9600.0 is not a baud rate"),
-        ({"baud_rate": [100]}, "baud_rate[0]: the chip at 16 MHz cannot make it"),
-        ({"baud_rate": [9600, 9600]}, "baud_rate[1]: 9600 is there twice"),
-        ({"from_val": -1}, "from_val: -1 is not a whole number from 0 to 32767"),
-        ({"to_val": 40000}, "to_val: 40000 is not a whole number from 1 to 32768"),
-        ({"to_val": 1}, "to_val: 1 must be above from_val, 1"),
-        ({"to_val": 20000}, "to_val: 20000 must be above from_val, 1, by 1 to 5000"),
-        ({"expected": 99}, "expected: 99 numbers, but from_val 1 up to, and without, to_val 101 are 100"),
-        ({"framing": "morse"}, "framing: 'morse' must be one of plain, thesis, robot"),
-        ({"framing": "robot", "baud_rate": [600]}, "baud_rate[0]: 600 is not a baud rate of this framing"),
-        ({"framing": ["plain"]}, "framing: ['plain'] must be one of"),
-        ({"direction": "up"}, "direction: 'up' must be one of to_board, to_host, both"),
-        ({"faults": 3}, "faults: it must be an object in braces"),
-        ({"faults": {"noise": 1}}, "faults.noise: there is no such fault; known are seed, bit_errors"),
-        ({"faults": {"seed": -1}}, "faults.seed: -1 is not a whole number"),
-        ({"faults": {"seed": 1.0}}, "faults.seed: 1.0 is not a whole number"),
-        ({"faults": {"bit_errors": 0.2}}, "faults.bit_errors: 0.2 is not a rate from 0 to 0.1"),
-        ({"faults": {"drop": "1"}}, "faults.drop: '1' is not a rate"),
-        ({"faults": {"double": True}}, "faults.double: True is not a rate"),
-        ({"faults": {"insert": float("nan")}}, "faults.insert: nan is not a rate"),
-        ({"faults": {"burst": 0.1}}, "faults.burst: it must be a list of two numbers, a rate and a length"),
-        ({"faults": {"burst": [0.11, 8]}}, "faults.burst[0]: 0.11 is not a rate"),
-        ({"faults": {"burst": [0.1, 0]}}, "faults.burst[1]: 0 is not a whole number of bits"),
-        ({"faults": {"burst": [0.1, 1.5]}}, "faults.burst[1]: 1.5 is not a whole number of bits"),
-        ({"faults": {"stall": [1]}}, "faults.stall: it must be a list of two numbers, how often"),
-        ({"faults": {"stall": [0, 0.1]}}, "faults.stall[0]: 0 is not a time from 0.05 to 3600 seconds"),
+        ({"ino_path": 3}, "ino_path is 3; it must be a text"),
+        ({"delay": [0, -0.5]}, "delay[1] is -0.5; it must lie between 0 and 10"),
+        ({"delay": [float("nan")]}, "delay[0] is nan; it must be a number"),
+        ({"delay": [float("inf")]}, "delay[0] is inf; it must be a number"),
+        ({"delay": [False]}, "delay[0] is False; it must be a number"),
+        ({"delay": [11]}, "delay[0] is 11; it must lie"),
+        ({"delay": []}, "delay must be a list of one or more"),
+        ({"delay": 0.5}, "delay is 0.5; it must be a list"),
+        ({"arduinodelay": [0.5, "1"]}, "arduinodelay[1] is '1'; it must be a number"),
+        ({"arduinodelay": [0.5, 0.5]}, "arduinodelay[1] is 0.5, which the list already has"),
+        ({"baud_rate": []}, "baud_rate must be a list"),
+        (
+            {"baud_rate": [9600, 230400]},
+            "baud_rate[1] is 230400; the chip at 16 MHz makes 222222 of it, -3.5%",
+        ),
+        ({"baud_rate": [0]}, "baud_rate[0] is 0; it must lie between 1 and 16000000"),
+        ({"baud_rate": [9600.0]}, "baud_rate[0] is 9600.0; it must be a whole number"),
+        ({"baud_rate": [100]}, "baud_rate[0] is 100; the chip at 16 MHz cannot make it"),
+        ({"baud_rate": [9600, 9600]}, "baud_rate[1] is 9600, which the list already has"),
+        ({"from_val": -1}, "from_val is -1; it must lie between 0 and 32767"),
+        ({"to_val": 40000}, "to_val is 40000; it must lie between 1 and 32768"),
+        ({"to_val": 1}, "to_val is 1; it must be above from_val, 1"),
+        ({"to_val": 20000}, "to_val is 20000; it must be above from_val, 1, by 1 to 5000"),
+        ({"expected": 99}, "expected is 99; it must be 100, the count of numbers from from_val, 1, up to"),
+        ({"framing": "morse"}, "framing is 'morse'; it must be one of 'plain', 'thesis', 'robot'"),
+        (
+            {"framing": "robot", "baud_rate": [600]},
+            "baud_rate[0] is 600; with the framing robot it must lie",
+        ),
+        ({"framing": ["plain"]}, "framing is ['plain']; it must be one of"),
+        ({"direction": "up"}, "direction is 'up'; it must be one of 'to_board', 'to_host', 'both'"),
+        ({"faults": 3}, "faults must be a table"),
+        ({"faults": {"noise": 1}}, "faults: 'noise' is not known here; known are seed, bit_errors"),
+        ({"faults": {"seed": -1}}, "faults: seed is -1; it must lie between 0"),
+        ({"faults": {"seed": 1.0}}, "faults: seed is 1.0; it must be a whole number"),
+        ({"faults": {"bit_errors": 0.2}}, "faults: bit_errors is 0.2; it must lie between 0 and 0.1"),
+        ({"faults": {"drop": "1"}}, "faults: drop is '1'; it must be a number"),
+        ({"faults": {"double": True}}, "faults: double is True; it must be a number"),
+        ({"faults": {"insert": float("nan")}}, "faults: insert is nan; it must be a number"),
+        ({"faults": {"burst": 0.1}}, "faults: burst is 0.1; it must be a list"),
+        ({"faults": {"burst": [0.11, 8]}}, "faults: burst[0] is 0.11; it must lie between 0 and 0.1"),
+        ({"faults": {"burst": [0.1, 0]}}, "faults: burst[1] is 0; it must lie between 1 and 10000"),
+        ({"faults": {"burst": [0.1, 1.5]}}, "faults: burst[1] is 1.5; it must be a whole number"),
+        ({"faults": {"stall": [1]}}, "faults: stall is [1]; it must be a list of 2 numbers"),
+        ({"faults": {"stall": [0, 0.1]}}, "faults: stall[0] is 0; it must lie between 0.05 and 3600"),
         (
             {"faults": {"stall": [2, 2]}},
-            "faults.stall[1]: 2 is not a time above 0 and below faults.stall[0], 2",
+            "faults: stall[1] is 2; it must be above 0 and below the period, 2 s",
         ),
-        ({"faults": {"cut": [2, 0]}}, "faults.cut[1]: 0 is not a time"),
-        ({"faults": {"cut": [2, "1"]}}, "faults.cut[1]: '1' is not a time"),
-        ({"framing": "plain", "to_val": 256, "expected": 255}, "to_val: 256 is not a whole number"),
+        ({"faults": {"cut": [2, 0]}}, "faults: cut[1] is 0; it must be above 0"),
+        ({"faults": {"cut": [2, "1"]}}, "faults: cut[1] is '1'; it must be a number"),
+        (
+            {"framing": "plain", "to_val": 256, "expected": 255},
+            "to_val is 256; with the framing plain it must",
+        ),
     ],
 )
 def test_a_mistake_is_told_where_it_is(changes: dict[str, Any], words: str) -> None:
@@ -129,8 +139,8 @@ def test_a_mistake_is_told_where_it_is(changes: dict[str, Any], words: str) -> N
 
 def test_all_mistakes_are_told_at_once() -> None:
     found = problems('[{"id": 1, "delay": [-1]}, 3]')
-    assert "test 1: name: it is missing" in found
-    assert "test 1: delay[0]: -1 is not a delay from 0 to 10 seconds" in found
+    assert "test 1: name is missing" in found
+    assert "test 1: delay[0] is -1; it must lie between 0 and 10" in found
     assert found[-1] == "test 2: it must be an object in braces"
 
 

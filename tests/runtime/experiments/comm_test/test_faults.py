@@ -11,7 +11,7 @@ from tests.runtime.experiments.comm_test.conftest import Run
 
 def test_stalls_and_cuts_come_in_order_from_the_beginning_of_the_traffic_on() -> None:
     faults = Faults(stall=(2.0, 0.5), cut=(3.0, 1.0))
-    assert list(islice(faults.moments(10.0), 7)) == [
+    assert list(islice(faults.timed(10.0), 7)) == [
         (12.0, "stall", 0.5),
         (13.0, "cut", 1.0),
         (14.0, "mend", 1.0),
@@ -20,7 +20,7 @@ def test_stalls_and_cuts_come_in_order_from_the_beginning_of_the_traffic_on() ->
         (16.0, "stall", 0.5),
         (17.0, "mend", 1.0),
     ]
-    assert list(Faults(bit_errors=0.1).moments(0.0)) == []
+    assert list(Faults(bit_errors=0.1).timed(0.0)) == []
 
 
 def test_a_noisy_line_is_told_of_and_comes_again_the_same(run: Run) -> None:

@@ -8,6 +8,7 @@ from robot_runtime.experiments.comm_test.framings import (
     ANSWER_BYTES,
     REQUEST_RESULT,
     STREAM_FRAMINGS,
+    FramingName,
     find_answer,
     make_packet,
 )
@@ -26,7 +27,7 @@ def test_numbers_on_the_wire() -> None:
 
 
 @pytest.mark.parametrize("name", STREAM_FRAMINGS)
-def test_a_clean_stream_counts_every_number(name: str) -> None:
+def test_a_clean_stream_counts_every_number(name: FramingName) -> None:
     framing = STREAM_FRAMINGS[name]
     stream = b"".join(map(framing.message, range(20, 120)))
     assert framing.count(stream, 20, 120) == Counts(right=100, bytes_read=len(stream))

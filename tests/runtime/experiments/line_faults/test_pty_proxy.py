@@ -15,8 +15,15 @@ from pathlib import Path
 import pytest
 import serial
 
-from robot_runtime.experiments.line_faults.faults import KINDS, FaultyChannel, Kind, Recurrence
-from robot_runtime.experiments.line_faults.pty_proxy import DIRECTIONS, Direction, PtyProxy, obey
+from robot_runtime.experiments.line_faults.faults import (
+    DIRECTIONS,
+    KINDS,
+    Direction,
+    FaultyChannel,
+    Kind,
+    Recurrence,
+)
+from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, obey
 from robot_runtime.link.port import PortError
 from tests.runtime.board_end import DEADLINE, BoardEnd
 

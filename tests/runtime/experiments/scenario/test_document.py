@@ -4,8 +4,9 @@ from importlib.resources import files
 
 import pytest
 
+from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import COLOURS
-from robot_runtime.experiments.scenario.document import ScenarioError, read_scenario
+from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.events import (
     Colour,
     CommandEvent,
@@ -91,7 +92,7 @@ def event(do: str, rest: str = "", at: float = 1) -> str:
 
 
 def problems(text: str) -> tuple[str, ...]:
-    with pytest.raises(ScenarioError) as refused:
+    with pytest.raises(ConfigError) as refused:
         read_scenario(text)
     return refused.value.problems
 
@@ -202,7 +203,7 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
         ),
         (BARE.replace('"natural"', '"lake"'), "scene: kind is 'lake'; it must be one of 'pool', 'natural'"),
         (BARE.replace('"natural"', '"pool"'), "scene: a pool has length and width, natural water neither"),
-        (BARE + "beacons = [[1, 2]]", "scene: beacons[0] is [1, 2]; it must have 3 numbers"),
+        (BARE + "beacons = [[1, 2]]", "scene: beacons[0] is [1, 2]; it must be a list of 3 numbers"),
         (BARE + "beacons = [[1, 2, 'x']]", "scene: beacons[0][2] is 'x'; it must be a number"),
         (BARE + "[start]\ndown = 3", "start: a start at 3 m is in the floor, which is at 3 m"),
         (

@@ -159,7 +159,7 @@ def test_the_contents_are_told_as_the_questions_that_make_them() -> None:
         ("world", {"depth": 2}, "'depth' is not known here"),
         ("targets", {}, "targets is missing"),
         ("targets", {"targets": [{"colour": "pink", "position": [1, 0, 1]}]}, "must be one of red, yellow"),
-        ("targets", {"targets": [{"colour": "red", "position": [1, 0]}]}, "must have 3 numbers"),
+        ("targets", {"targets": [{"colour": "red", "position": [1, 0]}]}, "must be a list of 3 numbers"),
         ("targets", {"targets": [{"colour": "red", "position": [1, 0, 1], "size": 9}]}, "0.02 and 2"),
         ("view", {"name": "below"}, "must be one of 'follow', 'side', 'top'"),
         ("view", {"elevation": 100}, "must lie between -60 and 89"),

@@ -227,7 +227,7 @@ def test_after_a_reset_the_same_bytes_come_again() -> None:
         ("world", {"depth": 2, "length": 5}, "both length and width"),
         ("world", {"depth": 2, "length": 5, "width": 0.5}, "between 1 and 1000"),
         ("beacons", {"positions": [1, 2, 3]}, r"positions\[0\] is 1; it must be a list"),
-        ("beacons", {"positions": [[1, 2]]}, r"positions\[0\] is \[1, 2\]; it must have 3 numbers"),
+        ("beacons", {"positions": [[1, 2]]}, r"positions\[0\] is \[1, 2\]; it must be a list of 3 numbers"),
         ("beacons", {"positions": [[1, 2, "3"]]}, r"positions\[0\]\[2\] is '3'; it must be a number"),
         ("beacons", {"positions": {"north": 1}}, "must be a list"),
         ("beacons", {"positions": [[0, 0, 0]] * 9}, "at most 8"),

@@ -98,8 +98,8 @@ def test_what_cannot_be_done_is_said(
 ) -> None:
     document = write(tmp_path, ENTRY | {"delay": [-1], "speed": 3})
     for arguments, words in (
-        (["run", document], "test 1: speed: there is no such field"),
-        (["run", document], "test 1: delay[0]: -1 is not a delay"),
+        (["run", document], "test 1: 'speed' is not known here"),
+        (["run", document], "test 1: delay[0] is -1; it must lie between 0 and 10"),
         (["run", str(tmp_path / "none.json")], "none.json cannot be read"),
         (["show", "7"], "There is no run 7"),
         (["export", "7"], "There is no run 7"),

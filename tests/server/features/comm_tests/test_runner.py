@@ -227,7 +227,7 @@ def test_a_lab_that_cannot_begin_says_why(settings: Settings, monkeypatch: pytes
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({"delay": [-1]}, "test 1: delay[0]: -1 is not a delay"),
+    ({"delay": [-1]}, "test 1: delay[0] is -1; it must lie between 0 and 10"),
     ({"delay": []}, "test 1: delay"),
     ({"baud_rate": [230400]}, "test 1: baud_rate[0]"),
     ({"arduinodelay": ["a"]}, "test 1: arduinodelay[0]"),
@@ -237,7 +237,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"direction": "up"}, "test 1: direction"),
     ({"ino_path": "../../etc/passwd"}, "test 1: ino_path"),
     ({"name": ""}, "test 1: name"),
-    ({"speed": 3}, "test 1: speed: there is no such field"),
+    ({"speed": 3}, "test 1: 'speed' is not known here"),
     ({"delay": [number / 1000 for number in range(501)]}, "at most 500 cells"),
 ]
 
