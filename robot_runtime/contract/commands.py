@@ -6,9 +6,9 @@ performs commands in `robot_runtime.commands`.
 """
 
 from collections.abc import Callable
-from dataclasses import MISSING, Field, asdict, dataclass, field, fields, make_dataclass
+from dataclasses import MISSING, Field, asdict, dataclass, field, fields
 from enum import IntEnum
-from typing import Any, ClassVar, Literal, TypeVar, get_type_hints
+from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform, get_type_hints
 
 from robot_runtime.contract.documents import ParameterValue, Steering
 from robot_runtime.contract.limits import (
@@ -46,7 +46,8 @@ class CommandPolicy:
 
     `need`: the rights for its HTTP route; None: only the server and scenarios send it. `tunes`: it may
     change parameters, which the history notes. `in_scenarios`: a scenario may have it as an event.
-    `disturbs_experiment`: it is refused while an experiment measures a loop.
+    `disturbs_experiment`: it is refused while an experiment measures a loop. `words`: its name for people,
+    where that is not its summary.
     """
 
     name: str
@@ -54,6 +55,7 @@ class CommandPolicy:
     tunes: bool
     in_scenarios: bool
     disturbs_experiment: bool
+    words: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +68,7 @@ class RobotCommand:
     @property
     def words(self) -> str:
         """The command in a few words, for a person."""
-        return summary(type(self))
+        return self.policy.words or summary(type(self))
 
     def payload(self) -> dict[str, Any]:
         """Its fields as a JSON object, without those that have their default value."""
@@ -78,6 +80,7 @@ C = TypeVar("C", bound=RobotCommand)
 COMMANDS: dict[str, type[RobotCommand]] = {}
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
 def command(
     name: str,
     need: Need | None,
@@ -85,19 +88,22 @@ def command(
     tunes: bool = False,
     in_scenarios: bool = False,
     disturbs_experiment: bool = False,
+    words: str = "",
 ) -> Callable[[type[C]], type[C]]:
-    """Declares a command; see `CommandPolicy`."""
+    """Makes a class a command, which is a frozen dataclass; see `CommandPolicy`."""
 
     def declare(cls: type[C]) -> type[C]:
-        cls.policy = CommandPolicy(
+        made = dataclass(frozen=True, slots=True, kw_only=True)(cls)
+        made.policy = CommandPolicy(
             name=name,
             need=need,
             tunes=tunes,
             in_scenarios=in_scenarios,
             disturbs_experiment=disturbs_experiment,
+            words=words,
         )
-        COMMANDS[name] = cls
-        return cls
+        COMMANDS[name] = made
+        return made
 
     return declare
 
@@ -107,8 +113,7 @@ def summary(cls: type[RobotCommand]) -> str:
     return (cls.__doc__ or "").partition(". ")[0].partition("\n")[0].removesuffix(".")
 
 
-@command("arm", Need.CONTROL, in_scenarios=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
+@command("arm", Need.CONTROL, in_scenarios=True, words="Arm")
 class ArmCommand(RobotCommand):
     """Arms the robot. It is refused with every reason that stands against it."""
 
@@ -117,25 +122,13 @@ class ArmCommand(RobotCommand):
         default=0.0, metadata={"description": "s for which it may go on without the server"}
     )
 
-    @property
-    def words(self) -> str:
-        """The command in a few words, for a person."""
-        return "Arm"
 
-
-@command("stop", Need.VIEWER, in_scenarios=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
+@command("stop", Need.VIEWER, in_scenarios=True, words="STOP")
 class StopCommand(RobotCommand):
     """Disarms the robot at once. It is never refused."""
 
-    @property
-    def words(self) -> str:
-        """The command in a few words, for a person."""
-        return "STOP"
-
 
 @command("mode", Need.CONTROL)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ModeCommand(RobotCommand):
     """Lets the pilot or the depth controller steer the armed robot."""
 
@@ -143,24 +136,16 @@ class ModeCommand(RobotCommand):
 
 
 @command("check_fins", Need.CONTROL)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class CheckFinsCommand(RobotCommand):
     """Arms for some seconds and moves each fin. An event says which fins followed; then it disarms."""
 
 
-@command("acknowledge", Need.CONTROL, in_scenarios=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
+@command("acknowledge", Need.CONTROL, in_scenarios=True, words="Alarms acknowledged")
 class AcknowledgeCommand(RobotCommand):
     """Acknowledges all alarms. After a failsafe the robot may be armed again from then on."""
 
-    @property
-    def words(self) -> str:
-        """The command in a few words, for a person."""
-        return "Alarms acknowledged"
-
 
 @command("lease", None)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class LeaseCommand(RobotCommand):
     """Starts a new epoch of control. The pilot's inputs of earlier epochs are dropped."""
 
@@ -168,7 +153,6 @@ class LeaseCommand(RobotCommand):
 
 
 @command("set_points", None, tunes=True, in_scenarios=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class SetPointsCommand(RobotCommand):
     """Sets the depths to hold. What is left out stays as it is."""
 
@@ -191,7 +175,6 @@ class SetPointsCommand(RobotCommand):
 
 
 @command("controller", None, tunes=True, in_scenarios=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ControllerCommand(RobotCommand):
     """Chooses the depth controller and sets gains of it."""
 
@@ -208,7 +191,6 @@ class ControllerCommand(RobotCommand):
 
 
 @command("loop", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class LoopCommand(RobotCommand):
     """Changes one control loop: all of it or nothing. What is left out stays as it is."""
 
@@ -237,7 +219,6 @@ class LoopCommand(RobotCommand):
 
 
 @command("parameters", Need.CONTROL, tunes=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ParametersCommand(RobotCommand):
     """Sets parameters by name, all or none, between two control ticks."""
 
@@ -255,7 +236,6 @@ class ParametersCommand(RobotCommand):
 
 
 @command("steering", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class SteeringCommand(RobotCommand):
     """Chooses the course while the robot holds its depth."""
 
@@ -270,7 +250,6 @@ class SteeringCommand(RobotCommand):
 
 
 @command("card", Need.CONTROL, in_scenarios=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class CardCommand(RobotCommand):
     """Holds a card before the simulated camera, or takes it away."""
 
@@ -283,7 +262,6 @@ class CardCommand(RobotCommand):
 
 
 @command("vision", None, tunes=True, in_scenarios=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class VisionCommand(RobotCommand):
     """Sets the rate of the vision node and the colour that it searches. What is left out stays."""
 
@@ -315,17 +293,16 @@ class VisionSettingsBase(RobotCommand):
         return VisionSettings(**{one.name: getattr(self, one.name) for one in fields(VisionSettings)})
 
 
-_VISION_HINTS = get_type_hints(VisionSettings, include_extras=True)
 # The fields of VisionSettings, without their defaults.
 VisionSettingsCommand: type[VisionSettingsBase] = command("vision_settings", Need.CONTROL, tunes=True)(
-    make_dataclass(
+    type(
         "VisionSettingsCommand",
-        [(one.name, _VISION_HINTS[one.name], field(metadata=one.metadata)) for one in fields(VisionSettings)],
-        bases=(VisionSettingsBase,),
-        namespace={"__doc__": VisionSettingsBase.__doc__},
-        frozen=True,
-        slots=True,
-        kw_only=True,
+        (VisionSettingsBase,),
+        {
+            "__annotations__": get_type_hints(VisionSettings, include_extras=True),
+            "__doc__": VisionSettingsBase.__doc__,
+            "__module__": __name__,
+        },
     )
 )
 
@@ -356,7 +333,6 @@ class ExperimentCommand(RobotCommand):
 
 
 @command("step_experiment", None, tunes=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class StepExperimentCommand(ExperimentCommand):
     """Begins a step response: the set point goes from `start` to `target` and stays for `duration`.
 
@@ -380,7 +356,6 @@ class StepExperimentCommand(ExperimentCommand):
 
 
 @command("relay_experiment", None, tunes=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class RelayExperimentCommand(ExperimentCommand):
     """Begins a relay experiment: a relay of ±`amplitude` about `set_point` in the controller's place.
 
@@ -404,7 +379,6 @@ HYSTERESIS_SHARE = 0.25
 
 
 @command("end_experiment", None, tunes=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class EndExperimentCommand(RobotCommand):
     """Ends the running experiment. The loop goes on as before it."""
 

@@ -17,7 +17,6 @@ from tests.stack import ROOT
 
 COMMAND = '''
 @command("blink", Need.CONTROL, tunes=True, in_scenarios=True, disturbs_experiment=True)
-@dataclass(frozen=True, slots=True, kw_only=True)
 class BlinkCommand(RobotCommand):
     """Blinks the lamp."""
 

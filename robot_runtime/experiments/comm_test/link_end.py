@@ -156,18 +156,23 @@ class _LinkCell:
             line=self._line.errors(),
             seconds=self._line.now,
             repeated=statistics.frames_repeated + (answer.frames_repeated if answer else 0),
-            trouble=self._trouble(),
+            failures=self._failures(),
         )
 
-    def _trouble(self) -> tuple[Finding, ...]:
+    def _failures(self) -> tuple[Finding, ...]:
         if self._session.board is None:
-            words = f"the chip did not answer a greeting within {GREETING_PATIENCE:g} s"
-            return (("no link", f"{words}: it does not run the sketch, or at another baud"),)
+            words = f"the chip did not answer within {GREETING_PATIENCE:g} s"
+            return (("no link", f"{words}: it does not run the sketch, or runs it at another baud"),)
         if self._session.stage is SessionStage.REFUSED:
             return (("other definitions", "the sketch was compiled with other packet definitions"),)
         if self._restarted:
             lost = self._session.counters.messages_discarded
-            return (("restart", f"the chip restarted after {self._line.now:.1f} s; on their way: {lost}"),)
+            return (
+                (
+                    "restart",
+                    f"the chip restarted after {self._line.now:.1f} s; {lost} messages to it were lost",
+                ),
+            )
         if self._answer is None:
-            return (("out of time", f"after {self._line.now:.0f} s of test time the result was not there"),)
+            return (("out of time", f"no result after {self._line.now:.0f} s of test time"),)
         return ()

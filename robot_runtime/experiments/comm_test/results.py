@@ -1,22 +1,22 @@
-"""The counts of a communication test's cell, and their explanation."""
+"""The result of a communication test's cell: counts, causes of losses, and an explanation."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from typing import Any, Literal
 
 Direction = Literal["to_board", "to_host", "both"]
 Finding = tuple[str, str]
-"""A cause by name, and what it did, in words."""
+"""A cause by name, and its effect in words."""
 RING_BYTES = 63
-"""What the Arduino core's ring of 64 holds."""
+"""Capacity of the Arduino core's receive buffer, a ring of 64."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """One end's count of what it received; `bytes_read` without the question for the result.
+    """The counts of one receiving end; `bytes_read` excludes the request for the result.
 
     `right`: numbers of the test, each above all right ones before it. `ring_full`: times that the chip found
-    its ring full; 0 on the host.
+    its receive buffer full; 0 on the host.
     """
 
     right: int = 0
@@ -27,8 +27,7 @@ class Counts:
     bytes_read: int = 0
 
     def __add__(self, other: "Counts") -> "Counts":
-        mine, theirs = asdict(self), asdict(other)
-        return Counts(**{field.name: mine[field.name] + theirs[field.name] for field in fields(Counts)})
+        return Counts(*map(sum, zip(astuple(self), astuple(other), strict=True)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +44,7 @@ class FaultCounts:
 
     @classmethod
     def add_up(cls, counts: Mapping[str, int]) -> "FaultCounts":
-        """From counters whose names begin with the direction, as the emulated board has them."""
+        """Adds the emulated board's counters, whose names begin with the direction."""
         return cls(
             **{
                 field.name: counts[f"to_board_{field.name}"] + counts[f"from_board_{field.name}"]
@@ -61,8 +60,8 @@ class FaultCounts:
             (self.bursts, "bursts of errors"),
             (self.drops, "dropped bytes"),
             (self.doubles, "doubled bytes"),
-            (self.inserts, "bytes put in"),
-            (self.cuts, "bytes lost while it was cut"),
+            (self.inserts, "inserted bytes"),
+            (self.cuts, "bytes lost while the line was cut"),
             (self.stalls, "stalls"),
         )
         return ", ".join(f"{count} {what}" for count, what in words if count)
@@ -73,7 +72,7 @@ NO_FAULT_COUNTS = FaultCounts()
 
 @dataclass(frozen=True, slots=True)
 class LineErrors:
-    """Errors on the wire, as the UARTs counted them where they can be read."""
+    """Errors on the wire, from the UARTs' counters where they can be read."""
 
     framing_board: int = 0
     framing_host: int = 0
@@ -94,8 +93,8 @@ class GridCell:
 class CellResult:
     """The result of a cell.
 
-    `board` is None where the chip's answer never came; `lost_to_...` are bytes that were written to the line
-    and not read from it. `seconds` is emulated time, `repeated` are frames that either end sent again.
+    `board` is None if the chip did not answer; `lost_to_...` are bytes that were written to the line and not
+    read from it. `seconds` is emulated time; `repeated` counts the retransmitted frames of both ends.
     """
 
     cell: GridCell
@@ -111,7 +110,7 @@ class CellResult:
 
     @property
     def rate(self) -> float:
-        """Share of the expected numbers that arrived right, 0 to 1; 0 where the result is lost."""
+        """Share of the expected numbers that arrived right, 0 to 1; 0 if the result is lost."""
         if self.direction == "to_host":
             return self.host.right / self.expected
         if self.board is None:
@@ -122,25 +121,25 @@ class CellResult:
 
     @property
     def counts(self) -> Counts:
-        """Returns the counts of the receiving ends, added up where both receive."""
+        """The counts of the receiving end, or of both together."""
         if self.direction == "to_host":
             return self.host
         return (self.board or Counts()) + self.host
 
     @property
     def causes(self) -> tuple[str, ...]:
-        """The names of the causes; none where every number arrived."""
+        """The names of the causes; none if every number arrived."""
         return tuple(dict.fromkeys(cause for cause, _ in self._findings()))
 
     @property
     def explanation(self) -> str:
-        """Why the rate is what it is, for a person."""
+        """The explanation of the rate, for a person."""
         findings = [f"{cause}: {words}" for cause, words in self._findings()]
         return "; ".join([*(findings or ["every number arrived"]), *self._remarks()])
 
     @property
     def values(self) -> dict[str, Any]:
-        """The result as plain values by name, as it is stored; both directions added up."""
+        """The values that are stored, by name; both directions are added."""
         return {
             **asdict(self.cell),
             **asdict(self.counts),
@@ -157,7 +156,7 @@ class CellResult:
 
     def _remarks(self) -> list[str]:
         faults = self.line.faults.words
-        return [f"on the line there were {faults}"] if faults else []
+        return [f"injected faults: {faults}"] if faults else []
 
     @property
     def harmed(self) -> bool:
@@ -167,79 +166,70 @@ class CellResult:
     def _findings(self) -> list[Finding]:
         findings = []
         if self.board is None:
-            findings.append(("lost result", "the chip did not answer when it was asked for its counts"))
+            findings.append(("lost result", "the chip did not answer the request for its counts"))
         if self.direction != "to_host" and self.board:
             findings += _explain(self.board, self.expected, self.lost_to_board, "the chip", self.harmed)
         if self.direction != "to_board":
             findings += _explain(self.host, self.expected, self.lost_to_host, "the host", self.harmed)
         if self.line.framing_board or self.line.framing_host:
             where = f"{self.line.framing_board} at the chip, {self.line.framing_host} at the host"
-            findings.append(("line", f"stop bits were not where they belong, {where}"))
+            findings.append(("line", f"wrong stop bits: {where}"))
         if self.line.overruns:
-            findings.append(
-                ("UART overrun", f"{self.line.overruns} bytes came before the chip had fetched those before")
-            )
+            words = f"{self.line.overruns} bytes arrived before the chip had read the byte before"
+            findings.append(("UART overrun", words))
         return findings
 
 
 @dataclass(frozen=True, slots=True)
 class LinkCellResult(CellResult):
-    """The result of a cell over the robot's own link, where damaged frames are no failure.
+    """The result of a cell over the robot's own link, which repeats damaged frames.
 
-    `trouble` says why there is no result.
+    `failures` say why there is no result.
     """
 
-    trouble: tuple[Finding, ...] = ()
+    failures: tuple[Finding, ...] = ()
 
     def _findings(self) -> list[Finding]:
-        findings = list(self.trouble)
+        findings = list(self.failures)
         ends = {"the chip": self.board} if self.direction != "to_host" else {}
         if self.direction != "to_board":
             ends["the host"] = self.host
         for who, counts in ends.items():
             if counts and counts.right < self.expected:
-                missing = f"{self.expected - counts.right} of {self.expected} numbers did not reach {who}"
-                findings.append(("lost numbers", missing))
+                findings.append(("lost numbers", _missing(counts, self.expected, who)))
             if counts and counts.out_of_sequence:
-                words = f"numbers that came twice or out of their order at {who}: {counts.out_of_sequence}"
+                words = f"repeated or reordered numbers at {who}: {counts.out_of_sequence}"
                 findings.append(("out of sequence", words))
         return findings
 
     def _remarks(self) -> list[str]:
         remarks = CellResult._remarks(self)
         if self.repeated:
-            remarks.append(f"frames sent again: {self.repeated}")
+            remarks.append(f"retransmitted frames: {self.repeated}")
         damaged = self.counts.checksum_errors
-        return [*remarks, f"damaged frames thrown away: {damaged}"] if damaged else remarks
+        return [*remarks, f"discarded damaged frames: {damaged}"] if damaged else remarks
+
+
+def _missing(counts: Counts, expected: int, who: str) -> str:
+    return f"{expected - counts.right} of {expected} numbers did not reach {who}"
 
 
 def _explain(counts: Counts, expected: int, lost: int, who: str, harmed: bool) -> list[Finding]:
     findings = []
-    missing = f"{expected - counts.right} of {expected} numbers did not reach {who}"
+    missing = _missing(counts, expected, who)
     if lost > 0 and counts.ring_full:
-        findings.append(
-            (
-                "ring overrun",
-                f"the bytes came faster than the sketch read them, its ring of {RING_BYTES} bytes was full "
-                f"and {lost} bytes were dropped; {missing}",
-            )
-        )
+        words = f"the sketch read too slowly: its receive buffer of {RING_BYTES} bytes was full"
+        findings.append(("ring overrun", f"{words} and {lost} bytes were lost; {missing}"))
     elif lost > 0:
         findings.append(("lost bytes", f"{lost} bytes did not reach {who}; {missing}"))
     if counts.framing_errors:
-        why = "bytes of theirs were missing" if lost > 0 else "a byte within was the end mark \\n"
-        why = "the line had harmed them, or a byte within was the end mark \\n" if harmed else why
-        findings.append(
-            ("framing error", f"messages of the wrong length at {who}: {counts.framing_errors}; {why}")
-        )
+        why = "some of their bytes were lost" if lost > 0 else "a byte within was the end mark \\n"
+        why = "damaged on the line, or a byte within was the end mark \\n" if harmed else why
+        words = f"messages of the wrong length at {who}: {counts.framing_errors}; {why}"
+        findings.append(("framing error", words))
     if counts.checksum_errors:
-        findings.append(("checksum", f"packets that were not what had been sent: {counts.checksum_errors}"))
+        findings.append(("checksum", f"packets with a wrong checksum: {counts.checksum_errors}"))
     if counts.out_of_sequence:
-        findings.append(
-            (
-                "out of sequence",
-                f"numbers that were not among those still to come: {counts.out_of_sequence}, as when halves "
-                "of two numbers are read as one",
-            )
-        )
+        why = "for example when halves of two numbers are read as one"
+        findings.append(("out of sequence", f"unexpected numbers: {counts.out_of_sequence}, {why}"))
     return findings or ([("lost numbers", missing)] if counts.right < expected else [])

@@ -14,7 +14,7 @@ from robot_runtime.contract.parsing import parse, place, read_value
 from robot_runtime.experiments.scenario.events import (
     Colour,
     TimedEvent,
-    WavesChange,
+    WaterEvent,
     check_controller,
     read_event,
 )
@@ -151,9 +151,9 @@ class Scenario:
         problems = []
         waves = [("water: waves", self.water.waves)]
         waves += [
-            (f"event at {one.at:g} s", Waves(one.amplitude, one.period, one.direction))
+            (f"event at {one.at:g} s", one.change)
             for one in self.events
-            if isinstance(one, WavesChange)
+            if isinstance(one, WaterEvent) and isinstance(one.change, Waves)
         ]
         for where, wave in waves:
             try:

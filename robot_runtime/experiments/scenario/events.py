@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, make_dataclass
+from dataclasses import asdict, dataclass, fields, make_dataclass
 from math import hypot
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -17,12 +17,20 @@ from robot_runtime.contract.commands import (
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import parse, place
 from robot_runtime.control.controllers import CONTROLLERS
-from robot_runtime.simulation.water.faults import Kind, SimulatedFault, check_sensor
-from robot_runtime.simulation.water.parameters import Vector
+from robot_runtime.simulation.water.faults import SimulatedFault, check_sensor
+from robot_runtime.simulation.water.requests import BeaconPositions, SensorFaultRequest
 from robot_runtime.simulation.water.surroundings import Current, Trim, Waves, check_beacons
 
 Colour = Literal["red", "yellow", "green", "blue"]
-Addressee = Literal["runtime", "simulator", "board", "session"]
+WaterChange = BeaconPositions | Current | Waves | Trim | SensorFaultRequest
+WATER_CHANGES: dict[str, type[WaterChange]] = {
+    "beacons": BeaconPositions,
+    "current": Current,
+    "waves": Waves,
+    "trim": Trim,
+    "fault": SensorFaultRequest,
+}
+"""By the name of the simulator's request."""
 LineKind = Literal["bit_errors", "drop", "double", "insert", "burst", "stall", "cut", "clean"]
 TEXT_MAX = 200
 AT = Range(0, 3600)
@@ -41,15 +49,8 @@ class TimedEvent(ABC):
     """Something that happens at a time (s since the start)."""
 
     do: ClassVar[str]
-    to: ClassVar[Addressee]
 
     at: Annotated[float, AT]
-
-    @property
-    def question(self) -> dict[str, Any]:
-        """The payload of the command or question; what was left out is not in it."""
-        given = ((one.name, getattr(self, one.name)) for one in fields(self) if one.name != "at")
-        return {name: value for name, value in given if value is not None}
 
     @property
     @abstractmethod
@@ -60,8 +61,6 @@ class TimedEvent(ABC):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandEvent(TimedEvent):
     """A command to the robot; `do` is the command's name."""
-
-    to = "runtime"
 
     command: RobotCommand
 
@@ -77,121 +76,50 @@ class CommandEvent(TimedEvent):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Beacons(TimedEvent):
-    """Light beacons at these places (m north, east, down) and nowhere else."""
+class WaterEvent(TimedEvent):
+    """A change of the water, of the hull's trim or of a sensor; `do` names the simulator's request."""
 
-    do = "beacons"
-    to = "simulator"
+    change: WaterChange
 
-    positions: tuple[Vector, ...]
+    @property
+    def do(self) -> str:  # type: ignore[override]
+        """The name of the request."""
+        return next(name for name, cls in WATER_CHANGES.items() if isinstance(self.change, cls))
 
-    def __post_init__(self) -> None:
-        check_beacons(self.positions)
+    @property
+    def question(self) -> dict[str, Any]:
+        """The payload of the request, without what was left out."""
+        return {name: value for name, value in asdict(self.change).items() if value is not None}
 
     @property
     def words(self) -> str:
         """A short description of the event."""
-        count = len(self.positions)
-        return (
-            "No light beacon" if not count else "A light beacon" if count == 1 else f"{count} light beacons"
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CurrentChange(TimedEvent):
-    """Another current; m/s and rad/s."""
-
-    do = "current"
-    to = "simulator"
-
-    north: float = 0.0
-    east: float = 0.0
-    down: float = 0.0
-    turning: float = 0.0
-
-    def __post_init__(self) -> None:
-        Current(self.north, self.east, self.down, self.turning)
-
-    @property
-    def words(self) -> str:
-        """A short description of the event."""
-        speed = hypot(self.north, self.east, self.down)
-        return f"Current of {speed:.2g} m/s" if speed else "No current"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WavesChange(TimedEvent):
-    """Other waves; m, s and rad."""
-
-    do = "waves"
-    to = "simulator"
-
-    amplitude: float
-    period: float = 2.0
-    direction: float = 0.0
-
-    def __post_init__(self) -> None:
-        Waves(self.amplitude, self.period, self.direction)
-
-    @property
-    def words(self) -> str:
-        """A short description of the event."""
-        return f"Waves of ±{100 * self.amplitude:g} cm" if self.amplitude else "No waves"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrimChange(TimedEvent):
-    """Another trim; share of the weight and m."""
-
-    do = "trim"
-    to = "simulator"
-
-    buoyancy: float
-    forward: float
-    right: float
-    above: float
-
-    def __post_init__(self) -> None:
-        Trim(self.buoyancy, self.forward, self.right, self.above)
-
-    @property
-    def words(self) -> str:
-        """A short description of the event."""
-        return f"Trim: buoyancy {self.buoyancy:g}"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorFaultChange(TimedEvent):
-    """Break a sensor, or mend it."""
-
-    do = "fault"
-    to = "simulator"
-
-    sensor: str
-    kind: Kind
-    share: float | None = None
-    size: float | None = None
-    speed: float | None = None
-
-    def __post_init__(self) -> None:
-        check_sensor(
-            self.sensor, SimulatedFault(kind=self.kind, share=self.share, size=self.size, speed=self.speed)
-        )
-
-    @property
-    def words(self) -> str:
-        """A short description of the event."""
-        return (
-            f"{self.sensor.replace('_', ' ').capitalize()}: {'mended' if self.kind == 'none' else self.kind}"
-        )
+        match self.change:
+            case BeaconPositions(positions=places):
+                count = len(places)
+                return (
+                    f"{count} light beacons"
+                    if count > 1
+                    else "A light beacon"
+                    if count
+                    else "No light beacon"
+                )
+            case Current(north=north, east=east, down=down):
+                speed = hypot(north, east, down)
+                return f"Current of {speed:.2g} m/s" if speed else "No current"
+            case Waves(amplitude=amplitude):
+                return f"Waves of ±{100 * amplitude:g} cm" if amplitude else "No waves"
+            case Trim(buoyancy=buoyancy):
+                return f"Trim: buoyancy {buoyancy:g}"
+            case SensorFaultRequest(sensor=sensor, kind=kind):
+                return f"{sensor.replace('_', ' ').capitalize()}: {'mended' if kind == 'none' else kind}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineFaultChange(TimedEvent):
-    """Disturb the serial line in one direction, as the emulated board's `line`."""
+    """A fault of the serial line in one direction, as the emulated board's `line`."""
 
     do = "line"
-    to = "board"
 
     direction: Literal["to_board", "from_board"]
     kind: LineKind
@@ -229,10 +157,9 @@ class LineFaultChange(TimedEvent):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BookmarkEvent(TimedEvent):
-    """Point this moment out in the session."""
+    """A bookmark in the session."""
 
     do = "marker"
-    to = "session"
 
     text: str
 
@@ -246,24 +173,14 @@ class BookmarkEvent(TimedEvent):
         return self.text
 
 
-EVENTS: dict[str, type[TimedEvent]] = {
-    event.do: event
-    for event in (
-        Beacons,
-        CurrentChange,
-        WavesChange,
-        TrimChange,
-        SensorFaultChange,
-        LineFaultChange,
-        BookmarkEvent,
-    )
-}
-"""Of the water, the line and the recording; those of the robot are its commands."""
+EVENTS: dict[str, type[TimedEvent]] = {"line": LineFaultChange, "marker": BookmarkEvent}
+"""Of the line and the recording."""
 
 
 def event_names() -> list[str]:
     """Every `do` that a scenario may have."""
-    return [*(name for name, cls in COMMANDS.items() if cls.policy.in_scenarios), *EVENTS]
+    commands = (name for name, cls in COMMANDS.items() if cls.policy.in_scenarios)
+    return [*commands, *WATER_CHANGES, *EVENTS]
 
 
 def read_event(table: Any, where: str) -> TimedEvent:
@@ -277,11 +194,15 @@ def read_event(table: Any, where: str) -> TimedEvent:
     rest = {name: value for name, value in table.items() if name != "do"}
     if do in EVENTS:
         return parse(EVENTS[do], rest, where)
-    cls = COMMANDS[do]
+    if do == "waves" and "amplitude" not in table:
+        raise ConfigError(f"{place(where, 'amplitude')} is missing")
+    cls: Any = WATER_CHANGES.get(do) or COMMANDS[do]
     timed: Any = parse(make_dataclass(do, [], bases=(cls, _Timed), frozen=True, kw_only=True), rest, where)
-    command = cls(**{one.name: getattr(timed, one.name) for one in fields(cls)})
-    _check_command(command, where)
-    return CommandEvent(at=timed.at, command=command)
+    content = cls(**{one.name: getattr(timed, one.name) for one in fields(cls)})
+    _check(content, where)
+    if isinstance(content, RobotCommand):
+        return CommandEvent(at=timed.at, command=content)
+    return WaterEvent(at=timed.at, change=content)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -289,14 +210,18 @@ class _Timed:
     at: Annotated[float, AT]
 
 
-def _check_command(command: RobotCommand, where: str) -> None:
-    """Raises ConfigError where a scenario's robot could not perform it."""
+def _check(content: RobotCommand | WaterChange, where: str) -> None:
+    """Raises ConfigError where a scenario's robot or simulator could not do it."""
     try:
-        match command:
+        match content:
+            case BeaconPositions(positions=positions):
+                check_beacons(positions)
+            case SensorFaultRequest(sensor=sensor, kind=kind, share=share, size=size, speed=speed):
+                check_sensor(sensor, SimulatedFault(kind=kind, share=share, size=size, speed=speed))
             case ControllerCommand(name=name, gains=gains):
                 check_controller("depth", name, {name: gains})
             case LoopCommand(controller=None, gains=gains) if gains:
-                raise ValueError("gains need the controller whose they are")
+                raise ValueError("gains need the name of their controller")
             case LoopCommand(name=loop, controller=str(name), gains=gains):
                 check_controller(loop, name, {name: gains})
             case CardCommand(colour=str(colour)) | VisionCommand(colour=str(colour)):

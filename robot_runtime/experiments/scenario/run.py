@@ -5,6 +5,7 @@ give the same bytes. Before time 0 the board lies powered in still water at the 
 robot does before a dive: it learns the surface's pressure, and is greeted.
 """
 
+import json
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
@@ -15,7 +16,7 @@ from robot_runtime.core import PUBLISH_EVERY
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.cameras import needs_camera
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import BookmarkEvent, CommandEvent, LineFaultChange, TimedEvent
+from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent, WaterEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.link.link_driver import PERIOD as GATHERING
 from robot_runtime.simulation.boards.stepped_board import PERIOD
@@ -139,7 +140,7 @@ class _RunLoop:
         robot.publish_tick()
         self._listener.event(
             "ended",
-            time=_tidy(clock.now()),
+            time=_round_time(clock.now()),
             state="cancelled" if cancelled else "complete",
             problem=" ".join(self._remarks) or None,
         )
@@ -195,11 +196,10 @@ class _RunLoop:
             self._commands.perform(event.command)
         elif isinstance(event, LineFaultChange):
             rig.board.line(event.command)
-        elif event.to == "simulator":
-            self._changes[event.do](_as_asked(event.question))
+        elif isinstance(event, WaterEvent):
+            # As it comes to the simulator's process in JSON, where there are no tuples.
+            self._changes[event.do](json.loads(json.dumps(event.question)))
             rig.break_devices()
-        elif not isinstance(event, BookmarkEvent):
-            raise ValueError(f"{event.do} cannot be done in simulated time")
 
     def _continue_arming(self, now: float) -> None:
         assert self._arming is not None
@@ -222,25 +222,15 @@ class _RunLoop:
         self._mark(words)
 
     def _mark(self, words: str) -> None:
-        self._listener.event("marker", time=_tidy(self._rig.clock.now()), text=words)
+        self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=words)
 
     def _tell_progress(self) -> None:
-        self._listener.event("progress", time=_tidy(self._rig.clock.now()))
+        self._listener.event("progress", time=_round_time(self._rig.clock.now()))
 
 
 def _arms(event: TimedEvent) -> bool:
     return isinstance(event, CommandEvent) and isinstance(event.command, ArmCommand)
 
 
-def _as_asked(question: Mapping[str, Any]) -> dict[str, Any]:
-    """As it comes to the simulator's process in JSON, where there are no tuples."""
-    return {
-        name: [list(one) if isinstance(one, tuple) else one for one in value]
-        if isinstance(value, tuple)
-        else value
-        for name, value in question.items()
-    }
-
-
-def _tidy(time: float) -> float:
+def _round_time(time: float) -> float:
     return round(time, 6)

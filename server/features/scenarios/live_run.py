@@ -132,13 +132,12 @@ class LiveExecutor:
     async def _happen(self, run: RunRecord, event: TimedEvent, began: float, send: Send) -> None:
         assert run.session is not None
         words = event.words
-        if event.to != "session":
-            try:
-                await self._surroundings.apply(event, send)
-            except (RefusedError, RuntimeSilentError) as problem:
-                # As with an operator, whom the robot may refuse something: the experiment goes on.
-                words = f"{words}: refused. {problem}"
-                run.remarks.append(f"At {event.at:g} s: {words}")
+        try:
+            await self._surroundings.apply(event, send)
+        except (RefusedError, RuntimeSilentError) as problem:
+            # As with an operator, whom the robot may refuse something: the experiment goes on.
+            words = f"{words}: refused. {problem}"
+            run.remarks.append(f"At {event.at:g} s: {words}")
         await mark(self._store, run.session, max(self._clock.now(), began), words)
 
     def _check_processes(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:

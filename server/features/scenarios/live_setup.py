@@ -23,7 +23,7 @@ from robot_runtime.control.controllers.base import Controller
 from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario
-from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent
+from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent, WaterEvent
 from robot_runtime.simulation.boards.emulator_process import BoardError, EmulatorClient
 from robot_runtime.simulation.water.surroundings import Trim
 from server.features.parameters.changes import Send
@@ -99,15 +99,13 @@ class LiveSetup:
             await send(CardCommand())
 
     async def apply(self, event: TimedEvent, send: Send) -> None:
-        """Do what an event says to runtime, simulator or board."""
+        """Carry out an event at runtime, simulator or board; a bookmark asks nothing of them."""
         if isinstance(event, LineFaultChange):
             await self._order(event.command)
-        elif not isinstance(event, CommandEvent):
+        elif isinstance(event, WaterEvent):
             await self._bridge.ask_simulator(event.do, event.question)
-        elif isinstance(event.command, StopCommand):
-            await self._bridge.disarm()
-        else:
-            await send(event.command)
+        elif isinstance(event, CommandEvent):
+            await (self._bridge.disarm() if isinstance(event.command, StopCommand) else send(event.command))
 
     async def disarm(self) -> None:
         """Stop the fins."""

@@ -32,7 +32,7 @@ def test_a_noisy_line_is_told_of_and_comes_again_the_same(run: Run) -> None:
         faults = result.line.faults
         assert min(faults.bit_errors, faults.drops, faults.doubles, faults.inserts, faults.bursts) > 0
         assert result.rate < 1
-        assert f"on the line there were {faults.bit_errors} wrong bits" in result.explanation
+        assert f"injected faults: {faults.bit_errors} wrong bits" in result.explanation
         assert result.values["bytes_lost"] >= 0
     (other,) = run(**changes | {"faults": Faults(seed=4, bit_errors=1e-3), "delay": (0.0,)})
     assert other.line.faults != first[0].line.faults
@@ -54,7 +54,7 @@ def test_a_cut_line_loses_what_is_on_it(run: Run) -> None:
     assert result.line.faults.cuts == pytest.approx(50, abs=4)
     assert result.lost_to_board >= 46
     assert result.rate == pytest.approx(0.75, abs=0.02)
-    assert f"{result.line.faults.cuts} bytes lost while it was cut" in result.explanation
+    assert f"{result.line.faults.cuts} bytes lost while the line was cut" in result.explanation
 
 
 def test_more_than_the_port_keeps_passes_a_line_that_puts_in_bytes(run: Run) -> None:
@@ -70,5 +70,5 @@ def test_the_robots_own_link_loses_nothing_on_a_bad_line(run: Run) -> None:
     (result,) = run(**changes, faults=faults)
     assert (result.rate, result.causes) == (1.0, ())
     assert result.repeated > 0
-    assert "on the line there were" in result.explanation
+    assert "injected faults: " in result.explanation
     assert run(**changes, faults=faults) == [result]

@@ -11,7 +11,7 @@ from robot_runtime.experiments.scenario.events import (
     Colour,
     CommandEvent,
     LineFaultChange,
-    WavesChange,
+    WaterEvent,
     event_names,
 )
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -174,7 +174,8 @@ def test_a_line_event_is_the_emulated_boards_command(rest: str, command: str) ->
 def test_questions_are_those_of_the_simulator() -> None:
     text = BARE + event("waves", "amplitude = 0.1\nperiod = 3") + event("fault", ALL_EVENTS["fault"])
     waves, fault = read_scenario(text).events
-    assert isinstance(waves, WavesChange)
+    assert isinstance(waves, WaterEvent)
+    assert isinstance(fault, WaterEvent)
     assert waves.question == {"amplitude": 0.1, "period": 3.0, "direction": 0.0}
     assert fault.question == {"sensor": "pressure", "kind": "dropout", "share": 0.5}
 
@@ -260,7 +261,7 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
         (BARE + event("loop", "name = 'roll'"), "event 1: loop needs on, set_point, controller or gains"),
         (
             BARE + event("loop", "name = 'roll'\non = true\ngains = { ki = 1 }"),
-            "event 1: gains need the controller whose they are",
+            "event 1: gains need the name of their controller",
         ),
         (
             BARE + event("controller", "name = 'x'"),
@@ -272,6 +273,7 @@ def test_cards_have_the_colours_that_the_vision_node_knows() -> None:
             "event 1: a current must be finite and at most 2 m/s",
         ),
         (BARE + event("waves", "amplitude = 1"), "event at 1 s: waves of 1 m amplitude and 2 s period break"),
+        (BARE + event("waves"), "event 1: amplitude is missing"),
         (BARE + event("fault", "sensor = 'sonar'\nkind = 'stuck'"), "event 1: there is no sensor 'sonar'; "),
         (BARE + event("fault", "sensor = 'battery'\nkind = 'drift'"), "event 1: the fault drift takes speed"),
         (
