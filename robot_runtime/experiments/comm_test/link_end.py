@@ -167,12 +167,8 @@ class _LinkCell:
             return (("other definitions", "the sketch was compiled with other packet definitions"),)
         if self._restarted:
             lost = self._session.counters.messages_discarded
-            return (
-                (
-                    "restart",
-                    f"the chip restarted after {self._line.now:.1f} s; {lost} messages to it were lost",
-                ),
-            )
+            words = f"the chip restarted after {self._line.now:.1f} s; {lost} messages to it were lost"
+            return (("restart", words),)
         if self._answer is None:
             return (("out of time", f"no result after {self._line.now:.0f} s of test time"),)
         return ()

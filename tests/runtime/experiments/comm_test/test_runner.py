@@ -39,7 +39,7 @@ def test_a_slow_sketch_keeps_what_its_ring_holds(run: Run) -> None:
     assert plain.lost_to_board == 200 - plain.board.bytes_read
     assert plain.rate == plain.board.bytes_read // 2 / 100
     assert plain.causes[0] == "ring overrun"
-    assert f"{plain.lost_to_board} bytes were dropped" in plain.explanation
+    assert f"{plain.lost_to_board} bytes were lost" in plain.explanation
     assert thesis.rate == (RING + 9) // 9 / 100
 
 
