@@ -4,13 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_runtime.generate import cpp, json_schema, typescript
-from robot_runtime.generate.commands import commands_page
+from robot_runtime.generate import cpp, json_schema, reference, typescript
 from robot_runtime.generate.configuration import configuration_page
-from robot_runtime.generate.faults import faults_page
-from robot_runtime.generate.packets import packets_page
-from robot_runtime.generate.parameters import parameters_page
-from robot_runtime.generate.topics import topics_page
 
 SOURCES = Path(__file__).resolve().parents[2]
 ROOT = SOURCES
@@ -30,14 +25,14 @@ def main() -> int:
         "robot_runtime/contract/packets/packets.schema.json": json_schema.schema(),
         "frontend/src/generated/topics.ts": typescript.module(),
         "frontend/src/generated/commands.ts": typescript.commands_module(),
-        "docs/reference/commands.md": commands_page(),
+        "docs/reference/commands.md": reference.commands_page(),
         "docs/reference/configuration.md": configuration_page(
             (SOURCES / "robot.toml").read_text(encoding="utf-8")
         ),
-        "docs/reference/faults.md": faults_page(),
-        "docs/reference/packets.md": packets_page(),
-        "docs/reference/parameters.md": parameters_page(),
-        "docs/reference/topics.md": topics_page(),
+        "docs/reference/faults.md": reference.faults_page(),
+        "docs/reference/packets.md": reference.packets_page(),
+        "docs/reference/parameters.md": reference.parameters_page(),
+        "docs/reference/topics.md": reference.topics_page(),
     }
     old = [name for name, text in files.items() if _read(ROOT / name) != text]
     for name in old:

@@ -5,15 +5,12 @@ from enum import IntEnum, IntFlag
 from robot_runtime.contract.packets import (
     CHIP_PARAMETERS,
     DEFINITIONS_HASH,
+    ENUMERATIONS,
     FIN_COUNT,
     FRAME_BYTES_MAX,
     NOT_READY,
     PACKETS,
-    DebugLevel,
     Packet,
-    ResetCause,
-    SensorFault,
-    StatusFlag,
 )
 from robot_runtime.contract.packets.layout import C_TYPES, Wire
 
@@ -74,7 +71,7 @@ def parameters() -> str:
 def header() -> str:
     """The whole text of packets.gen.h."""
     head = _HEAD % (DEFINITIONS_HASH, FIN_COUNT, FRAME_BYTES_MAX, NOT_READY)
-    enums = [_enum(enum) for enum in (DebugLevel, StatusFlag, SensorFault, ResetCause)]
+    enums = [_enum(enum) for enum in ENUMERATIONS]
     structs = [_struct(cls) for _, cls in sorted(PACKETS.items())]
     return "\n".join([head, *enums, *structs, _sizes(), _reliability(), "}  // namespace mucat", ""])
 

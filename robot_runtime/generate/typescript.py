@@ -8,10 +8,9 @@ from enum import IntEnum, IntFlag
 
 from robot_runtime.contract import documents
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
-from robot_runtime.contract.packets import DEFINITIONS_HASH, DebugLevel, ResetCause, SensorFault, StatusFlag
+from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS
 from robot_runtime.contract.packets.layout import Record, Wire
 from robot_runtime.contract.topics import TIME, TOPICS, Kind, Topic
-from robot_runtime.contract.vision_settings import ColourRange, VisionSettings
 
 _HEAD = f"""\
 // Written by `make generate` from robot_runtime/contract/topics.py and what it names. Do not edit.
@@ -51,7 +50,7 @@ def module() -> str:
     names = "\n".join(f"  {name}: {_name(record)};" for name, record in documents.items())
     parts = [
         _HEAD,
-        *(_enum(enum) for enum in (DebugLevel, StatusFlag, SensorFault, ResetCause)),
+        *map(_enum, ENUMERATIONS),
         "export const ROW_TOPICS = {\n" + "\n".join(_row_topic(topic) for topic in rows) + "\n} as const;\n",
         *(_row_interface(topic) for topic in rows),
         "export interface Rows {\n" + "\n".join(f"  {t.name}: {_row_name(t)};" for t in rows) + "\n}\n",
@@ -136,22 +135,21 @@ def _row_name(topic: Topic) -> str:
 
 
 def _documents() -> list[type]:
-    shared = [
-        documents.Box,
-        documents.Gain,
-        documents.ControllerChoice,
-        documents.Loop,
-        documents.Pace,
-        documents.Alarm,
-    ]
-    shared += [
-        documents.Candidate,
-        documents.ArucoMarker,
-        documents.TunableParameter,
-        ColourRange,
-        VisionSettings,
-    ]
-    return shared + list(dict.fromkeys(t.record for t in TOPICS if t.kind is Kind.DOCUMENTS and t.record))
+    """The documents, and before each one the dataclasses that it has as fields."""
+    found: dict[type, None] = {}
+
+    def add(hint: typing.Any) -> None:
+        for part in typing.get_args(hint):
+            add(part)
+        if dataclasses.is_dataclass(hint) and isinstance(hint, type) and hint not in found:
+            for part in typing.get_type_hints(hint).values():
+                add(part)
+            found[hint] = None
+
+    for topic in TOPICS:
+        if topic.kind is Kind.DOCUMENTS:
+            add(topic.record)
+    return list(found)
 
 
 def _interface(cls: type) -> str:

@@ -12,8 +12,7 @@ import pytest
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.topics import BY_NAME, SENT_BY
 from robot_runtime.experiments.scenario.events import CommandEvent, read_event
-from robot_runtime.generate.commands import commands_page
-from robot_runtime.generate.topics import topics_page
+from robot_runtime.generate.reference import commands_page, topics_page
 from robot_runtime.generate.typescript import commands_module, module
 from server.app import create_app
 from server.features.sessions.chunks import describe_topics

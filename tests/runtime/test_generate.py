@@ -14,8 +14,7 @@ from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.generate import __main__ as generate
 from robot_runtime.generate import cpp, json_schema, typescript
 from robot_runtime.generate.configuration import configuration_page, read_comments
-from robot_runtime.generate.faults import faults_page
-from robot_runtime.generate.packets import packets_page
+from robot_runtime.generate.reference import faults_page, packets_page
 
 
 def test_a_changed_field_changes_the_hash() -> None:

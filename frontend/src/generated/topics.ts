@@ -409,12 +409,22 @@ export const OTHER_TOPICS = {
   balanced: 36,
 } as const;
 
-/** A rectangle in the picture; each number a share of the picture's width or height. */
-export interface Box {
-  x: number;
-  y: number;
-  width: number;
-  height: number;
+/** Something that is wrong, or was and has not been acknowledged yet. */
+export interface Alarm {
+  fault: string;
+  severity: 'info' | 'caution' | 'alarm';
+  since: number;
+  active: boolean;
+  acknowledged: boolean;
+  what: string;
+  cause: string;
+  remedy: string;
+}
+
+/** The period, s, at which the board sends a topic at this baud rate. */
+export interface Pace {
+  topic: string;
+  period: number;
 }
 
 /** One number of a controller that may be tuned. */
@@ -443,22 +453,41 @@ export interface Loop {
   controllers: ControllerChoice[];
 }
 
-/** The period, s, at which the board sends a topic at this baud rate. */
-export interface Pace {
-  topic: string;
-  period: number;
+/** The robot as a whole; sent once a second and at every change. */
+export interface State {
+  time: number;
+  run: string;
+  mode: 'disarmed' | 'manual' | 'automatic' | 'test' | 'failsafe';
+  armed: boolean;
+  armed_since: number | null;
+  alarms: Alarm[];
+  refusals: string[];
+  connected: boolean;
+  connection: string;
+  port: string;
+  baud: number;
+  paces: Pace[];
+  epoch: number | null;
+  set_point_default: number;
+  set_point_detected: number;
+  steering: 'none' | 'beacons';
+  control_rate: number;
+  vision_rate: number;
+  vision_colour: string;
+  colours: string[];
+  card: string | null;
+  cards: string[];
+  camera: string;
+  loops: Loop[];
+  pilot_dropped: number;
 }
 
-/** Something that is wrong, or was and has not been acknowledged yet. */
-export interface Alarm {
-  fault: string;
-  severity: 'info' | 'caution' | 'alarm';
-  since: number;
-  active: boolean;
-  acknowledged: boolean;
-  what: string;
-  cause: string;
-  remedy: string;
+/** A rectangle in the picture; each number a share of the picture's width or height. */
+export interface Box {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
 }
 
 /** A patch of the wanted colour, and what it is measured by; `refused` says why it does not count. */
@@ -477,6 +506,36 @@ export interface ArucoMarker {
   corners: number[];
 }
 
+/** The result of searching one picture: the largest patch of the colour that was found. */
+export interface Detection {
+  time: number;
+  taken: number;
+  colour: string | null;
+  box: Box | null;
+  area: number;
+  processing: number;
+  candidates: Candidate[];
+  markers: ArucoMarker[];
+  target: string | null;
+  set_point: number | null;
+  latency: number | null;
+}
+
+/** A line of text that the firmware wrote; level as in DebugLevel. */
+export interface DebugLine {
+  time: number;
+  level: number;
+  text: string;
+}
+
+/** Something that happened, in words for a person; `kind` is one word for programs. */
+export interface RobotEvent {
+  time: number;
+  kind: string;
+  severity: 'info' | 'caution' | 'alarm';
+  text: string;
+}
+
 /** Something that may be tuned while the robot runs, and its value. */
 export interface TunableParameter {
   name: string;
@@ -491,6 +550,26 @@ export interface TunableParameter {
   where: 'runtime' | 'firmware';
   while_armed: boolean;
   pending: boolean;
+}
+
+/** Every parameter; sent at each change and every ten seconds. */
+export interface Parameters {
+  time: number;
+  parameters: TunableParameter[];
+}
+
+/** The progress of an experiment on a loop; sent at every change, twice a second, and once at its end. */
+export interface Experiment {
+  time: number;
+  number: number;
+  kind: 'step' | 'relay';
+  loop: string;
+  phase: 'settling' | 'balancing' | 'running' | 'complete' | 'stopped' | 'failed';
+  since: number;
+  progress: number;
+  cycles: number;
+  bias: number;
+  text: string;
 }
 
 /** The range of one colour: lowest and highest hue, saturation and value, both included.
@@ -526,85 +605,6 @@ export interface VisionSettings {
   markers: 'none' | '4x4_50' | '5x5_100' | '6x6_250' | '7x7_1000' | 'original' | 'april_36h11';
   marker_numbers: number[];
   actions: Record<string, number>;
-}
-
-/** The robot as a whole; sent once a second and at every change. */
-export interface State {
-  time: number;
-  run: string;
-  mode: 'disarmed' | 'manual' | 'automatic' | 'test' | 'failsafe';
-  armed: boolean;
-  armed_since: number | null;
-  alarms: Alarm[];
-  refusals: string[];
-  connected: boolean;
-  connection: string;
-  port: string;
-  baud: number;
-  paces: Pace[];
-  epoch: number | null;
-  set_point_default: number;
-  set_point_detected: number;
-  steering: 'none' | 'beacons';
-  control_rate: number;
-  vision_rate: number;
-  vision_colour: string;
-  colours: string[];
-  card: string | null;
-  cards: string[];
-  camera: string;
-  loops: Loop[];
-  pilot_dropped: number;
-}
-
-/** The result of searching one picture: the largest patch of the colour that was found. */
-export interface Detection {
-  time: number;
-  taken: number;
-  colour: string | null;
-  box: Box | null;
-  area: number;
-  processing: number;
-  candidates: Candidate[];
-  markers: ArucoMarker[];
-  target: string | null;
-  set_point: number | null;
-  latency: number | null;
-}
-
-/** A line of text that the firmware wrote; level as in DebugLevel. */
-export interface DebugLine {
-  time: number;
-  level: number;
-  text: string;
-}
-
-/** Something that happened, in words for a person; `kind` is one word for programs. */
-export interface RobotEvent {
-  time: number;
-  kind: string;
-  severity: 'info' | 'caution' | 'alarm';
-  text: string;
-}
-
-/** Every parameter; sent at each change and every ten seconds. */
-export interface Parameters {
-  time: number;
-  parameters: TunableParameter[];
-}
-
-/** The progress of an experiment on a loop; sent at every change, twice a second, and once at its end. */
-export interface Experiment {
-  time: number;
-  number: number;
-  kind: 'step' | 'relay';
-  loop: string;
-  phase: 'settling' | 'balancing' | 'running' | 'complete' | 'stopped' | 'failed';
-  since: number;
-  progress: number;
-  cycles: number;
-  bias: number;
-  text: string;
 }
 
 /** The vision settings in force; sent at every change and every ten seconds. */

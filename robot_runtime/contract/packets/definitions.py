@@ -68,6 +68,9 @@ class ResetCause(IntEnum):
     WATCHDOG = 4
 
 
+ENUMERATIONS: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, SensorFault, ResetCause)
+
+
 class TelemetryRate(NamedTuple):
     """Packets that the board sends by itself in ten slots of its schedule, or on a slow line in three."""
 
@@ -311,8 +314,9 @@ def canonical() -> str:
         ]
         fields += [f"{cls.tail[0]}:text{cls.tail[1].max_bytes}"] if cls.tail else []
         lines.append(f"{type_:02x} {cls.__name__} reliable={cls.reliable:d} " + " ".join(fields))
-    enums: tuple[type[IntEnum] | type[IntFlag], ...] = (DebugLevel, StatusFlag, SensorFault, ResetCause)
-    lines += [f"{enum.__name__} " + " ".join(f"{one.name}={one.value}" for one in enum) for enum in enums]
+    lines += [
+        f"{enum.__name__} " + " ".join(f"{one.name}={one.value}" for one in enum) for enum in ENUMERATIONS
+    ]
     lines += [str(one) for one in CHIP_PARAMETERS]
     return "\n".join(lines)
 
