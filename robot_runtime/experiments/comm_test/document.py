@@ -6,8 +6,9 @@ Each problem names its test and its field. All delays are seconds, as in Figure 
 import json
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from robot_runtime.config import BAUD_ERROR_MAX, CHIP_CLOCK
 from robot_runtime.contract.limits import ConfigError, Range
@@ -57,6 +58,19 @@ class CommTest:
         ]
 
 
+_STAND_IN: dict[str, Any] = {
+    "id": 1,
+    "name": "-",
+    "ino_path": SKETCH,
+    "delay": [0],
+    "baud_rate": [9600],
+    "from_val": 0,
+    "to_val": 1,
+    "expected": 1,
+    "arduinodelay": [0],
+}
+
+
 def read_document(text: str) -> list[CommTest]:
     """The tests of a document. Raises ConfigError with all problems."""
     if len(text) > DOCUMENT_BYTES_MAX:
@@ -77,10 +91,11 @@ def read_document(text: str) -> list[CommTest]:
             continue
         try:
             tests.append(test := parse(CommTest, entry, f"test {number}"))
+            found = [*_field_problems(test), *_number_problems(test)]
         except ConfigError as problem:
             problems += problem.problems
-        else:
-            problems += [f"test {number}: {problem}" for problem in _problems(test)]
+            found = [*_field_problems(_with_stand_ins(entry))]
+        problems += [f"test {number}: {one}" for one in found]
     cells = sum(len(test.baud_rate) * len(test.arduinodelay) * len(test.delay) for test in tests)
     if not problems and cells > CELLS_MAX:
         problems.append(f"the document has {cells} cells; at most {CELLS_MAX} can be run at once")
@@ -99,8 +114,18 @@ def chip_baud(baud: int) -> float:
     return CHIP_CLOCK / (step * (divisor + 1)) if 0 <= divisor <= SLOWEST_DIVISOR else 0.0
 
 
-def _problems(test: CommTest) -> Iterator[str]:
-    """Yields the problems that the fields' types and limits leave open."""
+def _with_stand_ins(entry: dict[str, Any]) -> CommTest:
+    """The test with stand-ins for fields that are missing or wrong, so that the others can be checked."""
+    sound = dict(_STAND_IN)
+    for name, value in entry.items():
+        with suppress(ConfigError):
+            parse(CommTest, _STAND_IN | {name: value})
+            sound[name] = value
+    return parse(CommTest, sound)
+
+
+def _field_problems(test: CommTest) -> Iterator[str]:
+    """Yields what the types and limits of single fields leave open."""
     if not test.name.strip() or len(test.name) > NAME_CHARACTERS_MAX:
         yield f"name must be a text of 1 to {NAME_CHARACTERS_MAX} characters"
     path = test.ino_path.lstrip("/")
@@ -113,6 +138,9 @@ def _problems(test: CommTest) -> Iterator[str]:
     yield from _list_problems("arduinodelay", test.arduinodelay)
     yield from _list_problems("baud_rate", test.baud_rate)
     yield from _baud_problems(test)
+
+
+def _number_problems(test: CommTest) -> Iterator[str]:
     count = test.to_val - test.from_val
     if test.to_val > (highest := FRAMINGS[test.framing].number_max + 1):
         yield f"to_val is {test.to_val}; with the framing {test.framing} it must be at most {highest}"

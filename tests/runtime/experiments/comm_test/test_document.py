@@ -142,6 +142,13 @@ def test_all_mistakes_are_told_at_once() -> None:
     assert "test 1: name is missing" in found
     assert "test 1: delay[0] is -1; it must lie between 0 and 10" in found
     assert found[-1] == "test 2: it must be an object in braces"
+    several = problems(changed(delay=[-1], baud_rate=[9600, 9600], faults={"drop": 1}, name=" ", expected=7))
+    assert [one.removeprefix("test 1: ").split(" is ")[0].split(" must ")[0] for one in several] == [
+        "delay[0]",
+        "faults: drop",
+        "name",
+        "baud_rate[1]",
+    ]
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "nonsense", "[" * 100_000, " " * 1_000_001])

@@ -37,7 +37,8 @@ def test_a_bad_document_is_refused_with_every_problem() -> None:
     status, (event,) = run_lab(document, *EMULATED)
     assert status == 2
     assert event["event"] == "refused"
-    assert [problem.split(": ")[1] for problem in event["problems"]] == ["delay[0]", "baud_rate[0]"]
+    named = [problem.removeprefix("test 1: ").split(" is ")[0] for problem in event["problems"]]
+    assert named == ["delay[0]", "baud_rate[0]"]
 
 
 def test_what_is_no_text_is_refused() -> None:

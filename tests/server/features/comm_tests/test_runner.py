@@ -238,7 +238,10 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"ino_path": "../../etc/passwd"}, "test 1: ino_path"),
     ({"name": ""}, "test 1: name"),
     ({"speed": 3}, "test 1: 'speed' is not known here"),
-    ({"delay": [number / 1000 for number in range(501)]}, "at most 500 cells"),
+    (
+        {"delay": [number / 1000 for number in range(501)]},
+        "501 cells; at most 500 can be run",
+    ),
 ]
 
 
