@@ -346,9 +346,9 @@ class Core:
             elif message.type == Status.type:
                 self.supervisor.see_status(Status.from_bytes(message.payload))
             elif message.type == Hello.type:
-                self.board_parameters.see_greeting()
+                self.board_parameters.forget_confirmations()
             elif message.type == Parameter.type:
-                if self.board_parameters.see(Parameter.from_bytes(message.payload)):
+                if self.board_parameters.confirm(Parameter.from_bytes(message.payload)):
                     self.announce()
             elif message.type == Debug.type:
                 debug = Debug.from_bytes(message.payload)

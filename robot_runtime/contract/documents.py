@@ -15,8 +15,8 @@ from robot_runtime.contract.vision_settings import VisionSettings
 class Control(Record):
     """One tick of the control node."""
 
-    set_point: Annotated[float, Wire("f", unit="m", meaning="wanted depth")]
-    depth: Annotated[float, Wire("f", unit="m", meaning="depth that the controller saw")]
+    set_point: Annotated[float, Wire("f", unit="m", meaning="depth set point")]
+    depth: Annotated[float, Wire("f", unit="m", meaning="depth that the controller used")]
     error: Annotated[float, Wire("f", unit="m", meaning="set point minus depth")]
     output: Annotated[float, Wire("f", meaning="vertical command, -1 to 1, downwards")]
     latency: Annotated[float, Wire("f", unit="s", meaning="age of the depth when it was used")]
@@ -27,16 +27,16 @@ _TURNS = "heading, pitch, roll"
 
 @record()
 class Turning(Record):
-    """The same tick, for the angles: right, nose up and right side down count as more."""
+    """The same tick, for the angles; positive: to the right, nose up, right side down."""
 
     set_point: Annotated[
         tuple[float, float, float],
-        Wire("f", unit="rad", count=3, meaning=f"wanted {_TURNS}; NaN where it is not steered"),
+        Wire("f", unit="rad", count=3, meaning=f"set points of {_TURNS}; NaN while not controlled"),
     ]
     measured: Annotated[tuple[float, float, float], Wire("f", unit="rad", count=3, meaning=_TURNS)]
     output: Annotated[
         tuple[float, float, float],
-        Wire("f", count=3, meaning="commands yaw, pitch, roll, -1 to 1; NaN where it is not steered"),
+        Wire("f", count=3, meaning="commands yaw, pitch, roll, -1 to 1; NaN while not controlled"),
     ]
 
 
@@ -93,7 +93,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """A patch of the wanted colour, and what it is measured by; `refused` says why it does not count."""
+    """A patch of the target colour, with its measures; `refused` says why it does not count."""
 
     box: Box
     area: float = field(metadata={"meaning": "share of the picture"})
@@ -125,15 +125,16 @@ class Detection(Document):
     candidates: list[Candidate] = field(default_factory=list)
     markers: list[ArucoMarker] = field(default_factory=list)
     target: str | None = field(
-        default=None, metadata={"meaning": "what is acted on: the wanted colour, or what an action names"}
+        default=None,
+        metadata={"meaning": "what sets the set point: the target colour, or the name of an action"},
     )
     set_point: float | None = field(
         default=None,
-        metadata={"meaning": "m; the action for the target; null: the wanted colour's detected set point"},
+        metadata={"meaning": "m; the action for the target; null: the detected set point"},
     )
     latency: float | None = field(
         default=None,
-        metadata={"meaning": "s; age of the last picture that the control node used, when it did first"},
+        metadata={"meaning": "s; age of the last picture when the control node first used it"},
     )
 
 
@@ -167,12 +168,10 @@ class ControllerChoice:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """One thing that the robot steers by: depth (m), heading, pitch or roll (rad)."""
+    """A control loop: depth (m), heading, pitch or roll (rad)."""
 
     name: str
-    on: bool = field(
-        metadata={"meaning": "whether it is steered, in manual held; in automatic the depth always is"}
-    )
+    on: bool = field(metadata={"meaning": "whether it is controlled; in automatic the depth always is"})
     set_point: float
     controller: str
     controllers: list[ControllerChoice]
@@ -222,12 +221,12 @@ Mode = Literal["disarmed", "manual", "automatic", "test", "failsafe"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Alarm:
-    """Something that is wrong, or was and has not been acknowledged yet."""
+    """A fault that is active, or not acknowledged yet."""
 
     fault: str = field(metadata={"meaning": "one word for programs, as in docs/reference/faults.md"})
     severity: Severity
     since: float = field(metadata={"meaning": "s, steady clock"})
-    active: bool = field(metadata={"meaning": "whether it is wrong still"})
+    active: bool = field(metadata={"meaning": "whether the fault is still there"})
     acknowledged: bool
     what: str
     cause: str = field(metadata={"meaning": "the likely one"})
@@ -243,9 +242,7 @@ class State(Document):
     armed: bool
     armed_since: float | None
     alarms: list[Alarm]
-    refusals: list[str] = field(
-        metadata={"meaning": "why arming would be refused now; empty where it would not"}
-    )
+    refusals: list[str] = field(metadata={"meaning": "reasons against arming; empty if it is possible"})
     connected: bool
     connection: str = field(metadata={"meaning": "the serial connection in words"})
     port: str
@@ -254,22 +251,20 @@ class State(Document):
     epoch: int | None
     set_point_default: float
     set_point_detected: float
-    steering: Steering = field(
-        default="none", metadata={"meaning": "where it swims while it holds its depth"}
-    )
+    steering: Steering = field(default="none", metadata={"meaning": "course while the robot holds its depth"})
     control_rate: float
     vision_rate: float
     vision_colour: str
     colours: list[str]
     card: str | None
     cards: list[str] = field(
-        default_factory=list, metadata={"meaning": "what can be shown to the camera; empty where nothing can"}
+        default_factory=list, metadata={"meaning": "cards that can be shown to the camera; empty if none can"}
     )
     camera: str
     loops: list[Loop] = field(default_factory=list)
     pilot_dropped: int = field(
         default=0,
-        metadata={"meaning": "the pilot's inputs that were too old, another's or damaged, since the start"},
+        metadata={"meaning": "pilot inputs dropped since the start: too old, damaged, or of another lease"},
     )
 
 
@@ -281,12 +276,12 @@ ExperimentPhase = Literal["settling", "balancing", "running", "complete", "stopp
 class Experiment(Document):
     """The progress of an experiment on a loop; sent at every change, twice a second, and once at its end."""
 
-    number: int = field(metadata={"meaning": "as whoever began it named it"})
+    number: int = field(metadata={"meaning": "given by the command that began it"})
     kind: ExperimentKind
     loop: str
     phase: ExperimentPhase
     since: float = field(metadata={"meaning": "s, steady clock; when this phase began"})
     progress: float = field(metadata={"meaning": "share that is done, 0 to 1"})
-    cycles: int = field(metadata={"meaning": "of the relay, that count so far"})
+    cycles: int = field(metadata={"meaning": "of the relay, measured so far"})
     bias: float = field(metadata={"meaning": "of the relay: the mean command that balances the load"})
-    text: str = field(metadata={"meaning": "why it ended; empty where nothing special happened"})
+    text: str = field(metadata={"meaning": "reason of its end; empty after a normal one"})

@@ -18,7 +18,7 @@ BYTE_MAX = 255
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """Which picture is wanted.
+    """A request for a picture.
 
     `card` is the blue, green and red of what is held before the camera, `marked` whether it shows the marker.
     """

@@ -24,7 +24,7 @@ MarkerDictionary = Literal["none", "4x4_50", "5x5_100", "6x6_250", "7x7_1000", "
 NAME = re.compile(r"[^\W\d_][\w .-]{0,31}")
 """Of a colour: a letter, then up to 31 letters, digits, blanks and . _ -"""
 MARKER = re.compile(r"marker (0|[1-9]\d{0,3})")
-"""How a marker is named among what may be seen."""
+"""The name of a marker in `actions`."""
 COLOURS_MAX = 16
 MARKERS_MAX = 64
 
@@ -65,18 +65,18 @@ COLOURS: Mapping[str, ColourRange] = {
     "green": ColourRange(hue=(40, 85), saturation=(80, 255), value=(50, 255)),
     "blue": ColourRange(hue=(104, 130), saturation=(140, 255), value=(70, 255)),
 }
-"""Taken where the configuration names no colours; docs/use/vision.md tells how they were chosen."""
+"""The colours of a configuration without any; docs/use/vision.md explains the choice."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionSettings:
     """Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
 
-    `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
-    fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
-    (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
-    the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
-    ConfigError on what does not go together.
+    `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
+    of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
+    perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
+    counts. `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings
+    that contradict each other.
     """
 
     rate: Annotated[float, VISION_RATE] = 4.0
@@ -99,7 +99,7 @@ class VisionSettings:
             raise ConfigError(*(f"vision: {problem}" for problem in problems))
 
     def table(self) -> dict[str, Any]:
-        """As in a file, where there are lists and tables alone."""
+        """The settings as a file has them, with lists and tables."""
         table: dict[str, Any] = json.loads(json.dumps(asdict(self)))
         return table
 

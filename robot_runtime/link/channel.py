@@ -133,7 +133,7 @@ class Channel:
         self._number = 0
         self._expected = 0
         self._held: dict[int, Frame] = {}
-        self._heard: int | None = None
+        self._last_number: int | None = None
         self._acknowledge_at = _NEVER
 
     @property
@@ -185,8 +185,8 @@ class Channel:
         self._take_acknowledgement(frame.acknowledged, held or 0, now)
         if held is not None:
             self._take_readiness(held & NOT_READY == 0)
-        let_through = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
-        messages = [one for each in let_through for one in each.messages if one[0] != Acknowledge.type]
+        accepted = self._take_reliable(frame, now) if frame.reliable else self._take_unreliable(frame)
+        messages = [one for each in accepted for one in each.messages if one[0] != Acknowledge.type]
         self.counters.bytes_delivered += sum(len(payload) for _, payload in messages)
         return messages
 
@@ -358,11 +358,11 @@ class Channel:
         return ready
 
     def _take_unreliable(self, frame: Frame) -> list[Frame]:
-        if self._heard is not None:
-            missed = (frame.number - self._heard - 1) % UNRELIABLE_NUMBERS
+        if self._last_number is not None:
+            missed = (frame.number - self._last_number - 1) % UNRELIABLE_NUMBERS
             if missed >= UNRELIABLE_NUMBERS // 2:
                 self.counters.frames_duplicate += 1
                 return []
             self.counters.frames_missed += missed
-        self._heard = frame.number
+        self._last_number = frame.number
         return [frame]

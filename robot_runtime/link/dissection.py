@@ -40,11 +40,11 @@ def dissect(frame: RecordedFrame) -> Dissection:
     try:
         content = cobs.decode(frame.stuffed)
     except cobs.DecodeError:
-        return _nothing(frame, "its stuffing (COBS) is damaged: bytes were lost or changed")
+        return _undecodable(frame, "its stuffing (COBS) is damaged: bytes were lost or changed")
     if not frame.stuffed or len(frame.stuffed) >= FRAME_BYTES_MAX:
-        return _nothing(frame, f"longer than {FRAME_BYTES_MAX} bytes: a closing zero was lost")
+        return _undecodable(frame, f"longer than {FRAME_BYTES_MAX} bytes: a closing zero was lost")
     if len(content) < 2 + _CRC.size:
-        return _nothing(frame, "too short: its beginning or a part was lost")
+        return _undecodable(frame, "too short: its beginning or a part was lost")
     body = content[: -_CRC.size]
     key = _CRC.unpack_from(content, len(body))[0] ^ zlib.crc32(body)
     first = PACKETS.get(body[1])
@@ -88,7 +88,7 @@ def _kinds(messages: bytes) -> tuple[list[str], bool]:
     return kinds, bool(kinds)
 
 
-def _nothing(frame: RecordedFrame, problem: str) -> Dissection:
+def _undecodable(frame: RecordedFrame, problem: str) -> Dissection:
     return Dissection(
         time=frame.time,
         sent=frame.sent,

@@ -22,8 +22,8 @@ _POLL = 0.05
 Write = Callable[[bytes], None]
 
 
-class LineError(Exception):
-    """The line takes no bytes, or has gone away; the text says which and what to do."""
+class PortError(Exception):
+    """The port cannot be opened, or fails; the text says why and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class LinkDriver:
     """Drives the session with the board, from one opening of the line to the next.
 
     `on_messages` gets every batch of messages, `on_change` is called when the connection was established or
-    lost, both by whoever calls `poll` and `receive`. `send`, `statistics` and `frames` may be called from any
-    thread. `text` says how things stand, in words; `fault` is the last one.
+    lost, both in the thread that calls `poll` and `receive`. `send`, `statistics` and `frames` may be called
+    from any thread. `text` is the state in words; `fault` is the last failure.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class LinkDriver:
                 return False
             try:
                 write(self._session.send(packets, self._clock.now()))
-            except LineError as problem:
+            except PortError as problem:
                 log.warning("%s", problem)
                 return False
         return True
@@ -108,27 +108,27 @@ class LinkDriver:
         with self._writing:
             return self._session.ring.frames()
 
-    def open(self, write: Write) -> None:
-        """Starts a session on a line that `write` sends bytes to; `write` may raise LineError."""
+    def attach(self, write: Write) -> None:
+        """Starts a session on a line that `write` sends bytes to; `write` may raise PortError."""
         with self._writing:
-            # Another epoch each time: the board must not take this for the conversation before.
+            # A new epoch each time: the board must not take this for the session before.
             self._epoch = (self._epoch + 1) & 0xFFFF
             self._session = LinkSession(self._epoch, self.baud)
             self._write = write
         self._stage = None
 
-    def shut(self) -> None:
-        """Notes that the line is closed."""
+    def detach(self) -> None:
+        """Ends the use of the line."""
         with self._writing:
             self._write = None
 
-    def lose(self) -> None:
+    def record_loss(self) -> None:
         """Records the last frames when the port goes away while connected."""
         if self._stage is SessionStage.ESTABLISHED:
             self._dump("the port went away")
 
     def poll(self) -> None:
-        """Updates the state and sends what is due. Raises LineError."""
+        """Updates the state and sends what is due. Raises PortError."""
         if self._session.stage is not self._stage:
             if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")

@@ -10,14 +10,10 @@ from typing import Self
 
 import serial
 
-from robot_runtime.link.link_driver import LineError
+from robot_runtime.link.link_driver import PortError
 
 _READ_BYTES = 4096
 _WRITE_SECONDS = 0.25
-
-
-class PortError(LineError):
-    """The port cannot be opened, or has gone away; the text says which and what to do."""
 
 
 class Port:

@@ -5,8 +5,8 @@ import time
 from collections.abc import Callable
 
 from robot_runtime.clock import Clock
-from robot_runtime.link.link_driver import PERIOD, LinkDriver
-from robot_runtime.link.port import Port, PortError
+from robot_runtime.link.link_driver import PERIOD, LinkDriver, PortError
+from robot_runtime.link.port import Port
 from robot_runtime.link.session import BoardMessage
 
 _RETRY = 0.25
@@ -41,24 +41,24 @@ class SerialLink(LinkDriver):
         while not self._ending.is_set():
             try:
                 with Port(self.path, self.baud) as port:
-                    self._converse(port)
+                    self._run_session(port)
             except PortError as problem:
                 self.report(str(problem))
             self._ending.wait(_RETRY)
 
-    def _converse(self, port: Port) -> None:
-        self.open(port.write)
+    def _run_session(self, port: Port) -> None:
+        self.attach(port.write)
         try:
             while not self._ending.is_set():
                 self.poll()
-                self._await(port)
+                self._receive_next(port)
         except PortError:
-            self.lose()
+            self.record_loss()
             raise
         finally:
-            self.shut()
+            self.detach()
 
-    def _await(self, port: Port) -> None:
+    def _receive_next(self, port: Port) -> None:
         wait = self.wait()
         if self.gathering:
             time.sleep(PERIOD)

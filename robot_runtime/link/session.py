@@ -1,25 +1,24 @@
 """The session with the board, without I/O and without a clock of its own.
 
-A session lasts from opening the port to closing it. The host says HELLO until the board answers with the
-same hash of the packet definitions; from then on the session is established, and a host that has nothing to
-say sends a HEARTBEAT. Another hash stops everything but HELLO and STOP.
+A session lasts from opening the port to closing it. The host sends HELLO until the board answers with the
+same hash of the packet definitions. From then on the session is established, and a host with nothing else to
+send sends a HEARTBEAT. After another hash only HELLO and STOP are sent.
 
 Both HELLOs carry an epoch: a number of this boot, and one of this session. Together they are the key of the
-session's frames, so that nothing from before a restart of either side is ever taken for something new. A
-board that restarts says HELLO by itself, with another epoch, and is greeted anew: only its answer shows that
-it has heard. What was not acknowledged before was meant for another boot, and is discarded and counted. A
-board that says anything but HELLO in an open frame has lost the session, and is greeted anew as well.
-After `SILENCE` without a valid frame the board counts as lost and is greeted; where it never restarted, both
-sides go on where they were.
+session's frames, so that no frame from before a restart of either side is accepted. A board that restarts
+sends HELLO with another epoch, and is greeted again. Messages that it had not acknowledged were meant for
+its boot before; they are discarded and counted. A board that sends anything but HELLO in an open frame has
+lost the session, and is greeted as well. After `SILENCE` without a valid frame the board counts as lost and
+is greeted; if it did not restart, both sides continue where they were.
 
-Within the session `Channel` delivers. STOP passes by it: it goes out at once, open, so that whoever hears it
-obeys, and it makes every START void that is not acknowledged yet.
+Within the session `Channel` delivers the messages. STOP does not use it: it is sent at once in an open frame,
+which the board accepts in any state, and it voids every START that is not acknowledged yet.
 
-Give it bytes and the time with `receive`, ask with `poll` for what is due, and hand `send` what is to go out;
-both return bytes for the line.
+`receive` takes bytes and the time; `poll` and `send` return bytes for the line.
 """
 
 from collections.abc import Iterable
+from dataclasses import asdict
 from enum import Enum
 from typing import NamedTuple
 
@@ -98,9 +97,9 @@ class LinkSession:
         self._times = BoardTime()
         self._bytes_received = 0
         self._bytes_understood = 0
-        self._heard = 0.0
-        self._greeted: float | None = None
-        self._greeting_took = 0.0
+        self._last_frame_at = 0.0
+        self._greeted_at: float | None = None
+        self._greeting_seconds = 0.0
         self._sent = 0.0
         self._goodput = 0.0
         self._goodput_from = (0.0, 0)
@@ -121,14 +120,14 @@ class LinkSession:
         self._bytes_received += len(data)
         messages: list[BoardMessage] = []
         for frame in self._decoder.feed(data):
-            self._heard = now
+            self._last_frame_at = now
             self._bytes_understood = self._bytes_received
             if frame.open:
                 passed = self._take_open(frame, now)
             elif self.stage is SessionStage.REFUSED:
                 passed = []
             else:
-                # The board has our epoch: it heard, whether or not its answer came.
+                # The board uses our epoch: it received our greeting, even if its answer was lost.
                 self._establish(now)
                 passed = self._channel.receive(frame, now)
             messages += [
@@ -139,12 +138,12 @@ class LinkSession:
     def poll(self, now: float) -> bytes:
         """Returns the bytes to send now: a greeting, queued messages, a heartbeat, or none."""
         self._measure_goodput(now)
-        if self.stage is SessionStage.ESTABLISHED and now - self._heard > self._silence:
+        if self.stage is SessionStage.ESTABLISHED and now - self._last_frame_at > self._silence:
             self.stage = SessionStage.GREETING
         if self.stage is not SessionStage.ESTABLISHED:
-            if self._greeted is not None and now - self._greeted < _GREETING:
+            if self._greeted_at is not None and now - self._greeted_at < _GREETING:
                 return b""
-            self._greeted = now
+            self._greeted_at = now
             return self._send_open(Hello(definitions=DEFINITIONS_HASH, epoch=self._epoch, credit=CREDIT), now)
         data = self._poll_channel(now)
         if now - self._sent >= _HEARTBEAT and now >= self._channel.free_at:
@@ -155,9 +154,9 @@ class LinkSession:
     def due(self) -> float:
         """Returns the time of the next `poll` if nothing else happens."""
         if self.stage is not SessionStage.ESTABLISHED:
-            return self._greeted + _GREETING if self._greeted is not None else float("-inf")
+            return self._greeted_at + _GREETING if self._greeted_at is not None else float("-inf")
         heartbeat = max(self._sent + _HEARTBEAT, self._channel.free_at)
-        return min(self._heard + self._silence, heartbeat, self._channel.due())
+        return min(self._last_frame_at + self._silence, heartbeat, self._channel.due())
 
     def send(self, packets: Iterable[Packet], now: float) -> bytes:
         """Queues these packets; returns the bytes to send now. Without a session only STOP is accepted."""
@@ -167,24 +166,17 @@ class LinkSession:
                 self._void_starts()
                 data += self._send_open(packet, now)
             elif self.stage is SessionStage.ESTABLISHED:
-                self._take_over(packet, now)
+                self._queue(packet, now)
         return data + self.poll(now) if self.stage is SessionStage.ESTABLISHED else data
 
     def statistics(self) -> LinkStatistics:
         """The counters as a record."""
-        counters, trip = self.counters, self._channel.round_trip
+        trip = self._channel.round_trip
         return LinkStatistics(
+            **asdict(self.counters),
             bytes_received=self._bytes_received,
-            bytes_sent=counters.bytes_sent,
-            bytes_delivered=counters.bytes_delivered,
-            frames_received=counters.frames_received,
-            frames_sent=counters.frames_sent,
             frames_invalid=self._decoder.invalid,
-            frames_missed=counters.frames_missed,
-            frames_repeated=counters.frames_repeated,
-            frames_duplicate=counters.frames_duplicate,
-            messages_discarded=counters.messages_discarded,
-            round_trip=trip.mean or self._greeting_took,
+            round_trip=trip.mean or self._greeting_seconds,
             round_trip_deviation=trip.deviation,
             timeout=self._channel.timeout(),
             goodput=self._goodput,
@@ -193,12 +185,12 @@ class LinkSession:
             clock_drift=self._times.drift,
         )
 
-    def _take_over(self, packet: Packet, now: float) -> None:
+    def _queue(self, packet: Packet, now: float) -> None:
         message = encode(packet)
         if not packet.reliable:
             self._channel.offer(message, now)
         elif message not in self._channel.pending():
-            # The same again while the first is on its way would say nothing new.
+            # A repetition of a message that is still unacknowledged adds nothing.
             self._channel.queue(message)
 
     def _void_starts(self) -> None:
@@ -233,7 +225,7 @@ class LinkSession:
         for _, payload in greetings:
             self._greet(Hello.from_bytes(payload), now)
         if not greetings and self.stage is SessionStage.ESTABLISHED:
-            self.stage, self._greeted = SessionStage.GREETING, None
+            self.stage, self._greeted_at = SessionStage.GREETING, None
         return greetings
 
     def _greet(self, hello: Hello, now: float) -> None:
@@ -257,13 +249,13 @@ class LinkSession:
         self._decoder.key = session_key(self._epoch, hello.epoch)
         self._channel = Channel(self.baud, hello.credit, self._decoder.key, self.counters)
         self._times = BoardTime()
-        self._greeted = None
+        self._greeted_at = None
 
     def _establish(self, now: float) -> None:
         if self.stage is SessionStage.GREETING:
             self.stage = SessionStage.ESTABLISHED
-            if self._greeted is not None:
-                self._greeting_took = now - self._greeted
+            if self._greeted_at is not None:
+                self._greeting_seconds = now - self._greeted_at
 
     def _stamp(self, type_: int, payload: bytes, now: float) -> float:
         if "time" not in PACKETS[type_].wires:

@@ -1,4 +1,4 @@
-"""One parameter: what it may be, and how it is read and set."""
+"""One parameter: its limits, and how it is read and set."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ _WORDS: dict[ParameterType, str] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """`set` gets what `check` has passed, and does not fail. Numbers have a minimum and a maximum.
+    """A parameter. `set` gets values that `check` has passed, and does not fail.
 
-    `pending`: whether what was set is not in force yet.
+    Numbers have a minimum and a maximum. `pending`: True until a set value is in force.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Entry:
     pending: Callable[[], bool] = bool
 
     def check(self, value: object) -> ParameterValue:
-        """The value as `set` wants it. Raises ValueError, in words for a person."""
+        """Returns the value in the type that `set` takes. Raises ValueError, in words for a person."""
         if self.type == "switch" and isinstance(value, bool):
             return value
         if self.type == "choice" and isinstance(value, str):
@@ -55,11 +55,11 @@ class Entry:
         # Neither NaN nor infinity lies between; a whole number too large for a float is compared as it is.
         if not self.minimum <= value <= self.maximum:
             span = f"{self.minimum:g} and {self.maximum:g} {self.unit}".strip()
-            raise ValueError(f"{self.name} is {_short(value)}; it must lie between {span}")
+            raise ValueError(f"{self.name} is {_format(value)}; it must lie between {span}")
         return value if self.type == "whole" else float(value)
 
 
-def _short(value: float) -> str:
+def _format(value: float) -> str:
     try:
         return f"{value:g}"
     except OverflowError:

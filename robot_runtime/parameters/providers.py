@@ -1,4 +1,4 @@
-"""The runtime's own parameters, each with its range from where that stands anyway."""
+"""The runtime's own parameters, with the limits of the contract and of the controllers."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -17,7 +17,7 @@ from robot_runtime.vision.node import VisionNode
 def runtime_entries(
     control: ControlNode, vision: VisionNode, set_vision: Callable[[VisionSettings], None]
 ) -> Iterator[Entry]:
-    """Every parameter of the control node and of the vision node, which `set_vision` has look otherwise."""
+    """Every parameter of the control node and of the vision node; `set_vision` applies vision settings."""
     yield from _set_points(control)
     yield Entry(
         name="control.steering",
@@ -25,7 +25,7 @@ def runtime_entries(
         get=lambda: control.steering,
         set=control.steer,
         choices=lambda: STEERINGS,
-        meaning="where it swims while it holds its depth",
+        meaning="course while the robot holds its depth",
     )
     for loop in control.loops.values():
         yield _controller(control, loop)
@@ -41,7 +41,7 @@ def _controller(control: ControlNode, loop: ControlLoop) -> Entry:
         get=lambda: loop.controller.name,
         set=lambda name: control.set_loop(loop.name, controller=name),
         choices=lambda: list(loop.controllers),
-        meaning=f"what steers the {loop.name}",
+        meaning=f"controller of the {loop.name}",
     )
 
 
@@ -54,7 +54,7 @@ def _set_points(control: ControlNode) -> Iterator[Entry]:
         minimum=low,
         maximum=high,
         unit="m",
-        meaning="wanted depth",
+        meaning="depth set point",
     )
     yield Entry(
         name="control.set_point_detected",
@@ -63,7 +63,7 @@ def _set_points(control: ControlNode) -> Iterator[Entry]:
         minimum=low,
         maximum=high,
         unit="m",
-        meaning="wanted depth while the colour is seen",
+        meaning="depth set point while the colour is seen",
     )
 
 
@@ -89,26 +89,26 @@ def _tune(controller: Controller, name: str, value: float) -> None:
 
 
 def _vision(vision: VisionNode, set_vision: Callable[[VisionSettings], None]) -> Iterator[Entry]:
-    def look(rate: float) -> None:
+    def set_rate(rate: float) -> None:
         set_vision(replace(vision.settings, rate=rate))
 
-    def want(colour: str) -> None:
+    def set_colour(colour: str) -> None:
         set_vision(replace(vision.settings, colour=colour))
 
     yield Entry(
         name="vision.rate",
         get=lambda: vision.settings.rate,
-        set=look,
+        set=set_rate,
         minimum=VISION_RATE.minimum,
         maximum=VISION_RATE.maximum,
         unit="Hz",
-        meaning="how often the vision node looks",
+        meaning="rate of the vision node",
     )
     yield Entry(
         name="vision.colour",
         type="choice",
         get=lambda: vision.settings.colour,
-        set=want,
+        set=set_colour,
         choices=lambda: list(vision.settings.colours),
         meaning="the colour that changes the set point",
     )

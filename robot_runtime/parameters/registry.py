@@ -13,10 +13,10 @@ Changed = dict[str, tuple[ParameterValue, ParameterValue]]
 
 
 class Registry:
-    """The parameters of these entries. A default is what a parameter is when this is made.
+    """The parameters of these entries. A parameter's default is its value when the registry is made.
 
-    A control tick holds `tick_lock`, and so does whoever changes parameters: a tick sees all of a change
-    or none. Every method may be called from any thread.
+    A control tick holds `tick_lock`, and so does a change of parameters: a tick sees all of a change or none.
+    Every method may be called from any thread.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Registry:
 
     @contextmanager
     def changing(self) -> Iterator[Changed]:
-        """Wait for the tick that runs, and keep the next one waiting; filled at the end with what changed."""
+        """Holds the control ticks; yields a dict that is filled with the changed values at the end."""
         changed: Changed = {}
         with self._tick_lock:
             before = self.values()
@@ -67,10 +67,10 @@ class Registry:
     def apply(
         self, values: Mapping[str, Any], expected: Mapping[str, Any] | None = None, *, partly: bool = False
     ) -> dict[str, str]:
-        """Set all of these, or where `partly` those that can be; why the others cannot, by name.
+        """Sets all of these values, or with `partly` those that are valid; returns the problems by name.
 
-        Where something else is in force than `expected`, nothing is. Raises RefusedError with every reason;
-        then none is set.
+        Raises RefusedError with every reason if a value is invalid, or differs from `expected`; then none is
+        set.
         """
         problems: dict[str, str] = {}
         checked: dict[str, ParameterValue] = {}

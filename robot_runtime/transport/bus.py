@@ -33,11 +33,11 @@ class Bus:
         self._documents[topic].append(listener)
 
     def publish_row(self, topic: str, time: float, record: bytes) -> None:
-        """Hand a row to everybody who listens."""
+        """Calls the listeners of a row's topic."""
         for listener in self._rows[topic]:
             listener(topic, time, record)
 
     def publish_document(self, topic: str, document: Document) -> None:
-        """Hand a document to everybody who listens."""
+        """Calls the listeners of a document's topic."""
         for listener in self._documents[topic]:
             listener(topic, document)

@@ -13,10 +13,10 @@ from pathlib import Path
 from robot_runtime.clock import Clock, SteadyClock
 
 HEARTBEAT = "heartbeat"
-"""What a server publishes every second, from the loop that also does everything else there."""
+"""The topic that a server publishes every second, from its main loop."""
 LINGER_SECONDS = 30.0
 _PR_SET_PDEATHSIG = 1
-_LOOK_SECONDS = 1.0
+_CHECK_SECONDS = 1.0
 
 
 def end_with_parent(parent: int | None = None, number: signal.Signals = signal.SIGTERM) -> None:
@@ -68,10 +68,9 @@ def end_on_request(options: argparse.Namespace, end: Callable[[], None]) -> None
 
 
 def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None]) -> None:
-    """Call `end`, once, when no server has held `lock` for `linger` s, or the file is gone.
+    """Calls `end`, once, when no server has held `lock` for `linger` s, or the file is gone.
 
-    A server that is killed and started again finds the process still running. Looked at from a thread of
-    its own.
+    So a server that is killed and started again finds the process still running. A thread checks the lock.
     """
 
     def watch() -> None:
@@ -82,7 +81,7 @@ def watch_server(lock: Path, linger: float, clock: Clock, end: Callable[[], None
                 seen = clock.now()
             elif not lock.exists() or clock.now() - seen >= linger:
                 break
-            pause.wait(_LOOK_SECONDS)
+            pause.wait(_CHECK_SECONDS)
         end()
 
     threading.Thread(target=watch, name="server", daemon=True).start()

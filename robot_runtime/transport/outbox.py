@@ -1,7 +1,7 @@
 """Gathers samples into blocks and sends them to the other processes, so that each message carries many.
 
-All that waits goes out as one message named `STREAM`, blocks one after the other: what costs is waking
-the receiver, not bytes. Whoever wants a single topic subscribes to its own name and gets its blocks alone.
+Everything queued is sent as one message named `STREAM`, blocks one after the other, because waking the
+receiver costs more than bytes. Each topic with subscribers of its own is sent under its name as well.
 """
 
 import threading
@@ -17,10 +17,9 @@ STREAM = "stream"
 
 
 class Outbox:
-    """Rows and documents wait here, in order, until `flush` sends them. `watched` tells who listens.
+    """Queues rows and documents until `flush` sends them; `watched` is true for topics with a subscriber.
 
-    What has been sent goes to `cache` too, for whom it did not reach. Every method may be called from any
-    thread.
+    Sent messages go to `cache` too, for a server that restarts. Every method may be called from any thread.
     """
 
     def __init__(
@@ -44,7 +43,7 @@ class Outbox:
             self._rows[topic].append(row(time, record))
 
     def add_picture(self, topic: str, time: float, jpeg: bytes) -> None:
-        """Queue a picture, in place of one of its topic that still waits."""
+        """Queues a picture in place of the topic's queued one."""
         with self._lock:
             self._rows[topic] = [row(time, jpeg)]
 
@@ -54,17 +53,16 @@ class Outbox:
             self._documents[topic].append(document)
 
     def flush(self) -> None:
-        """Send what waits."""
+        """Sends everything queued."""
         with self._sending:
             with self._lock:
                 rows, self._rows = self._rows, defaultdict(list)
-                papers, self._documents = self._documents, defaultdict(list)
+                documents, self._documents = self._documents, defaultdict(list)
             blocks = {
                 name: self._block(name, len(waiting), b"".join(waiting)) for name, waiting in rows.items()
             }
-            blocks |= {
-                name: self._block(name, len(batch), pack_documents(batch)) for name, batch in papers.items()
-            }
+            for name, batch in documents.items():
+                blocks[name] = self._block(name, len(batch), pack_documents(batch))
             if blocks:
                 message = b"".join(blocks.values())
                 if self._cache is not None:

@@ -1,4 +1,4 @@
-"""The blocks of the last minutes, for a server that has missed them."""
+"""The blocks of the last minutes, for a server that was not running."""
 
 import json
 import threading
@@ -45,7 +45,7 @@ class BacklogReply:
         except LayoutError:
             raise
         except (error, ValueError, LookupError, TypeError, AttributeError) as problem:
-            raise LayoutError(f"kept blocks that cannot be read: {problem!r}") from problem
+            raise LayoutError(f"the backlog cannot be read: {problem!r}") from problem
 
 
 class ReplayCache:

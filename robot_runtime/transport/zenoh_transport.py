@@ -1,6 +1,6 @@
 """Transport over Zenoh: publish and subscribe to topics, query and serve requests.
 
-Keys are `mucat/<robot>/<name>`. Endpoints are explicit; nothing is looked for by multicast unless it is asked
+Keys are `mucat/<robot>/<name>`. Endpoints are explicit; multicast scouting is off unless it is asked
 for. Callbacks run in Zenoh's own threads.
 """
 
@@ -13,8 +13,7 @@ from typing import Any, Self
 
 import zenoh
 
-from robot_runtime.errors import NoAnswerError as NoAnswerError
-from robot_runtime.errors import RefusedError as RefusedError
+from robot_runtime.errors import NoAnswerError, RefusedError
 
 log = logging.getLogger(__name__)
 
@@ -76,7 +75,7 @@ class ZenohTransport:
         return bool(status.matching)
 
     def subscribe(self, pattern: str, callback: Callable[[str, bytes], None]) -> Subscription:
-        """Call back with the name and the payload of everything that `pattern` ("depth", "**") matches."""
+        """Calls back with the name and payload of every message whose name matches ("depth", "**")."""
         return self.subscribe_runs(pattern, lambda name, payload, _: callback(name, payload))
 
     def subscribe_runs(self, pattern: str, callback: Callable[[str, bytes, str], None]) -> Subscription:
@@ -94,23 +93,14 @@ class ZenohTransport:
         Raises RefusedError with the reason, or NoAnswerError after `timeout` seconds.
         """
         data = json.dumps(payload, allow_nan=False).encode()
-        for reply in self._session.get(self._prefix + name, payload=data, timeout=timeout):
-            if reply.ok is None:
-                continue
-            answer: Answer = json.loads(reply.ok.payload.to_bytes())
-            if not answer.get("accepted"):
-                raise RefusedError(str(answer.get("reason", "refused without a reason")))
-            return answer
-        raise NoAnswerError(f"no answer to {name} within {timeout:g} s")
+        answer: Answer = json.loads(self.query_bytes(name, data, timeout))
+        if not answer.get("accepted"):
+            raise RefusedError(str(answer.get("reason", "refused without a reason")))
+        return answer
 
     def serve(self, name: str, handler: Callable[[Answer], Mapping[str, Any] | None]) -> None:
         """Serves `name` with the handler's results; its RefusedError or ValueError becomes a refusal."""
-
-        def reply(query: zenoh.Query) -> None:
-            with query:
-                query.reply(query.key_expr, json.dumps(_outcome(handler, query)).encode())
-
-        self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
+        self.serve_bytes(name, lambda question: json.dumps(_outcome(name, handler, question)).encode())
 
     def query_bytes(self, name: str, payload: bytes, timeout: float = 2.0) -> bytes:
         """Sends a request and returns its answer, both as plain bytes; raises as `query` does."""
@@ -130,7 +120,7 @@ class ZenohTransport:
                 try:
                     answer = handler(query.payload.to_bytes() if query.payload is not None else b"")
                 except Exception as problem:
-                    query.reply_err(_reason(problem, query).encode(), encoding=_REFUSAL)
+                    query.reply_err(_reason(name, problem).encode(), encoding=_REFUSAL)
                 else:
                     query.reply(query.key_expr, answer)
 
@@ -154,7 +144,7 @@ class ZenohTransport:
 
 
 def join(robot: str, endpoints: Sequence[str]) -> ZenohTransport:
-    """Join the conversation of a robot elsewhere, as a client; wait until it is there."""
+    """Connects to a robot elsewhere as a client; waits until it answers."""
     warned = False
     while True:
         try:
@@ -166,20 +156,20 @@ def join(robot: str, endpoints: Sequence[str]) -> ZenohTransport:
             time.sleep(_JOIN_RETRY)
 
 
-def _outcome(handler: Callable[[Answer], Mapping[str, Any] | None], query: zenoh.Query) -> Answer:
+def _outcome(name: str, handler: Callable[[Answer], Mapping[str, Any] | None], data: bytes) -> Answer:
     try:
-        question = json.loads(query.payload.to_bytes()) if query.payload is not None else {}
+        question = json.loads(data or b"{}")
         if not isinstance(question, dict):
             raise ValueError("a question must be a JSON object")
         return {"accepted": True, **(handler(question) or {})}
     except Exception as problem:
-        return {"accepted": False, "reason": _reason(problem, query)}
+        return {"accepted": False, "reason": _reason(name, problem)}
 
 
-def _reason(problem: Exception, query: zenoh.Query) -> str:
+def _reason(name: str, problem: Exception) -> str:
     if isinstance(problem, RefusedError | ValueError | TypeError):
         return str(problem)
-    log.error("answering %s failed", query.key_expr, exc_info=problem)
+    log.error("answering %s failed", name, exc_info=problem)
     return "an error inside the answering process; its log says more"
 
 

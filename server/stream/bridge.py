@@ -17,12 +17,12 @@ from typing import Any
 from robot_runtime.contract.packets.layout import LayoutError
 from robot_runtime.contract.topics import SENT_BY
 from robot_runtime.control.pilot import PILOT
-from robot_runtime.errors import RefusedError
+from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.blocks import Block, read_blocks
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.replay_cache import BacklogReply, write_question
-from robot_runtime.transport.zenoh_transport import NoAnswerError, Subscription, ZenohTransport
+from robot_runtime.transport.zenoh_transport import Subscription, ZenohTransport
 from server.platform.errors import ApiError
 from server.platform.settings import Settings, SetupError
 from server.stream.gap_filler import GapFiller

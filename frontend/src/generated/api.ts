@@ -1765,7 +1765,7 @@ export interface components {
         };
         /**
          * Alarm
-         * @description Something that is wrong, or was and has not been acknowledged yet.
+         * @description A fault that is active, or not acknowledged yet.
          */
         Alarm: {
             /** Acknowledged */
@@ -2850,7 +2850,7 @@ export interface components {
         };
         /**
          * Loop
-         * @description One thing that the robot steers by: depth (m), heading, pitch or roll (rad).
+         * @description A control loop: depth (m), heading, pitch or roll (rad).
          */
         Loop: {
             /** Controller */
@@ -4501,11 +4501,11 @@ export interface components {
          * VisionSettings
          * @description Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
          *
-         *     `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
-         *     fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
-         *     (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
-         *     the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
-         *     ConfigError on what does not go together.
+         *     `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
+         *     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
+         *     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary counts.
+         *     `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings that
+         *     contradict each other.
          */
         VisionSettings: {
             /** Actions */

@@ -98,7 +98,7 @@ export const ROW_TOPICS = {
     id: 4,
     name: 'motor',
     rowBytes: 32,
-    meaning: 'fins: wanted, measured, driven',
+    meaning: 'fins: set points, angles, drives',
     fields: [
       { name: 'board_time', code: 'I', offset: 8, count: 1, scale: 1, unit: 'µs', meaning: 'the board\'s own clock, which wraps after 71 minutes' },
       { name: 'wanted', code: 'h', offset: 12, count: 4, scale: 0.001, unit: 'rad', meaning: 'wanted fin angle' },
@@ -146,8 +146,8 @@ export const ROW_TOPICS = {
     rowBytes: 28,
     meaning: 'ticks of the control node',
     fields: [
-      { name: 'set_point', code: 'f', offset: 8, count: 1, scale: 1, unit: 'm', meaning: 'wanted depth' },
-      { name: 'depth', code: 'f', offset: 12, count: 1, scale: 1, unit: 'm', meaning: 'depth that the controller saw' },
+      { name: 'set_point', code: 'f', offset: 8, count: 1, scale: 1, unit: 'm', meaning: 'depth set point' },
+      { name: 'depth', code: 'f', offset: 12, count: 1, scale: 1, unit: 'm', meaning: 'depth that the controller used' },
       { name: 'error', code: 'f', offset: 16, count: 1, scale: 1, unit: 'm', meaning: 'set point minus depth' },
       { name: 'output', code: 'f', offset: 20, count: 1, scale: 1, unit: '', meaning: 'vertical command, -1 to 1, downwards' },
       { name: 'latency', code: 'f', offset: 24, count: 1, scale: 1, unit: 's', meaning: 'age of the depth when it was used' },
@@ -197,9 +197,9 @@ export const ROW_TOPICS = {
     rowBytes: 44,
     meaning: 'the same ticks, for heading, pitch and roll',
     fields: [
-      { name: 'set_point', code: 'f', offset: 8, count: 3, scale: 1, unit: 'rad', meaning: 'wanted heading, pitch, roll; NaN where it is not steered' },
+      { name: 'set_point', code: 'f', offset: 8, count: 3, scale: 1, unit: 'rad', meaning: 'set points of heading, pitch, roll; NaN while not controlled' },
       { name: 'measured', code: 'f', offset: 20, count: 3, scale: 1, unit: 'rad', meaning: 'heading, pitch, roll' },
-      { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN where it is not steered' },
+      { name: 'output', code: 'f', offset: 32, count: 3, scale: 1, unit: '', meaning: 'commands yaw, pitch, roll, -1 to 1; NaN while not controlled' },
     ],
   },
 } as const;
@@ -303,9 +303,9 @@ export interface NavigationRow {
 export interface ControlRow {
   /** s, steady clock of the robot's computer */
   time: number;
-  /** m, wanted depth */
+  /** m, depth set point */
   set_point: number;
-  /** m, depth that the controller saw */
+  /** m, depth that the controller used */
   depth: number;
   /** m, set point minus depth */
   error: number;
@@ -372,11 +372,11 @@ export interface TruthRow {
 export interface TurningRow {
   /** s, steady clock of the robot's computer */
   time: number;
-  /** rad, wanted heading, pitch, roll; NaN where it is not steered */
+  /** rad, set points of heading, pitch, roll; NaN while not controlled */
   set_point: number[];
   /** rad, heading, pitch, roll */
   measured: number[];
-  /** commands yaw, pitch, roll, -1 to 1; NaN where it is not steered */
+  /** commands yaw, pitch, roll, -1 to 1; NaN while not controlled */
   output: number[];
 }
 
@@ -409,7 +409,7 @@ export const OTHER_TOPICS = {
   balanced: 36,
 } as const;
 
-/** Something that is wrong, or was and has not been acknowledged yet. */
+/** A fault that is active, or not acknowledged yet. */
 export interface Alarm {
   fault: string;
   severity: 'info' | 'caution' | 'alarm';
@@ -444,7 +444,7 @@ export interface ControllerChoice {
   gains: Gain[];
 }
 
-/** One thing that the robot steers by: depth (m), heading, pitch or roll (rad). */
+/** A control loop: depth (m), heading, pitch or roll (rad). */
 export interface Loop {
   name: string;
   on: boolean;
@@ -490,7 +490,7 @@ export interface Box {
   height: number;
 }
 
-/** A patch of the wanted colour, and what it is measured by; `refused` says why it does not count. */
+/** A patch of the target colour, with its measures; `refused` says why it does not count. */
 export interface Candidate {
   box: Box;
   area: number;
@@ -585,11 +585,11 @@ export interface ColourRange {
 
 /** Rate in Hz; areas as shares of the picture, `opening` as a share of its width.
 
-    `colour` is the one that is looked for first, and whose mask is shown. A patch counts where its area, its
-    fill (area over that of its upright box), its aspect (the box's width over height) and its circularity
-    (4π·area over perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of
-    the dictionary counts. `actions` are wanted depths (m) by what is seen, a colour or `marker 7`. Raises
-    ConfigError on what does not go together.
+    `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
+    of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
+    perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary counts.
+    `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings that
+    contradict each other.
      */
 export interface VisionSettings {
   rate: number;

@@ -19,7 +19,7 @@ from robot_runtime.experiments.comm_test.reset_pin import Pull, ResetError
 from robot_runtime.experiments.comm_test.results import CellResult
 from robot_runtime.experiments.comm_test.runner import BOOTLOADER, Phase, Runner, run_cell
 from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, avrdude_version, upload
-from robot_runtime.link.port import PortError
+from robot_runtime.link.link_driver import PortError
 from robot_runtime.simulation.boards.emulator_process import BoardError
 
 TROUBLE = (SketchBuildError, UploadError, ResetError, BoardError, PortError)

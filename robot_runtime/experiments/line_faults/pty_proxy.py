@@ -24,7 +24,7 @@ from typing import Self
 import serial
 
 from robot_runtime.experiments.line_faults.faults import COUNTS, DIRECTIONS, KINDS, Direction, FaultyChannel
-from robot_runtime.link.port import PortError
+from robot_runtime.link.link_driver import PortError
 
 _READ_BYTES = 1024
 _STALL_MAX = 3600.0  # s

@@ -24,7 +24,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
-from robot_runtime.link.port import PortError
+from robot_runtime.link.link_driver import PortError
 from robot_runtime.provenance import HASH_CHARACTERS, hash_software
 from robot_runtime.simulation.boards.emulator_process import BoardError
 

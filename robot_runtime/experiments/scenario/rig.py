@@ -102,7 +102,7 @@ class ScenarioRig:
         self.robot = SimulatedRobot(scenario, self.clock, send, self._open_camera)
         self.board = make_board(self._advance_water)
         self.board.seed_line(scenario.seed)
-        self.robot.link.open(self.board.write)
+        self.robot.link.attach(self.board.write)
 
     def __enter__(self) -> Self:
         return self

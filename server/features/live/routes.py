@@ -16,7 +16,7 @@ from pydantic import StringConstraints, ValidationError
 from robot_runtime.clock import Clock
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.contract.topics import TOPICS, Kind
-from robot_runtime.transport.zenoh_transport import RefusedError
+from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import Drive

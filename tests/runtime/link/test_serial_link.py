@@ -10,7 +10,8 @@ import pytest
 from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.packets import Debug, Heartbeat, Hello, Stop
 from robot_runtime.link.framing import build
-from robot_runtime.link.port import Port, PortError
+from robot_runtime.link.link_driver import PortError
+from robot_runtime.link.port import Port
 from robot_runtime.link.serial_link import SerialLink
 from robot_runtime.link.session import BoardMessage
 from tests.runtime.board_end import DEADLINE, BoardEnd, hello

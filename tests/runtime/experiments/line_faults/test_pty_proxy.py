@@ -24,7 +24,7 @@ from robot_runtime.experiments.line_faults.faults import (
     Recurrence,
 )
 from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, obey
-from robot_runtime.link.port import PortError
+from robot_runtime.link.link_driver import PortError
 from tests.runtime.board_end import DEADLINE, BoardEnd
 
 DATA = random.Random(5).randbytes(20_000)
