@@ -4503,9 +4503,9 @@ export interface components {
          *
          *     `colour` is the target colour, whose mask is shown. A patch counts if its area, its fill (area over that
          *     of its upright box), its aspect (the box's width over height) and its circularity (4π·area over
-         *     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary counts.
-         *     `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings that
-         *     contradict each other.
+         *     perimeter²; 1: a circle) lie within these limits. Without `marker_numbers` every marker of the dictionary
+         *     counts. `actions` are set points (m) while a colour or `marker 7` is seen. Raises ConfigError on settings
+         *     that contradict each other.
          */
         VisionSettings: {
             /** Actions */

@@ -41,7 +41,7 @@ def serving(lock: Path) -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lifetime_module, "_LOOK_SECONDS", 0.001)
+    monkeypatch.setattr(lifetime_module, "_CHECK_SECONDS", 0.001)
 
 
 def test_a_lock_is_looked_at_without_being_kept(tmp_path: Path) -> None:
