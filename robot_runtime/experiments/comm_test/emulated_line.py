@@ -45,7 +45,7 @@ class EmulatedLine(CommTestLine):
         )
 
     def _order(self, command: str) -> None:
-        self._board.order(command)
+        self._board.command(command)
 
     def _hand_over(self, data: bytes) -> None:
         # What is put in or doubled takes its time on the line too, more or less of it than to be expected.
