@@ -15,7 +15,6 @@ from server.features.layouts import routes as layouts
 from server.features.lease import routes as control
 from server.features.lease.admission import admit
 from server.features.live import routes as live
-from server.features.operate import link_routes as link
 from server.features.operate import routes as robot
 from server.features.panels import routes as panels
 from server.features.parameters import routes as parameters
@@ -25,11 +24,10 @@ from server.features.sessions import routes as sessions
 from server.features.simulator import routes as simulator
 from server.features.tuning import routes as tuning
 from server.features.vision import routes as vision
-from server.health import routes as health
 from server.http.error_handlers import add_error_handlers
 from server.http.help_pages import HelpPages, make_help_router
+from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
-from server.http.problems import EVERYWHERE
 from server.http.security import Guard
 from server.http.sign_in.access import Access
 from server.http.sign_in.gate import Gate
@@ -38,7 +36,7 @@ from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
 
 ROUTES = (
-    *(access, backup, comm_tests, compare, control, exports, health, layouts, link, live, panels),
+    *(access, backup, comm_tests, compare, control, exports, layouts, live, panels),
     *(parameters, robot, scenarios, sessions, simulator, tuning, vision),
 )
 

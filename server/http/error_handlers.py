@@ -22,7 +22,7 @@ def add_error_handlers(app: FastAPI) -> None:
 
 async def _answer_api_error(_: Request, problem: Exception) -> JSONResponse:
     assert isinstance(problem, ApiError)
-    return _answer(problem.answer_status, problem.detail, problem.headers)
+    return _answer(problem.status, problem.detail, problem.headers)
 
 
 async def _answer_refusal(_: Request, problem: Exception) -> JSONResponse:

@@ -5,28 +5,24 @@ describes it in the interface's document.
 """
 
 from collections.abc import Mapping
-from typing import ClassVar
 
 
 class ApiError(Exception):
     """Something went wrong in the server"""
 
-    status: ClassVar[int] = 500
-
-    @property
-    def answer_status(self) -> int:
-        """The HTTP status of this one; a class whose errors differ overrides it."""
-        return self.status
+    status: int = 500
+    headers: Mapping[str, str] = {}
+    """Additional headers of the answer."""
 
     @property
     def detail(self) -> str:
         """The text of the answer."""
         return str(self)
 
-    @property
-    def headers(self) -> Mapping[str, str]:
-        """Additional headers of the answer."""
-        return {}
+    @classmethod
+    def answers(cls) -> Mapping[int, str]:
+        """The statuses of such answers, described for the interface's document."""
+        return {cls.status: str(cls.__doc__).partition("\n")[0]}
 
 
 class ForbiddenError(ApiError):

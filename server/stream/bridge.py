@@ -52,11 +52,12 @@ class RuntimeSilentError(ApiError):
     def __init__(self, text: str, waited: bool) -> None:
         super().__init__(text)
         self.waited = waited
+        self.status = 504 if waited else 503
 
-    @property
-    def answer_status(self) -> int:
-        """504 where it was asked and did not answer in time, 503 where it was not there."""
-        return 504 if self.waited else 503
+    @classmethod
+    def answers(cls) -> Mapping[int, str]:
+        """Both statuses."""
+        return {503: "It is not running", 504: f"It did not answer within {ANSWER_SECONDS:g} s"}
 
 
 class Bridge:

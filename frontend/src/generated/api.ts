@@ -14,8 +14,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Make a pairing code
-         * @description For one browser, within ten minutes.
+         * Make a pairing code for one browser, valid for ten minutes
+         * @description Make a pairing code for one browser, valid for ten minutes.
          */
         post: operations["makeCode"];
         delete?: never;
@@ -32,8 +32,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Who may come in
-         * @description Browsers and programs, in the order in which they came.
+         * List the paired browsers and programs, oldest first
+         * @description List the paired browsers and programs, oldest first.
          */
         get: operations["listDevices"];
         put?: never;
@@ -55,15 +55,19 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Revoke access
-         * @description At once, also on live sockets, which are closed.
+         * Revoke a device's access
+         * @description Revoke a device's access.
+         *
+         *     Its live sockets are closed at once.
          */
         delete: operations["revokeDevice"];
         options?: never;
         head?: never;
         /**
-         * Rename, promote or demote
-         * @description A new role closes its live sockets, which come back in that role.
+         * Rename, promote or demote a device
+         * @description Rename, promote or demote a device.
+         *
+         *     A new role closes its live sockets; they open again in the new role.
          */
         patch: operations["changeDevice"];
         trace?: never;
@@ -76,8 +80,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Who asks
-         * @description Answered to everybody.
+         * Return the caller: signed in or not, and in which role
+         * @description Return the caller: signed in or not, and in which role.
          */
         get: operations["getMe"];
         put?: never;
@@ -99,7 +103,10 @@ export interface paths {
         put?: never;
         /**
          * Sign this browser in with a code
-         * @description Sets a cookie. A browser that has one keeps it, and gets the code's role where that is more.
+         * @description Sign this browser in with a code.
+         *
+         *     Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
+         *     higher.
          */
         post: operations["pairBrowser"];
         delete?: never;
@@ -119,7 +126,9 @@ export interface paths {
         put?: never;
         /**
          * Sign this browser out
-         * @description It has to be paired anew afterwards. For a program: its token is void.
+         * @description Sign this browser out.
+         *
+         *     It must be paired again afterwards. A program's token becomes invalid.
          */
         post: operations["signOut"];
         delete?: never;
@@ -138,8 +147,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Let a program in
-         * @description The token is shown this once; the program sends it as `Authorization: Bearer`.
+         * Make a token for a program
+         * @description Make a token for a program.
+         *
+         *     The token is shown only this once. The program sends it as `Authorization: Bearer`.
          */
         post: operations["makeToken"];
         delete?: never;
@@ -157,7 +168,10 @@ export interface paths {
         };
         /**
          * Download a copy of the database
-         * @description Sessions, tests, what was tuned and who may come in. Recording goes on meanwhile.
+         * @description Download a copy of the database.
+         *
+         *     It holds sessions, tests, tuning and devices as they are at one moment; recording goes on. `mucat restore`
+         *     puts it back.
          */
         get: operations["downloadBackup"];
         put?: never;
@@ -400,8 +414,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Who has control
-         * @description The client in control, and the counts of stick commands.
+         * Return the client in control, and the counts of stick commands
+         * @description Return the client in control, and the counts of stick commands.
          */
         get: operations["getControl"];
         put?: never;
@@ -423,7 +437,9 @@ export interface paths {
         put?: never;
         /**
          * Release control
-         * @description Nobody has it then. Nothing changes if this client did not have it.
+         * @description Release control.
+         *
+         *     Nobody has control afterwards. Nothing changes if this client did not have it.
          */
         post: operations["releaseControl"];
         delete?: never;
@@ -443,10 +459,11 @@ export interface paths {
         put?: never;
         /**
          * Take control
-         * @description Take free control, or with `over` take it over from another client: its stick commands no longer count.
+         * @description Take control.
          *
-         *     A page has control until it releases it or its live socket closes. The programs of one token share it,
-         *     until none of them has made a request that needs control for 10 s.
+         *     Takes free control, or with `over` takes it over from another client, whose stick commands no longer
+         *     count. A page has control until it releases it or its live socket closes. The programs of one token share
+         *     it, until none of them has made a request that needs control for 10 s.
          */
         post: operations["takeControl"];
         delete?: never;
@@ -533,8 +550,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * How the server and every part of the robot do
-         * @description Always answered with 200 while the server runs; `status` says how things are.
+         * Return the health of the server and of every part of the robot
+         * @description Return the health of the server and of every part of the robot.
+         *
+         *     Answered with 200 while the server runs; `status` sums the parts up.
          */
         get: operations["getHealth"];
         put?: never;
@@ -573,14 +592,16 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The layouts that are kept
-         * @description By name.
+         * List the saved layouts, by name
+         * @description List the saved layouts, by name.
          */
         get: operations["listLayouts"];
         put?: never;
         /**
-         * Keep a layout
-         * @description Keep it under its name, over one of that name.
+         * Save a layout
+         * @description Save a layout.
+         *
+         *     A layout of the same name is replaced.
          */
         post: operations["saveLayout"];
         delete?: never;
@@ -597,15 +618,17 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A layout
-         * @description With its document as it was kept, which the page reads.
+         * Return a layout with its document
+         * @description Return a layout with its document.
          */
         get: operations["getLayout"];
         put?: never;
         post?: never;
         /**
          * Delete a layout
-         * @description Delete it for good; pages that show it go on showing it.
+         * @description Delete a layout.
+         *
+         *     Pages that show it go on showing it.
          */
         delete: operations["deleteLayout"];
         options?: never;
@@ -623,8 +646,6 @@ export interface paths {
         /**
          * Return the last frames on the serial line, now and at the last fault
          * @description Return the last frames on the serial line, now and at the last fault.
-         *
-         *     Each call asks the runtime; without calls it costs nothing.
          */
         get: operations["getLinkFrames"];
         put?: never;
@@ -643,8 +664,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One's own panels
-         * @description Those in the folder `panels` of the data folder, by name.
+         * List your own panels, by name
+         * @description List your own panels, by name.
+         *
+         *     The scripts in the folder `panels` of the data folder.
          */
         get: operations["listPanels"];
         put?: never;
@@ -663,8 +686,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Where one's own panels run
-         * @description A page with an origin of its own, which hears samples and can ask nobody for anything.
+         * Return the frame that runs your own panels
+         * @description Return the frame that runs your own panels.
+         *
+         *     A page with an origin of its own: it receives samples and can send no request.
          */
         get: operations["getPanelFrame"];
         put?: never;
@@ -683,8 +708,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A panel's script
-         * @description As text, which the page hands to a frame.
+         * Return the script of a panel, as text
+         * @description Return the script of a panel, as text.
          */
         get: operations["getPanel"];
         put?: never;
@@ -703,8 +728,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Everything that may be tuned
-         * @description Each with its type, its range, its unit, its meaning and its value, as it is now.
+         * List all parameters
+         * @description List all parameters.
+         *
+         *     Each with type, range, unit, meaning and present value.
          */
         get: operations["getParameters"];
         put?: never;
@@ -723,8 +750,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Who changed what
-         * @description The newest hundred, the newest first.
+         * List the newest hundred changes of parameters, newest first
+         * @description List the newest hundred changes of parameters, newest first.
          */
         get: operations["listParameterChanges"];
         put?: never;
@@ -745,8 +772,8 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Undo a change
-         * @description Set back what the newest change has changed; then the one before it is the newest.
+         * Undo the newest change of parameters
+         * @description Undo the newest change of parameters.
          */
         post: operations["undoParameters"];
         delete?: never;
@@ -763,8 +790,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The last ten minutes of some topics
-         * @description All rows that the server still has of these topics, up to `until`: topic by topic, the oldest first.
+         * Return rows of the last ten minutes
+         * @description Return rows of the last ten minutes.
+         *
+         *     All rows of these topics up to `until`, topic by topic, oldest first, as blocks.
          */
         get: operations["getPast"];
         put?: never;
@@ -783,14 +812,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Profiles
-         * @description In alphabetical order, with their values.
+         * List the profiles with their values, in alphabetical order
+         * @description List the profiles with their values, in alphabetical order.
          */
         get: operations["listProfiles"];
         put?: never;
         /**
-         * Keep what is in force
-         * @description Every parameter as it is now, under a name.
+         * Save all present parameter values as a profile
+         * @description Save all present parameter values as a profile.
          */
         post: operations["saveProfile"];
         delete?: never;
@@ -809,8 +838,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Take a profile from a file
-         * @description Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told.
+         * Import a profile from a file
+         * @description Import a profile from a file.
+         *
+         *     The robot's parameters stay unchanged. The answer lists parameters that this robot does not know.
          */
         post: operations["importProfile"];
         delete?: never;
@@ -831,7 +862,7 @@ export interface paths {
         post?: never;
         /**
          * Delete a profile
-         * @description For good.
+         * @description Delete a profile.
          */
         delete: operations["deleteProfile"];
         options?: never;
@@ -847,8 +878,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * A profile as a file
-         * @description JSON, which another robot takes too.
+         * Download a profile as a JSON file
+         * @description Download a profile as a JSON file.
          */
         get: operations["downloadProfile"];
         put?: never;
@@ -869,8 +900,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Bring a profile into force
-         * @description All of its parameters that can be set now; what is unknown or out of range is left out, and said.
+         * Restore a profile
+         * @description Restore a profile.
+         *
+         *     Sets all of its parameters that can be set now. The answer lists those that are unknown or out of range.
          */
         post: operations["restoreProfile"];
         delete?: never;
@@ -887,8 +920,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The robot's newest state
-         * @description As the runtime sent it last; its `time` says when that was (s, steady clock).
+         * Return the robot's newest state
+         * @description Return the robot's newest state.
+         *
+         *     The runtime sent it at its `time` (s, steady clock).
          */
         get: operations["getRobot"];
         put?: never;
@@ -909,7 +944,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Acknowledges all alarms
+         * Acknowledges all alarms. After a failsafe the robot may be armed again from then on
          * @description Acknowledges all alarms. After a failsafe the robot may be armed again from then on.
          */
         post: operations["commandAcknowledge"];
@@ -929,7 +964,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Arms the robot
+         * Arms the robot. It is refused with every reason that stands against it
          * @description Arms the robot. It is refused with every reason that stands against it.
          */
         post: operations["commandArm"];
@@ -969,7 +1004,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Arms for some seconds and moves each fin
+         * Arms for some seconds and moves each fin. An event says which fins followed; then it disarms
          * @description Arms for some seconds and moves each fin. An event says which fins followed; then it disarms.
          */
         post: operations["commandCheckFins"];
@@ -989,7 +1024,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Changes one control loop: all of it or nothing
+         * Changes one control loop: all of it or nothing. What is left out stays as it is
          * @description Changes one control loop: all of it or nothing. What is left out stays as it is.
          */
         post: operations["commandLoop"];
@@ -1069,7 +1104,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Replaces all settings of the vision node, also for later starts
+         * Replaces all settings of the vision node, also for later starts. None may be left out
          * @description Replaces all settings of the vision node, also for later starts. None may be left out.
          */
         post: operations["commandVisionSettings"];
@@ -1090,7 +1125,9 @@ export interface paths {
         put?: never;
         /**
          * Disarm at once
-         * @description Never refused, and before everything else.
+         * @description Disarm at once.
+         *
+         *     STOP is never refused, and goes before everything else.
          */
         post: operations["stopRobot"];
         delete?: never;
@@ -1213,7 +1250,9 @@ export interface paths {
         get?: never;
         /**
          * Choose the bystander's view
-         * @description Where the pictures of topic `observer` are taken from.
+         * @description Choose the bystander's view.
+         *
+         *     The pictures of the topic `observer` are taken from there.
          */
         put: operations["putView"];
         post?: never;
@@ -1475,7 +1514,9 @@ export interface paths {
         get?: never;
         /**
          * Start or end the simulator on this computer
-         * @description Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth.
+         * @description Start or end the simulator on this computer.
+         *
+         *     Only with hardware in the loop. Ending it disarms the robot, which then has no depth.
          */
         put: operations["putSimulator"];
         post?: never;
@@ -1605,8 +1646,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * How the vision node looks
-         * @description All settings that may change while it looks, and what robot.toml says of them.
+         * Return the vision settings now, and those of robot.toml
+         * @description Return the vision settings now, and those of robot.toml.
          */
         get: operations["getVision"];
         put?: never;
@@ -1627,8 +1668,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * The colour at a place in the picture
-         * @description A range for what is there in the newest picture. It changes nothing.
+         * Return the colour range at a place in the newest picture
+         * @description Return the colour range at a place in the newest picture.
+         *
+         *     Changes nothing.
          */
         post: operations["pickColour"];
         delete?: never;
@@ -1647,8 +1690,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Read the settings in a robot.toml
-         * @description The settings of the document's table [vision]. Changes nothing.
+         * Read the vision settings in a robot.toml
+         * @description Read the vision settings in a robot.toml.
+         *
+         *     Changes nothing.
          */
         post: operations["readVision"];
         delete?: never;
@@ -1665,8 +1710,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * The settings as a part of robot.toml
-         * @description The table [vision], to be kept or to be put into robot.toml.
+         * Download the vision settings as the table [vision] of robot.toml
+         * @description Download the vision settings as the table [vision] of robot.toml.
          */
         get: operations["downloadVision"];
         put?: never;
@@ -2820,7 +2865,7 @@ export interface components {
         };
         /**
          * LinkFault
-         * @description The last time that something went wrong on the line, and the frames until then.
+         * @description The last fault of the serial line, and the frames before it.
          */
         LinkFault: {
             /** Frames */
@@ -2838,7 +2883,7 @@ export interface components {
          * @description The last hundred frames each way since the port was opened, in the order of time.
          */
         LinkFrames: {
-            /** @description null where there was none since the runtime started */
+            /** @description null if there was none since the runtime started */
             fault: components["schemas"]["LinkFault"] | null;
             /** Frames */
             frames: components["schemas"]["Dissection"][];
@@ -3081,7 +3126,7 @@ export interface components {
         };
         /**
          * NewLayout
-         * @description A layout that is to be kept under a name.
+         * @description A layout to be saved under a name.
          */
         NewLayout: {
             document: components["schemas"]["LayoutDocument"];
@@ -3303,7 +3348,7 @@ export interface components {
         };
         /**
          * Problem
-         * @description An error: its cause, and the remedy.
+         * @description An error: what happened, why, and what to do.
          */
         Problem: {
             /** Detail */
@@ -4672,6 +4717,15 @@ export interface operations {
                     "application/json": components["schemas"]["MadeCode"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -4699,6 +4753,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["DeviceDetails"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -4739,7 +4802,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Refused now */
+            /** @description No operator would be left */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4748,7 +4811,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -4801,7 +4864,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Refused now */
+            /** @description No operator would be left */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4810,7 +4873,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -4846,6 +4909,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Me"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -4890,7 +4962,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Refused now */
+            /** @description Too many devices are paired */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4908,7 +4980,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -4944,7 +5016,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused now */
+            /** @description The shell is not signed in */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -4953,7 +5025,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -4995,7 +5067,7 @@ export interface operations {
                     "application/json": components["schemas"]["MadeToken"];
                 };
             };
-            /** @description Refused now */
+            /** @description Too many devices are paired */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -5004,7 +5076,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -5033,7 +5105,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The database at one moment; `mucat restore` puts it back */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -5042,8 +5114,17 @@ export interface operations {
                     "application/vnd.sqlite3": unknown;
                 };
             };
-            /** @description Another one is being copied or downloaded */
+            /** @description Another copy is being made or downloaded */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5087,6 +5168,15 @@ export interface operations {
                 };
                 content?: never;
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5120,6 +5210,15 @@ export interface operations {
                     "application/json": components["schemas"]["Check"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5149,6 +5248,15 @@ export interface operations {
                     "application/json": components["schemas"]["TestDocument"][];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5176,6 +5284,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RunSummary"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -5238,7 +5355,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -5287,6 +5404,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5309,7 +5435,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description A line for each cell */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -5320,6 +5446,15 @@ export interface operations {
             };
             /** @description There is no such run */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5349,7 +5484,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Everything known of it */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -5360,6 +5495,15 @@ export interface operations {
             };
             /** @description There is no such run */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5394,6 +5538,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ThesisTable"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -5438,7 +5591,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -5489,7 +5642,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -5530,7 +5683,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The file */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -5548,7 +5701,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -5586,6 +5739,15 @@ export interface operations {
                     "application/json": components["schemas"]["ControlDetails"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5615,8 +5777,17 @@ export interface operations {
                     "application/json": components["schemas"]["ControlState"];
                 };
             };
-            /** @description The request names no open page */
+            /** @description No open page is named */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5655,8 +5826,17 @@ export interface operations {
                     "application/json": components["schemas"]["ControlState"];
                 };
             };
-            /** @description The request names no open page; somebody else has control */
+            /** @description No open page is named, or another client has control */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5691,6 +5871,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Job"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -5753,6 +5942,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5786,6 +5984,15 @@ export interface operations {
             };
             /** @description There is no such export */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5840,6 +6047,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -5862,7 +6078,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The file; its ETag is its SHA-256 */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -5870,13 +6086,6 @@ export interface operations {
                 content: {
                     "application/octet-stream": unknown;
                 };
-            };
-            /** @description The part that was asked for with Range */
-            206: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
             };
             /** @description There is no such export */
             404: {
@@ -5889,6 +6098,15 @@ export interface operations {
             };
             /** @description It is not finished */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5923,6 +6141,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -5976,7 +6203,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6023,7 +6250,7 @@ export interface operations {
                     "application/json": components["schemas"]["SavedLayout"][];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6074,7 +6301,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6123,7 +6350,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6170,7 +6397,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6208,7 +6435,7 @@ export interface operations {
                     "application/json": components["schemas"]["LinkFrames"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6217,7 +6444,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6255,6 +6482,15 @@ export interface operations {
                     "application/json": components["schemas"]["OwnPanel"][];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -6282,6 +6518,15 @@ export interface operations {
                 };
                 content: {
                     "text/html": string;
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -6324,6 +6569,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -6353,7 +6607,7 @@ export interface operations {
                     "application/json": components["schemas"]["Parameters"];
                 };
             };
-            /** @description A communication test uses the robot's board */
+            /** @description The runtime refuses */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -6362,7 +6616,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6371,7 +6625,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6409,7 +6663,7 @@ export interface operations {
                     "application/json": components["schemas"]["Change"][];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6460,15 +6714,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -6478,7 +6723,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6487,7 +6732,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6521,13 +6766,22 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Blocks, as on the live socket */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
                     "application/octet-stream": unknown;
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -6559,7 +6813,7 @@ export interface operations {
                     "application/json": components["schemas"]["Profile"][];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6610,7 +6864,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6619,7 +6873,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6679,7 +6933,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6688,7 +6942,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6735,7 +6989,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6784,7 +7038,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6842,15 +7096,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -6860,7 +7105,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6869,7 +7114,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -6907,7 +7152,7 @@ export interface operations {
                     "application/json": components["schemas"]["State"];
                 };
             };
-            /** @description The runtime has said nothing yet */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6956,15 +7201,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -6974,7 +7210,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -6983,7 +7219,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7032,15 +7268,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7050,7 +7277,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7059,7 +7286,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7108,15 +7335,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7126,7 +7344,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7135,7 +7353,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7184,15 +7402,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7202,7 +7411,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7211,7 +7420,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7262,15 +7471,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7280,7 +7480,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7289,7 +7489,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7338,15 +7538,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7356,7 +7547,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7365,7 +7556,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7416,15 +7607,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7434,7 +7616,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7443,7 +7625,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7494,15 +7676,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7512,7 +7685,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7521,7 +7694,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7572,15 +7745,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -7590,7 +7754,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7599,7 +7763,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7635,7 +7799,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7644,7 +7808,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7680,6 +7844,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioText"][];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -7733,6 +7906,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7759,6 +7941,15 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
@@ -7791,6 +7982,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioCheck"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -7853,6 +8053,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -7880,6 +8089,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -7913,25 +8131,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description The scene refuses */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
-            /** @description The scene is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -7940,7 +8140,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The scene did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -7986,6 +8186,15 @@ export interface operations {
                     "application/json": components["schemas"]["Session"][];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8028,7 +8237,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8070,6 +8279,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8126,7 +8344,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8188,7 +8406,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8223,7 +8441,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Blocks, as on the live socket */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -8234,6 +8452,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8276,7 +8503,7 @@ export interface operations {
                     "application/json": components["schemas"]["Bookmark"];
                 };
             };
-            /** @description There is no such session, or it has no such mark */
+            /** @description There is no such session, or it has no such bookmark */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -8294,7 +8521,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8333,7 +8560,7 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description There is no such session, or it has no such mark */
+            /** @description There is no such session, or it has no such bookmark */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -8351,7 +8578,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8396,7 +8623,7 @@ export interface operations {
                     "application/json": components["schemas"]["Bookmark"];
                 };
             };
-            /** @description There is no such session, or it has no such mark */
+            /** @description There is no such session, or it has no such bookmark */
             404: {
                 headers: {
                     [name: string]: unknown;
@@ -8414,7 +8641,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8470,7 +8697,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8528,7 +8755,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8577,7 +8804,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8635,7 +8862,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8669,7 +8896,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description The picture */
+            /** @description Successful Response */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -8680,6 +8907,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8720,6 +8956,15 @@ export interface operations {
             };
             /** @description There is no such session */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -8776,6 +9021,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -8803,6 +9057,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Storage"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -8834,6 +9097,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["TuningRuns"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -8878,15 +9150,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -8896,7 +9159,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -8905,7 +9168,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -8963,7 +9226,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9019,7 +9282,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9081,7 +9344,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The database does not work */
+            /** @description Something that the server needs does not work */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9117,6 +9380,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["TuningState"];
+                };
+            };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
@@ -9155,15 +9427,6 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The request is not valid */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
-                };
-            };
             /** @description Control is with somebody else */
             423: {
                 headers: {
@@ -9173,7 +9436,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9182,7 +9445,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -9220,7 +9483,7 @@ export interface operations {
                     "application/json": components["schemas"]["VisionSetup"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9229,7 +9492,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -9280,7 +9543,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9289,7 +9552,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;
@@ -9340,6 +9603,15 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Something that the server needs does not work */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), not valid (422) */
             "4XX": {
                 headers: {
@@ -9369,7 +9641,7 @@ export interface operations {
                     "text/plain": string;
                 };
             };
-            /** @description The runtime is not running */
+            /** @description It is not running */
             503: {
                 headers: {
                     [name: string]: unknown;
@@ -9378,7 +9650,7 @@ export interface operations {
                     "text/plain": components["schemas"]["Problem"];
                 };
             };
-            /** @description The runtime did not answer within 2 s */
+            /** @description It did not answer within 2 s */
             504: {
                 headers: {
                     [name: string]: unknown;

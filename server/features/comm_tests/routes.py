@@ -1,8 +1,6 @@
 """Communication tests: documents, runs, the thesis's tables, downloads."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Path, Request
+from fastapi import Request
 from fastapi.responses import Response
 
 from robot_runtime.contract.limits import ConfigError
@@ -28,25 +26,19 @@ from server.features.comm_tests.shipped import shipped_documents
 from server.features.lease.admission import require_control
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import answers
-from server.http.sign_in.policy import Need, needs
-from server.platform.models import IDENTIFIER_MAX
+from server.http.operations import Identifier, Operations
+from server.http.sign_in.policy import Need
 
-UNKNOWN = answers(UnknownCommTestRunError)
-
-router = APIRouter(prefix="/api/comm-tests", tags=["communication tests"], route_class=Operation)
-
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+router = Operations(prefix="/api/comm-tests", tags=["communication tests"])
 
 
-@router.get("/documents", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /documents", Need.VIEWER)
 def list_test_documents() -> list[TestDocument]:
     """List the documents that ship with the program, the thesis's own example (Figure 10) first."""
     return shipped_documents()
 
 
-@router.post("/check", openapi_extra=needs(Need.VIEWER))
+@router.operation("POST /check", Need.VIEWER)
 def check_test_document(document: DocumentText) -> Check:
     """Check a document: its problems field by field, or its tests with about how long they take."""
     try:
@@ -55,16 +47,15 @@ def check_test_document(document: DocumentText) -> Check:
         return Check(problems=list(problem.problems), tests=[])
 
 
-@router.post(
-    "/runs",
+@router.operation(
+    "POST /runs",
+    Need.OPERATOR,
+    {
+        409: "Refused now",
+        422: "The document cannot be run",
+        423: "On the robot's board: control is with somebody else",
+    },
     status_code=201,
-    openapi_extra=needs(Need.OPERATOR),
-    responses=answers(
-        _409="Refused now",
-        _422="The document cannot be run",
-        _423="On the robot's board: control is with somebody else",
-        _503="The database does not work",
-    ),
 )
 async def start_test_run(
     request: Request,
@@ -79,45 +70,32 @@ async def start_test_run(
     return Started(run=await comm_tests.start(body.text, body.place))
 
 
-@router.post("/cancel", status_code=204, openapi_extra=needs(Need.OPERATOR))
+@router.operation("POST /cancel", Need.OPERATOR)
 async def cancel_test_run(comm_tests: Provided[CommTestRunner]) -> None:
     """Cancel the running document; finished cells are stored."""
     comm_tests.cancel()
 
 
-@router.get("/runs", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /runs", Need.VIEWER)
 def list_test_runs(comm_tests: Provided[CommTestRunner]) -> list[RunSummary]:
     """List all runs, also those that ship with the program, newest first."""
     return list(comm_tests.runs.summaries())
 
 
-@router.get("/runs/{run}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /runs/{run}", Need.VIEWER, UnknownCommTestRunError)
 def get_test_run(comm_tests: Provided[CommTestRunner], run: Identifier) -> CommTestRunDetails:
     """Return a run with its configuration and its cells."""
     return comm_tests.runs.whole(comm_tests.runs.find(run))
 
 
-@router.get(
-    "/runs/{run}/csv",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={200: {"content": {"text/csv": {}}, "description": "A line for each cell"}, **UNKNOWN},
-)
+@router.operation("GET /runs/{run}/csv", Need.VIEWER, UnknownCommTestRunError, media_type="text/csv")
 def download_test_run_csv(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download a run as CSV, a line for each cell."""
     found = comm_tests.runs.find(run)
     return _file(tables.write_csv(found, comm_tests.runs.cells(run)), "text/csv", f"comm_test_{run}.csv")
 
 
-@router.get(
-    "/runs/{run}/json",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={
-        200: {"content": {"application/json": {}}, "description": "Everything known of it"},
-        **UNKNOWN,
-    },
-)
+@router.operation("GET /runs/{run}/json", Need.VIEWER, UnknownCommTestRunError, media_type="application/json")
 def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier) -> Response:
     """Download everything that is known of a run, with its cells, as JSON."""
     found = comm_tests.runs.find(run)
@@ -125,7 +103,7 @@ def download_test_run_json(comm_tests: Provided[CommTestRunner], run: Identifier
     return _file(text, "application/json", f"comm_test_{run}.json")
 
 
-@router.get("/tables", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /tables", Need.VIEWER)
 def list_test_tables() -> list[ThesisTable]:
     """Return the thesis's own results: Table 5 (plain numbers) and Table 6 (packets)."""
     return [

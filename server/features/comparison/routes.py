@@ -2,9 +2,9 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import Query
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import HTMLResponse, Response
+from fastapi.responses import HTMLResponse
 from pydantic import ValidationError
 
 from server.features.comparison.comparisons import Comparisons
@@ -12,25 +12,13 @@ from server.features.comparison.schemas import Comparison, ComparisonQuery, Line
 from server.features.comparison.signals import Signal
 from server.features.sessions.session import UnknownSessionError
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import answers
-from server.http.sign_in.policy import Need, needs
-from server.platform.models import IDENTIFIER_MAX
-from server.platform.store import StoreError
+from server.http.operations import Identifier, Operations
+from server.http.sign_in.policy import Need
 
-UNKNOWN = answers(UnknownSessionError, StoreError)
-
-router = APIRouter(prefix="/api", tags=["comparison"], route_class=Operation)
-
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+router = Operations(prefix="/api", tags=["comparison"])
 
 
-@router.get(
-    "/compare/report",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={200: {"content": {"text/html": {}}, "description": "The file"}, **UNKNOWN},
-)
+@router.operation("GET /compare/report", Need.VIEWER, UnknownSessionError, media_type="text/html")
 def get_comparison_report(
     comparisons: Provided[Comparisons], query: Annotated[ReportQuery, Query()]
 ) -> HTMLResponse:
@@ -49,19 +37,19 @@ def get_comparison_report(
     )
 
 
-@router.get("/sessions/{session}/signals", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /sessions/{session}/signals", Need.VIEWER, UnknownSessionError)
 def list_signals(comparisons: Provided[Comparisons], session: Identifier) -> list[Signal]:
     """List the signals of a session: the columns of its topics, and numbers of its documents."""
     return comparisons.comparer.signals(session)
 
 
-@router.post("/compare", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("POST /compare", Need.VIEWER, UnknownSessionError)
 def compare_sessions(comparisons: Provided[Comparisons], body: ComparisonQuery) -> Comparison:
     """Compare sessions: lines, figures and differences."""
     return comparisons.comparer.compare(body)
 
 
-@router.post("/compare/lines", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("POST /compare/lines", Need.VIEWER, UnknownSessionError)
 def compare_lines(comparisons: Provided[Comparisons], body: LinesQuery) -> Lines:
     """Return the lines of a shorter time range in full resolution."""
     return comparisons.comparer.lines(body)

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import Path, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse
 
@@ -17,66 +17,50 @@ from server.features.sessions.schemas import Session
 from server.features.sessions.session import UnknownSessionError, find_row, from_row
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import answers
-from server.http.sign_in.policy import Need, needs
+from server.http.operations import Operations
+from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError
-from server.platform.store import Store, StoreError
+from server.platform.store import Store
 
-UNKNOWN = answers(UnknownExportError)
-
-router = APIRouter(prefix="/api", tags=["exports"], route_class=Operation)
+router = Operations(prefix="/api", tags=["exports"])
 
 Identifier = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 
 
-@router.get("/exports", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /exports", Need.VIEWER)
 async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
     """List the exports that are stored, running or waiting, newest first."""
     return jobs.list()
 
 
-@router.post(
-    "/exports",
-    status_code=201,
-    openapi_extra=needs(Need.OPERATOR),
-    responses=answers(UnknownSessionError, ConflictError, ExportRequestError),
+@router.operation(
+    "POST /exports", Need.OPERATOR, UnknownSessionError, ConflictError, ExportRequestError, status_code=201
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
     return jobs.add(await run_in_threadpool(find_row, store, body.session), body)
 
 
-@router.get("/exports/{export}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /exports/{export}", Need.VIEWER, UnknownExportError)
 async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
     """Return the progress of an export, and its size and checksum when it is done."""
     return jobs.find(export)
 
 
-@router.delete(
-    "/exports/{export}",
-    status_code=204,
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **answers(_409="It cannot be deleted")},
+@router.operation(
+    "DELETE /exports/{export}", Need.OPERATOR, UnknownExportError, {409: "It cannot be deleted"}
 )
 async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
     """Cancel an export, or delete its file."""
     jobs.remove(jobs.find(export))
 
 
-@router.get(
-    "/exports/{export}/file",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=FileResponse,
-    responses={
-        200: {
-            "content": {"application/octet-stream": {}},
-            "description": "The file; its ETag is its SHA-256",
-        },
-        206: {"description": "The part that was asked for with Range"},
-        **UNKNOWN,
-        **answers(_409="It is not finished"),
-    },
+@router.operation(
+    "GET /exports/{export}/file",
+    Need.VIEWER,
+    UnknownExportError,
+    {409: "It is not finished"},
+    media_type="application/octet-stream",
 )
 async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileResponse:
     """Download the file of an export.
@@ -94,19 +78,16 @@ async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileRespo
     )
 
 
-@router.post(
-    "/imports",
+@router.operation(
+    "POST /imports",
+    Need.OPERATOR,
+    ArchiveError,
+    FileWriteError,
+    {409: "It is here already, another is being imported, or the robot is armed"},
     status_code=201,
     openapi_extra={
-        **needs(Need.OPERATOR),
-        "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}},
+        "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}}
     },
-    responses=answers(
-        ArchiveError,
-        StoreError,
-        FileWriteError,
-        _409="It is here already, another is being imported, or the robot is armed",
-    ),
 )
 async def import_session(
     request: Request, monitor: Provided[HealthMonitor], imports: Provided[Imports], store: Provided[Store]

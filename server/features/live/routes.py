@@ -9,7 +9,7 @@ from collections.abc import Callable
 from time import time
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, WebSocket, WebSocketDisconnect
+from fastapi import Depends, Query, WebSocket, WebSocketDisconnect
 from fastapi.responses import Response
 from pydantic import StringConstraints, ValidationError
 
@@ -21,10 +21,11 @@ from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
 from server.features.lease.driving import Drive
 from server.http.dependencies import Provided
+from server.http.operations import Operations
 from server.http.page import Page
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import MESSAGES, Need, may_say, needs
+from server.http.sign_in.policy import MESSAGES, Need, may_say
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import POLICY_VIOLATION, Client, EvictedError, Hub
@@ -35,7 +36,7 @@ FAREWELL_SECONDS = 1.0
 WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
 """Topics of pictures that a page can have."""
 
-router = APIRouter()
+router = Operations()
 
 _ROWS = "|".join(topic.name for topic in TOPICS if topic.kind is Kind.ROWS)
 RowTopic = Annotated[str, StringConstraints(pattern=f"^({_ROWS})$")]
@@ -168,17 +169,7 @@ async def live(
             return
 
 
-@router.get(
-    "/api/past",
-    summary="The last ten minutes of some topics",
-    operation_id="getPast",
-    tags=["live"],
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={
-        200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"}
-    },
-)
+@router.operation("GET /api/past", Need.VIEWER, media_type="application/octet-stream", tags=["live"])
 async def get_past(
     hub: Provided[Hub],
     topic: Annotated[list[RowTopic], Query(min_length=1, description="of rows; may be given several times")],
@@ -186,7 +177,10 @@ async def get_past(
         float, Query(allow_inf_nan=False, description="s, steady clock; a little more may come")
     ],
 ) -> Response:
-    """All rows that the server still has of these topics, up to `until`: topic by topic, the oldest first."""
+    """Return rows of the last ten minutes.
+
+    All rows of these topics up to `until`, topic by topic, oldest first, as blocks.
+    """
     rows = hub.history.rows(topic, until)
     return Response(rows, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
 

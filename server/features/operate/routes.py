@@ -1,9 +1,9 @@
-"""The robot: its state, and commands to it. The runtime checks every command again, and may refuse it."""
+"""The robot: its state, health and link, and commands to it, which the runtime checks again."""
 
 from dataclasses import fields
 from typing import Any
 
-from fastapi import APIRouter
+from pydantic import BaseModel, Field
 
 from robot_runtime.contract.commands import (
     AcknowledgeCommand,
@@ -11,57 +11,81 @@ from robot_runtime.contract.commands import (
     RobotCommand,
     http_commands,
     is_required,
-    summary,
 )
 from robot_runtime.contract.documents import State
 from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
-from server.features.parameters.changes import Changes
+from robot_runtime.link.dissection import Dissection
+from server.features.parameters.changes import COMMAND_ERRORS, Changes
 from server.features.parameters.schemas import Restored
-from server.health.monitor import HealthMonitor
+from server.health.monitor import Health, HealthMonitor
 from server.http.dependencies import Provided
-from server.http.problems import COMMAND, SILENT, answers
+from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import Need, needs
+from server.http.sign_in.policy import Need
 from server.platform.disk_space import check_room
 from server.platform.errors import UnavailableError
 from server.platform.settings import Settings
-from server.stream.bridge import Bridge
+from server.stream.bridge import Bridge, RuntimeSilentError
 
-router = APIRouter(prefix="/api/robot", tags=["robot"])
+router = Operations(prefix="/api")
 
 
-@router.get(
-    "",
-    summary="The robot's newest state",
-    operation_id="getRobot",
-    openapi_extra=needs(Need.VIEWER),
-    responses=answers(_503="The runtime has said nothing yet"),
-    response_model=State,
-)
-async def get_robot(watch: Provided[HealthMonitor]) -> object:
-    """As the runtime sent it last; its `time` says when that was (s, steady clock)."""
-    state = watch.state()
+class LinkFault(BaseModel):
+    """The last fault of the serial line, and the frames before it."""
+
+    time: float = Field(description="s, steady clock")
+    text: str
+    frames: list[Dissection]
+
+
+class LinkFrames(BaseModel):
+    """The last hundred frames each way since the port was opened, in the order of time."""
+
+    time: float = Field(description="now, s, steady clock")
+    frames: list[Dissection]
+    fault: LinkFault | None = Field(description="null if there was none since the runtime started")
+
+
+@router.operation("GET /health", Need.VIEWER, tags=["health"])
+async def get_health(monitor: Provided[HealthMonitor]) -> Health:
+    """Return the health of the server and of every part of the robot.
+
+    Answered with 200 while the server runs; `status` sums the parts up.
+    """
+    return monitor.health()
+
+
+@router.operation("GET /link/frames", Need.VIEWER, RuntimeSilentError, tags=["link"])
+async def get_link_frames(bridge: Provided[Bridge]) -> LinkFrames:
+    """Return the last frames on the serial line, now and at the last fault."""
+    return LinkFrames.model_validate(await bridge.query("frames"))
+
+
+@router.operation("GET /robot", Need.VIEWER, UnavailableError, response_model=State, tags=["robot"])
+async def get_robot(monitor: Provided[HealthMonitor]) -> object:
+    """Return the robot's newest state.
+
+    The runtime sent it at its `time` (s, steady clock).
+    """
+    state = monitor.state()
     if state is None:
-        raise UnavailableError("The robot's runtime has said nothing yet. Its state is in /api/health.")
+        raise UnavailableError("The robot's runtime has sent no state yet. /api/health says why.")
     return state
 
 
-@router.post(
-    "/stop",
-    status_code=204,
-    summary="Disarm at once",
-    operation_id="stopRobot",
-    openapi_extra=needs(Need.VIEWER),
-    responses=SILENT,
-)
-async def stop(bridge: Provided[Bridge]) -> None:
-    """Never refused, and before everything else."""
+@router.operation("POST /robot/stop", Need.VIEWER, RuntimeSilentError, tags=["robot"])
+async def stop_robot(bridge: Provided[Bridge]) -> None:
+    """Disarm at once.
+
+    STOP is never refused, and goes before everything else.
+    """
     await bridge.command("stop", {})
 
 
-def _add_route(cls: type[RobotCommand], need: Need) -> None:
+def _add_command(cls: type[RobotCommand], need: Need) -> None:
     optional = not any(map(is_required, fields(cls)))
+    answer = Restored if cls.policy.tunes else None
 
     async def perform(
         changes: Provided[Changes],
@@ -78,26 +102,19 @@ def _add_route(cls: type[RobotCommand], need: Need) -> None:
         elif isinstance(request, AcknowledgeCommand):
             alarms.acknowledge()
         restored = await changes.command(caller.name, request)
-        return restored if cls.policy.tunes else None
+        return restored if answer else None
 
-    # FastAPI takes the body's schema from here.
-    perform.__annotations__["command"] = cls | None if optional else cls
+    # FastAPI takes name, texts and schemas of the operation from the function.
+    perform.__name__ = f"command_{cls.policy.name}"
+    perform.__doc__ = cls.__doc__
+    perform.__annotations__ |= {"command": cls | None if optional else cls, "return": answer}
     if optional:
         perform.__defaults__ = (None,)
-    router.add_api_route(
-        f"/commands/{cls.policy.name}",
-        perform,
-        methods=["POST"],
-        status_code=200 if cls.policy.tunes else 204,
-        response_model=Restored if cls.policy.tunes else None,
-        summary=summary(cls),
-        description=cls.__doc__,
-        operation_id="command" + "".join(part.capitalize() for part in cls.policy.name.split("_")),
-        openapi_extra=needs(need),
-        responses=COMMAND,
+    router.operation(f"POST /robot/commands/{cls.policy.name}", need, *COMMAND_ERRORS, tags=["robot"])(
+        perform
     )
 
 
 for _cls in http_commands():
     if _cls.policy.need is not None:
-        _add_route(_cls, _cls.policy.need)
+        _add_command(_cls, _cls.policy.need)

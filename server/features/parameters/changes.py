@@ -22,13 +22,15 @@ from robot_runtime.errors import RefusedError
 from server.features.parameters.schemas import Change, ChangedValue, LeftOut, Restored
 from server.platform.models import ParameterChangeRow
 from server.platform.store import Store, StoreError
-from server.stream.bridge import Bridge
+from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
 SHOWN = 100
 CHANGES_MOST = 1000
 
+COMMAND_ERRORS = (RuntimeSilentError, {409: "The runtime refuses"})
+"""Errors of an operation that sends a command to the robot."""
 
 Send = Callable[[RobotCommand], Awaitable[None]]
 

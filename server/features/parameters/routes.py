@@ -1,15 +1,14 @@
-"""Parameters of runtime and firmware: values, history, undo, and profiles kept under names."""
+"""Operations on parameters of runtime and firmware: values, history, undo, profiles."""
 
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from robot_runtime.contract.commands import ParametersCommand
 from robot_runtime.contract.documents import Parameters
 from robot_runtime.errors import RefusedError
-from server.features.parameters.changes import Changes
+from server.features.parameters.changes import COMMAND_ERRORS, Changes
 from server.features.parameters.profiles import (
     ProfileError,
     Profiles,
@@ -28,103 +27,67 @@ from server.features.parameters.schemas import (
     Undo,
 )
 from server.http.dependencies import Provided
-from server.http.problems import COMMAND, SILENT, answers
+from server.http.operations import Identifier, Operations
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import Need, needs
-from server.platform.models import IDENTIFIER_MAX
-from server.platform.store import StoreError
-from server.stream.bridge import Bridge
+from server.http.sign_in.policy import Need
+from server.stream.bridge import Bridge, RuntimeSilentError
 
-UNKNOWN = answers(UnknownProfileError)
-STORED = answers(StoreError)
+NAME_TAKEN = {409: "The name is taken"}
 
-router = APIRouter(prefix="/api", tags=["parameters"])
-
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+router = Operations(prefix="/api", tags=["parameters"])
 
 
 async def ask_parameters(bridge: Bridge) -> dict[str, Any]:
-    """As the runtime knows them now. Raises RuntimeSilentError, RefusedError."""
+    """The present parameters of the runtime. Raises RuntimeSilentError, RefusedError."""
     answer = await bridge.query("parameters")
     return {name: answer[name] for name in ("time", "parameters")}
 
 
-@router.get(
-    "/parameters",
-    summary="Everything that may be tuned",
-    operation_id="getParameters",
-    openapi_extra=needs(Need.VIEWER),
-    responses={**answers(_409="A communication test uses the robot's board"), **SILENT},
-    response_model=Parameters,
-)
+@router.operation("GET /parameters", Need.VIEWER, *COMMAND_ERRORS, response_model=Parameters)
 async def get_parameters(bridge: Provided[Bridge]) -> object:
-    """Each with its type, its range, its unit, its meaning and its value, as it is now."""
+    """List all parameters.
+
+    Each with type, range, unit, meaning and present value.
+    """
     return await ask_parameters(bridge)
 
 
-@router.get(
-    "/parameters/changes",
-    summary="Who changed what",
-    operation_id="listParameterChanges",
-    openapi_extra=needs(Need.VIEWER),
-    responses=answers(StoreError),
-)
-async def get_changes(changes: Provided[Changes]) -> list[Change]:
-    """The newest hundred, the newest first."""
+@router.operation("GET /parameters/changes", Need.VIEWER)
+async def list_parameter_changes(changes: Provided[Changes]) -> list[Change]:
+    """List the newest hundred changes of parameters, newest first."""
     return await run_in_threadpool(changes.newest)
 
 
-@router.post(
-    "/parameters/undo",
-    summary="Undo a change",
-    operation_id="undoParameters",
-    openapi_extra=needs(Need.CONTROL),
-    responses=COMMAND,
-)
-async def undo(changes: Provided[Changes], caller: Caller, body: Undo) -> Restored:
-    """Set back what the newest change has changed; then the one before it is the newest."""
+@router.operation("POST /parameters/undo", Need.CONTROL, *COMMAND_ERRORS)
+async def undo_parameters(changes: Provided[Changes], caller: Caller, body: Undo) -> Restored:
+    """Undo the newest change of parameters."""
     return await changes.undo(caller.name, body.change)
 
 
-@router.get(
-    "/profiles",
-    summary="Profiles",
-    operation_id="listProfiles",
-    openapi_extra=needs(Need.VIEWER),
-    responses=STORED,
-)
-async def get_profiles(profiles: Provided[Profiles]) -> list[Profile]:
-    """In alphabetical order, with their values."""
+@router.operation("GET /profiles", Need.VIEWER)
+async def list_profiles(profiles: Provided[Profiles]) -> list[Profile]:
+    """List the profiles with their values, in alphabetical order."""
     return await run_in_threadpool(profiles.list)
 
 
-@router.post(
-    "/profiles",
-    status_code=201,
-    summary="Keep what is in force",
-    operation_id="saveProfile",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**answers(_409="The name is taken"), **SILENT},
-)
+@router.operation("POST /profiles", Need.OPERATOR, RuntimeSilentError, NAME_TAKEN, status_code=201)
 async def save_profile(bridge: Provided[Bridge], profiles: Provided[Profiles], body: NewProfile) -> Profile:
-    """Every parameter as it is now, under a name."""
+    """Save all present parameter values as a profile."""
     listed = await ask_parameters(bridge)
     values = {one["name"]: one["value"] for one in listed["parameters"]}
     return await profiles.save(body.name, body.note, values)
 
 
-@router.post(
-    "/profiles/file",
-    status_code=201,
-    summary="Take a profile from a file",
-    operation_id="importProfile",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**answers(ProfileError, _409="The name is taken"), **SILENT},
+@router.operation(
+    "POST /profiles/file", Need.OPERATOR, ProfileError, RuntimeSilentError, NAME_TAKEN, status_code=201
 )
 async def import_profile(
     bridge: Provided[Bridge], profiles: Provided[Profiles], body: ProfileText
 ) -> Imported:
-    """Keep it as a profile, which changes nothing of the robot. Parameters that are unknown now are told."""
+    """Import a profile from a file.
+
+    The robot's parameters stay unchanged. The answer lists parameters that this robot does not know.
+    """
     found = read_file(body.text)
     listed = await ask_parameters(bridge)
     profile = await profiles.save(found.name, found.note, found.parameters)
@@ -132,32 +95,24 @@ async def import_profile(
     return Imported(profile=profile, unknown=[name for name in found.parameters if name not in known])
 
 
-@router.get(
-    "/profiles/{profile}/file",
-    summary="A profile as a file",
-    operation_id="downloadProfile",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={200: {"content": {"application/json": {}}}, **UNKNOWN, **STORED},
+@router.operation(
+    "GET /profiles/{profile}/file", Need.VIEWER, UnknownProfileError, media_type="application/json"
 )
-async def get_file(profiles: Provided[Profiles], profile: Identifier) -> Response:
-    """JSON, which another robot takes too."""
+async def download_profile(profiles: Provided[Profiles], profile: Identifier) -> Response:
+    """Download a profile as a JSON file."""
     found = await run_in_threadpool(profiles.find, profile)
     headers = {"Content-Disposition": f'attachment; filename="{file_name(found)}"'}
     return Response(write_file(found), media_type="application/json", headers=headers)
 
 
-@router.post(
-    "/profiles/{profile}/restore",
-    summary="Bring a profile into force",
-    operation_id="restoreProfile",
-    openapi_extra=needs(Need.CONTROL),
-    responses={**UNKNOWN, **COMMAND},
-)
+@router.operation("POST /profiles/{profile}/restore", Need.CONTROL, UnknownProfileError, *COMMAND_ERRORS)
 async def restore_profile(
     profiles: Provided[Profiles], changes: Provided[Changes], caller: Caller, profile: Identifier
 ) -> Restored:
-    """All of its parameters that can be set now; what is unknown or out of range is left out, and said."""
+    """Restore a profile.
+
+    Sets all of its parameters that can be set now. The answer lists those that are unknown or out of range.
+    """
     found = await run_in_threadpool(profiles.find, profile)
     if not found.values:
         raise RefusedError(f"The profile “{found.name}” holds no parameters.")
@@ -165,14 +120,7 @@ async def restore_profile(
     return await changes.command(caller.name, body, why=f"Profile “{found.name}”")
 
 
-@router.delete(
-    "/profiles/{profile}",
-    status_code=204,
-    summary="Delete a profile",
-    operation_id="deleteProfile",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORED},
-)
+@router.operation("DELETE /profiles/{profile}", Need.OPERATOR, UnknownProfileError)
 async def delete_profile(profiles: Provided[Profiles], profile: Identifier) -> None:
-    """For good."""
+    """Delete a profile."""
     await profiles.delete(profile)

@@ -1,6 +1,6 @@
 """Scenarios: those there are, checking, running, cancelling."""
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import ConfigError
@@ -19,32 +19,30 @@ from server.features.scenarios.schemas import (
     summarize,
 )
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import answers
+from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import Need, needs
+from server.http.sign_in.policy import Need
 from server.platform.settings import Settings
 
-REFUSED = answers(_409="Refused now", _422="The scenario cannot be run")
-START = {**REFUSED, **answers(_423="On the robot: control is with somebody else")}
+REFUSED = {409: "Refused now", 422: "The scenario cannot be run"}
 
-router = APIRouter(prefix="/api/scenarios", tags=["scenarios"], route_class=Operation)
+router = Operations(prefix="/api/scenarios", tags=["scenarios"])
 
 
-@router.get("", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET", Need.VIEWER)
 def list_scenarios(settings: Provided[Settings]) -> list[ScenarioText]:
     """List the scenarios: those of the program, the thesis's own first, then those of the data folder."""
     return library.list_scenarios(settings.data.scenarios)
 
 
-@router.post("", status_code=201, openapi_extra=needs(Need.OPERATOR), responses=REFUSED)
+@router.operation("POST", Need.OPERATOR, REFUSED, status_code=201)
 async def keep_scenario(settings: Provided[Settings], document: ScenarioDocument) -> ScenarioSummary:
     """Store a scenario in the data folder under its own name, replacing one of that name."""
     folder = settings.data.scenarios
     return summarize(await run_in_threadpool(library.keep_scenario, folder, document.text))
 
 
-@router.post("/check", openapi_extra=needs(Need.VIEWER))
+@router.operation("POST /check", Need.VIEWER)
 def check_scenario(document: ScenarioDocument) -> ScenarioCheck:
     """Check a scenario: its problems field by field, or its summary."""
     try:
@@ -53,13 +51,19 @@ def check_scenario(document: ScenarioDocument) -> ScenarioCheck:
         return ScenarioCheck(problems=list(problem.problems), summary=None)
 
 
-@router.get("/state", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /state", Need.VIEWER)
 async def get_scenario_state(scenarios: Provided[ScenarioRunner]) -> ScenarioState:
     """Return the active run, the queue and the last run, as on the live socket."""
     return scenarios.state()
 
 
-@router.post("/runs", status_code=201, openapi_extra=needs(Need.OPERATOR), responses=START)
+@router.operation(
+    "POST /runs",
+    Need.OPERATOR,
+    REFUSED,
+    {423: "On the robot: control is with somebody else"},
+    status_code=201,
+)
 async def start_scenario(
     request: Request, scenarios: Provided[ScenarioRunner], caller: Caller, body: ScenarioStart
 ) -> ScenarioStarted:
@@ -70,7 +74,7 @@ async def start_scenario(
     return ScenarioStarted(run=run)
 
 
-@router.post("/cancel", status_code=204, openapi_extra=needs(Need.OPERATOR))
+@router.operation("POST /cancel", Need.OPERATOR)
 async def cancel_scenario(scenarios: Provided[ScenarioRunner]) -> None:
     """Cancel the active run and clear the queue; recordings stay."""
     scenarios.cancel()

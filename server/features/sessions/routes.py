@@ -3,7 +3,7 @@
 import json
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query
+from fastapi import Depends, Query
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 
@@ -29,26 +29,23 @@ from server.features.sessions.storage import Storage, measure
 from server.features.sessions.timeline import Timeline, read_timeline
 from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import answers
-from server.http.sign_in.policy import Need, needs
+from server.http.operations import Identifier, Operations
+from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
-from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
-from server.platform.store import Store, StoreError
+from server.platform.store import Store
 from server.stream.bridge import Bridge
 
 SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
 """The header that says how many samples could not be given."""
 
-router = APIRouter(prefix="/api", tags=["sessions"], route_class=Operation)
+router = Operations(prefix="/api", tags=["sessions"])
 
-UNKNOWN = answers(UnknownSessionError)
-STORING = answers(ConflictError, StoreError)
-UNKNOWN_MARK = answers(_404="There is no such session, or it has no such mark")
 
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+NO_BOOKMARK = {404: "There is no such session, or it has no such bookmark"}
+
+
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 
 
@@ -60,7 +57,7 @@ OpenRecording = Annotated[Recording, Depends(_open)]
 """The recording of the session in the path, also from the bin."""
 
 
-@router.get("/sessions", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /sessions", Need.VIEWER)
 def list_sessions(
     catalogue: Provided[Catalogue],
     search: Annotated[
@@ -74,7 +71,7 @@ def list_sessions(
     return catalogue.list(search, tag or (), origin, deleted=deleted)
 
 
-@router.post("/sessions", status_code=201, openapi_extra=needs(Need.OPERATOR), responses=STORING)
+@router.operation("POST /sessions", Need.OPERATOR, ConflictError, status_code=201)
 async def start_session(
     bridge: Provided[Bridge],
     monitor: Provided[HealthMonitor],
@@ -96,13 +93,13 @@ async def start_session(
     return await recorder.start(row)
 
 
-@router.get("/sessions/{session}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /sessions/{session}", Need.VIEWER, UnknownSessionError)
 def get_session(catalogue: Provided[Catalogue], session: Identifier) -> SessionDetail:
     """Return a session with everything that is known of it except its samples; also from the bin."""
     return catalogue.detail(session)
 
 
-@router.patch("/sessions/{session}", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
+@router.operation("PATCH /sessions/{session}", Need.OPERATOR, UnknownSessionError, ConflictError)
 async def change_session(
     catalogue: Provided[Catalogue], session: Identifier, body: SessionChanges
 ) -> Session:
@@ -110,7 +107,7 @@ async def change_session(
     return await catalogue.change(session, **body.model_dump())
 
 
-@router.post("/sessions/{session}/stop", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
+@router.operation("POST /sessions/{session}/stop", Need.OPERATOR, UnknownSessionError, ConflictError)
 async def stop_session(
     catalogue: Provided[Catalogue], recorder: Provided[Recorder], session: Identifier
 ) -> Session:
@@ -119,26 +116,19 @@ async def stop_session(
     return await recorder.stop(session)
 
 
-@router.delete("/sessions/{session}", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING})
+@router.operation("DELETE /sessions/{session}", Need.OPERATOR, UnknownSessionError, ConflictError)
 async def delete_session(catalogue: Provided[Catalogue], session: Identifier) -> Session:
     """Move a session to the bin, until it is purged or `sessions.undo_days` have passed."""
     return await catalogue.delete(session)
 
 
-@router.post(
-    "/sessions/{session}/restore", openapi_extra=needs(Need.OPERATOR), responses={**UNKNOWN, **STORING}
-)
+@router.operation("POST /sessions/{session}/restore", Need.OPERATOR, UnknownSessionError, ConflictError)
 async def restore_session(catalogue: Provided[Catalogue], session: Identifier) -> Session:
     """Take a session out of the bin."""
     return await catalogue.restore(session)
 
 
-@router.post(
-    "/sessions/{session}/purge",
-    status_code=204,
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN, **STORING},
-)
+@router.operation("POST /sessions/{session}/purge", Need.OPERATOR, UnknownSessionError, ConflictError)
 async def purge_session(
     catalogue: Provided[Catalogue], retention: Provided[RetentionWorker], session: Identifier
 ) -> None:
@@ -147,11 +137,8 @@ async def purge_session(
     retention.wake()
 
 
-@router.get(
-    "/sessions/{session}/thumbnail",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={200: {"content": {"image/jpeg": {}}, "description": "The picture"}, **UNKNOWN},
+@router.operation(
+    "GET /sessions/{session}/thumbnail", Need.VIEWER, UnknownSessionError, media_type="image/jpeg"
 )
 def get_thumbnail(
     recording: OpenRecording, time: Annotated[float, Query(description="s since the start")]
@@ -162,11 +149,8 @@ def get_thumbnail(
     raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
 
 
-@router.post(
-    "/sessions/{session}/markers",
-    status_code=201,
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN_MARK, **STORING},
+@router.operation(
+    "POST /sessions/{session}/markers", Need.OPERATOR, NO_BOOKMARK, ConflictError, status_code=201
 )
 async def add_mark(
     markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
@@ -180,11 +164,7 @@ async def add_mark(
     return mark
 
 
-@router.patch(
-    "/sessions/{session}/markers/{mark}",
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN_MARK, **STORING},
-)
+@router.operation("PATCH /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
 async def change_mark(
     markers: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
 ) -> Bookmark:
@@ -192,12 +172,7 @@ async def change_mark(
     return await markers.change(session, mark, body.time, body.text)
 
 
-@router.delete(
-    "/sessions/{session}/markers/{mark}",
-    status_code=204,
-    openapi_extra=needs(Need.OPERATOR),
-    responses={**UNKNOWN_MARK, **STORING},
-)
+@router.operation("DELETE /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)
 async def remove_mark(
     markers: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, mark: Identifier
 ) -> None:
@@ -206,20 +181,14 @@ async def remove_mark(
     catalogue.notify(session)
 
 
-@router.get("/sessions/{session}/timeline", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError)
 def get_timeline(recording: OpenRecording) -> Timeline:
     """Return a session's events, bookmarks and gaps."""
     return read_timeline(recording)
 
 
-@router.get(
-    "/sessions/{session}/blocks",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=Response,
-    responses={
-        200: {"content": {"application/octet-stream": {}}, "description": "Blocks, as on the live socket"},
-        **UNKNOWN,
-    },
+@router.operation(
+    "GET /sessions/{session}/blocks", Need.VIEWER, UnknownSessionError, media_type="application/octet-stream"
 )
 def get_blocks(
     recording: OpenRecording,
@@ -241,7 +210,7 @@ def get_blocks(
     return Response(stretch.data, media_type="application/octet-stream", headers=headers)
 
 
-@router.get("/storage", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /storage", Need.VIEWER)
 def get_storage(store: Provided[Store], settings: Provided[Settings]) -> Storage:
     """Return the use of the disk that holds the data folder, and the rules of retention."""
     return measure(store, settings)

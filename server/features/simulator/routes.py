@@ -1,19 +1,18 @@
-"""The simulator of a robot with its hardware in the loop: on this computer, or left to another one."""
+"""Operations on the simulator: the computer that it runs on, and the bystander's view."""
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.errors import RefusedError
 from server.http.dependencies import Provided
-from server.http.problems import answers
-from server.http.sign_in.policy import Need, needs
+from server.http.operations import Operations
+from server.http.sign_in.policy import Need
 from server.platform.settings import Settings
 from server.processes.supervisor import SIMULATION, SIMULATION_ELSEWHERE, ProcessSupervisor
-from server.stream.bridge import Bridge
+from server.stream.bridge import Bridge, RuntimeSilentError
 
-router = APIRouter(prefix="/api")
+router = Operations(prefix="/api")
 
 
 class Place(BaseModel):
@@ -37,23 +36,18 @@ class View(BaseModel):
     distance: Annotated[FiniteFloat, Field(ge=0.4, le=15, description="m")]
 
 
-@router.put(
-    "/simulator",
-    status_code=204,
-    summary="Start or end the simulator on this computer",
-    operation_id="putSimulator",
-    tags=["robot"],
-    openapi_extra=needs(Need.CONTROL),
-    responses=answers(_409="The robot is not in the loop", _423="Control is with somebody else"),
-)
+@router.operation("PUT /simulator", Need.CONTROL, {409: "The robot is not in the loop"}, tags=["robot"])
 async def put_simulator(
     settings: Provided[Settings], processes: Provided[ProcessSupervisor], body: Place
 ) -> None:
-    """Only with hardware in the loop; ending it stops an armed robot, for then nobody tells its depth."""
+    """Start or end the simulator on this computer.
+
+    Only with hardware in the loop. Ending it disarms the robot, which then has no depth.
+    """
     if not settings.in_the_loop:
         raise RefusedError(
-            "Only a robot with its hardware in the loop can do with or without this computer's simulator; "
-            f"robot.mode is {settings.mode}."
+            "The simulator can be moved only with hardware in the loop: set robot.mode to hil in robot.toml "
+            f"(it is {settings.mode})."
         )
     for name in SIMULATION:
         if body.here:
@@ -62,20 +56,10 @@ async def put_simulator(
             await processes.pause(name, SIMULATION_ELSEWHERE)
 
 
-@router.put(
-    "/scene/view",
-    status_code=204,
-    summary="Choose the bystander's view",
-    operation_id="putView",
-    tags=["scene"],
-    openapi_extra=needs(Need.OPERATOR),
-    responses=answers(
-        _409="The scene refuses",
-        _422="The request is not valid",
-        _503="The scene is not running",
-        _504="The scene did not answer within 2 s",
-    ),
-)
+@router.operation("PUT /scene/view", Need.OPERATOR, RuntimeSilentError, tags=["scene"])
 async def put_view(bridge: Provided[Bridge], view: View) -> None:
-    """Where the pictures of topic `observer` are taken from."""
+    """Choose the bystander's view.
+
+    The pictures of the topic `observer` are taken from there.
+    """
     await bridge.scene("view", view.model_dump())

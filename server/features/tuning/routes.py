@@ -1,11 +1,9 @@
 """Tuning: step responses and relay experiments on the running robot, and what is kept of them."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Path
 from fastapi.concurrency import run_in_threadpool
 
 from robot_runtime.contract.limits import LoopName
+from server.features.parameters.changes import COMMAND_ERRORS
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import UnknownTuningRunError
@@ -18,52 +16,45 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.dependencies import Provided
-from server.http.operation import Operation
-from server.http.problems import COMMAND, answers
+from server.http.operations import Identifier, Operations
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import Need, needs
+from server.http.sign_in.policy import Need
 from server.platform.errors import ConflictError
-from server.platform.models import IDENTIFIER_MAX
-from server.platform.store import StoreError
 
-UNKNOWN = answers(UnknownTuningRunError, ConflictError, StoreError)
-
-router = APIRouter(prefix="/api/tuning", tags=["tuning"], route_class=Operation)
-
-Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+router = Operations(prefix="/api/tuning", tags=["tuning"])
 
 
-@router.get("/state", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /state", Need.VIEWER)
 async def get_tuning_state(tuning: Provided[TuningRunner]) -> TuningState:
     """Return the active run and the last one, as on the live socket."""
     return tuning.state()
 
 
-@router.get("/runs", openapi_extra=needs(Need.VIEWER))
+@router.operation("GET /runs", Need.VIEWER)
 def list_tuning_runs(tuning: Provided[TuningRunner], loop: LoopName = "depth") -> TuningRuns:
     """List the runs on a loop without their curves, newest first, and the meanings of their figures."""
     return TuningRuns(figures=meanings(loop), runs=list(tuning.runs.list(loop)))
 
 
-@router.post("/runs", status_code=201, openapi_extra=needs(Need.CONTROL), responses=COMMAND)
+@router.operation("POST /runs", Need.CONTROL, *COMMAND_ERRORS, status_code=201)
 async def start_tuning_run(tuning: Provided[TuningRunner], caller: Caller, body: Start) -> TuningStarted:
     """Start a run on the armed robot, in automatic; afterwards the loop goes on as before."""
     return TuningStarted(run=await tuning.start(caller.name, body))
 
 
-@router.post("/stop", status_code=204, openapi_extra=needs(Need.CONTROL), responses=COMMAND)
+@router.operation("POST /stop", Need.CONTROL, *COMMAND_ERRORS)
 async def stop_tuning_run(tuning: Provided[TuningRunner]) -> None:
     """Stop the active run and store what was measured; the robot stays armed."""
     await tuning.stop()
 
 
-@router.get("/runs/{run}", openapi_extra=needs(Need.VIEWER), responses=UNKNOWN)
+@router.operation("GET /runs/{run}", Need.VIEWER, UnknownTuningRunError, ConflictError)
 def get_tuning_run(tuning: Provided[TuningRunner], run: Identifier) -> TuningRunDetail:
     """Return a run with its curve, and the gains proposed from a relay experiment."""
     return tuning.runs.detail(run)
 
 
-@router.patch("/runs/{run}", openapi_extra=needs(Need.OPERATOR), responses=UNKNOWN)
+@router.operation("PATCH /runs/{run}", Need.OPERATOR, UnknownTuningRunError, ConflictError)
 async def rename_tuning_run(
     tuning: Provided[TuningRunner], run: Identifier, body: TuningName
 ) -> TuningRunDetail:
@@ -73,7 +64,7 @@ async def rename_tuning_run(
     return await run_in_threadpool(runs.detail, run)
 
 
-@router.delete("/runs/{run}", status_code=204, openapi_extra=needs(Need.OPERATOR), responses=UNKNOWN)
+@router.operation("DELETE /runs/{run}", Need.OPERATOR, UnknownTuningRunError, ConflictError)
 async def delete_tuning_run(tuning: Provided[TuningRunner], run: Identifier) -> None:
     """Delete a run for good; refused while it runs."""
     await tuning.delete(run)

@@ -1,71 +1,70 @@
-"""The vision node's settings, and the colour at a place in its picture."""
+"""Operations on the vision node: its settings, and the colour at a place in its picture."""
 
-from fastapi import APIRouter
+import tomllib
+from typing import Any
+
+import tomli_w
 from fastapi.responses import PlainTextResponse
 
-from robot_runtime.contract.parsing import parse
+from robot_runtime.config import VisionConfig
+from robot_runtime.contract.limits import ConfigError
+from robot_runtime.contract.parsing import parse, read_value
 from robot_runtime.contract.vision_settings import VisionSettings
 from server.features.vision.schemas import PickedColour, PickPlace, VisionSetup, VisionText
-from server.features.vision.toml_document import read_document, write_document
 from server.http.dependencies import Provided
-from server.http.problems import SILENT, answers
-from server.http.sign_in.policy import Need, needs
-from server.stream.bridge import Bridge
+from server.http.operations import Operations
+from server.http.sign_in.policy import Need
+from server.stream.bridge import Bridge, RuntimeSilentError
 
-router = APIRouter(prefix="/api/vision", tags=["vision"])
+router = Operations(prefix="/api/vision", tags=["vision"])
 
 
-@router.get(
-    "",
-    summary="How the vision node looks",
-    operation_id="getVision",
-    openapi_extra=needs(Need.VIEWER),
-    responses=SILENT,
-    response_model=VisionSetup,
-)
+@router.operation("GET", Need.VIEWER, RuntimeSilentError, response_model=VisionSetup)
 async def get_vision(bridge: Provided[Bridge]) -> object:
-    """All settings that may change while it looks, and what robot.toml says of them."""
+    """Return the vision settings now, and those of robot.toml."""
     answer = await bridge.query("vision")
     return {name: answer[name] for name in ("settings", "configured")}
 
 
-@router.post(
-    "/pick",
-    summary="The colour at a place in the picture",
-    operation_id="pickColour",
-    openapi_extra=needs(Need.VIEWER),
-    responses={**answers(_409="There is no colour, or no picture"), **SILENT},
-)
-async def pick(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
-    """A range for what is there in the newest picture. It changes nothing."""
+@router.operation("POST /pick", Need.VIEWER, {409: "There is no colour, or no picture"}, RuntimeSilentError)
+async def pick_colour(bridge: Provided[Bridge], place: PickPlace) -> PickedColour:
+    """Return the colour range at a place in the newest picture.
+
+    Changes nothing.
+    """
     answer = await bridge.query("pick", place.model_dump())
     return PickedColour.model_validate(answer, extra="ignore")
 
 
-@router.get(
-    "/toml",
-    summary="The settings as a part of robot.toml",
-    operation_id="downloadVision",
-    openapi_extra=needs(Need.VIEWER),
-    response_class=PlainTextResponse,
-    responses=SILENT,
-)
-async def download(bridge: Provided[Bridge]) -> PlainTextResponse:
-    """The table [vision], to be kept or to be put into robot.toml."""
+@router.operation("GET /toml", Need.VIEWER, RuntimeSilentError, response_class=PlainTextResponse)
+async def download_vision(bridge: Provided[Bridge]) -> PlainTextResponse:
+    """Download the vision settings as the table [vision] of robot.toml."""
     answer = await bridge.query("vision")
-    return PlainTextResponse(
-        write_document(answer["settings"]),
-        headers={"Content-Disposition": 'attachment; filename="vision.toml"'},
-    )
+    headers = {"Content-Disposition": 'attachment; filename="vision.toml"'}
+    return PlainTextResponse(tomli_w.dumps({"vision": answer["settings"]}), headers=headers)
 
 
-@router.post(
-    "/read",
-    summary="Read the settings in a robot.toml",
-    operation_id="readVision",
-    openapi_extra=needs(Need.VIEWER),
-    responses=answers(_422="There are no settings in it that can be used"),
-)
-def read(document: VisionText) -> VisionSettings:
-    """The settings of the document's table [vision]. Changes nothing."""
+@router.operation("POST /read", Need.VIEWER, {422: "There are no settings in it that can be used"})
+def read_vision(document: VisionText) -> VisionSettings:
+    """Read the vision settings in a robot.toml.
+
+    Changes nothing.
+    """
     return parse(VisionSettings, read_document(document.text))
+
+
+def read_document(text: str) -> dict[str, Any]:
+    """The settings of the table [vision] in robot.toml, as `VisionSettings.table` gives them.
+
+    Settings that are not named have their defaults. Raises ConfigError if there is no such table, or if it is
+    not valid.
+    """
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise ConfigError(f"This is not TOML: {problem}.") from problem
+    if "vision" not in document:
+        raise ConfigError("There is no table [vision] in it.")
+    # A whole robot.toml also names the camera, which cannot be changed while the robot runs.
+    config: VisionConfig = read_value(VisionConfig, document["vision"], "vision")
+    return config.settings.table()

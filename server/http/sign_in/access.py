@@ -110,10 +110,6 @@ class Access:
             self._close_sockets(number, f"The role is now {device.role}.")
         self._notify("access", "info", f"“{by.name}” made “{device.name}” {_with_article(role)}.")
 
-    async def rename(self, number: int, name: str) -> None:
-        """Raises UnknownDeviceError, StoreError."""
-        await self.devices.rename(number, name)
-
     async def revoke(self, number: int, by: Identity) -> None:
         """Revoke a device, also on its live sockets.
 

@@ -4,7 +4,6 @@ Both live in memory: what nobody used before the server ended is void.
 """
 
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import dataclass
 from hmac import compare_digest
 from math import ceil
@@ -38,13 +37,9 @@ class TooManyTriesError(ApiError):
     status = 429
 
     def __init__(self, seconds: float) -> None:
-        self.seconds = ceil(seconds)
-        super().__init__(f"Too many wrong codes have been tried. Try again in {_in_words(self.seconds)}.")
-
-    @property
-    def headers(self) -> Mapping[str, str]:
-        """When to try again, s."""
-        return {"retry-after": str(self.seconds)}
+        wait = ceil(seconds)
+        super().__init__(f"Too many wrong codes have been tried. Try again in {_in_words(wait)}.")
+        self.headers = {"retry-after": str(wait)}
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,7 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.errors import RefusedError
 from server.features.lease.lease import NotInControlError
 from server.features.sessions.recording import RecordingError
-from server.features.sessions.session import UnknownSessionError
 from server.http.error_handlers import add_error_handlers
-from server.http.problems import answers
 from server.http.sign_in.pairing_codes import TooManyTriesError
 from server.platform.errors import ApiError
 from server.platform.store import StoreError
@@ -74,12 +72,3 @@ def test_too_many_tries_say_when_to_try_again() -> None:
 def test_any_other_error_tells_nothing_of_the_inside() -> None:
     answer = ask(ZeroDivisionError("secret"))
     assert (answer.status_code, answer.text) == (500, "Internal Server Error")
-
-
-def test_documented_answers_come_from_the_errors() -> None:
-    found = answers(TeapotError, UnknownSessionError, _409="Refused now")
-    assert {status: answer["description"] for status, answer in found.items()} == {
-        418: "It is a teapot",
-        404: "There is no such session",
-        409: "Refused now",
-    }

@@ -1,0 +1,77 @@
+"""Operations of the HTTP interface: routes that declare their need; their functions give name and texts."""
+
+from collections.abc import Callable, Mapping
+from inspect import cleandoc
+from typing import Annotated, Any, TypeVar
+
+from fastapi import APIRouter, Path
+from pydantic import BaseModel
+from starlette.responses import Response
+
+from server.http.sign_in.policy import Need, needs
+from server.platform.errors import ApiError
+from server.platform.models import IDENTIFIER_MAX
+
+Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
+Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
+"""The number of a row of the database, in a path."""
+Errors = type[ApiError] | Mapping[int, str]
+"""Errors of an operation: a class of them, or descriptions by status."""
+
+
+class Problem(BaseModel):
+    """An error: what happened, why, and what to do."""
+
+    detail: str
+
+
+EVERYWHERE: dict[int | str, dict[str, Any]] = {
+    "4XX": {
+        "model": Problem,
+        "description": "Refused: not signed in (401), not allowed or from elsewhere (403), too large (413), "
+        "not valid (422)",
+    },
+    503: {"model": Problem, "description": "Something that the server needs does not work"},
+}
+"""The answers that every operation may give."""
+
+
+class Operations(APIRouter):
+    """The operations of one room."""
+
+    def operation(
+        self, place: str, need: Need, *errors: Errors, media_type: str = "", **options: Any
+    ) -> Callable[[Endpoint], Endpoint]:
+        """Add the operation at `place`, such as "GET /things".
+
+        Its name is the function's, and its summary the first line of the function's docstring. `media_type`
+        is that of an answer other than JSON. A function that returns None is answered with 204.
+        """
+        method, _, path = place.partition(" ")
+        texts = {423: "Control is with somebody else"} if need is Need.CONTROL else {}
+        for error in errors:
+            texts |= error if isinstance(error, Mapping) else error.answers()
+        responses: dict[int | str, Any] = {
+            status: {"model": Problem, "description": text} for status, text in texts.items()
+        }
+        if media_type:
+            options["response_class"] = Response
+            responses[200] = {"content": {media_type: {}}}
+
+        def add(endpoint: Endpoint) -> Endpoint:
+            first, *words = endpoint.__name__.split("_")
+            if endpoint.__annotations__["return"] is None:
+                options["status_code"] = 204
+            self.add_api_route(
+                path,
+                endpoint,
+                methods=[method],
+                operation_id=first + "".join(map(str.capitalize, words)),
+                summary=cleandoc(endpoint.__doc__ or "").partition("\n")[0].removesuffix("."),
+                openapi_extra=needs(need) | options.pop("openapi_extra", {}),
+                responses=responses,
+                **options,
+            )
+            return endpoint
+
+        return add

@@ -1,0 +1,67 @@
+from typing import Any
+
+from fastapi import FastAPI
+
+from server.features.sessions.session import UnknownSessionError
+from server.http.operations import Operations
+from server.http.sign_in.policy import Need, list_needs
+from server.platform.errors import ApiError
+
+
+class TeapotError(ApiError):
+    """It is a teapot
+
+    What follows the first line is for whoever reads the source.
+    """
+
+    status = 418
+
+
+def describe(router: Operations) -> tuple[FastAPI, dict[str, Any]]:
+    """An application with these operations, and the paths of its document."""
+    app = FastAPI()
+    app.include_router(router, prefix="/api")
+    return app, app.openapi()["paths"]
+
+
+def test_an_operation_is_named_by_its_function_and_described_by_its_docstring() -> None:
+    router = Operations()
+
+    @router.operation("GET /things", Need.OPERATOR)
+    def list_all_things() -> list[int]:
+        """List the things, newest first.
+
+        Old ones are left out.
+        """
+        return []
+
+    @router.operation("DELETE /things", Need.CONTROL)
+    def delete_things() -> None:
+        """Delete them."""
+
+    app, paths = describe(router)
+    things, deletion = paths["/api/things"]["get"], paths["/api/things"]["delete"]
+    assert (things["operationId"], things["summary"]) == ("listAllThings", "List the things, newest first")
+    assert things["description"] == "List the things, newest first.\n\nOld ones are left out."
+    assert set(things["responses"]) == {"200"}
+    assert set(deletion["responses"]) == {"204", "423"}
+    assert list_needs(app.routes) == {"listAllThings": Need.OPERATOR, "deleteThings": Need.CONTROL}
+
+
+def test_documented_answers_come_from_the_errors() -> None:
+    router = Operations()
+
+    @router.operation(
+        "GET /tea", Need.VIEWER, TeapotError, UnknownSessionError, {409: "Refused now"}, media_type="text/tea"
+    )
+    def get_tea() -> str:
+        """Return tea."""
+        return ""
+
+    answers = describe(router)[1]["/api/tea"]["get"]["responses"]
+    assert answers.pop("200")["content"] == {"text/tea": {}}
+    assert {status: answer["description"] for status, answer in answers.items()} == {
+        "418": "It is a teapot",
+        "404": "There is no such session",
+        "409": "Refused now",
+    }
