@@ -21,24 +21,27 @@ STATE_SECONDS = 2.5
 TRUTH_SECONDS = 2.0
 LINK_SECONDS = 3.0
 GRACE_SECONDS = 10.0
-"""How long a part that has just been started may be silent."""
+"""The time for which a part that has just been started may be silent."""
 
+PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene"]
 PartState = Literal["ok", "starting", "failed", "absent"]
+Condition = tuple[PartState, str]
+"""The state of a part, and a sentence about it."""
 
 
 class PartHealth(BaseModel):
-    """One part, and how it does in words."""
+    """A part: its state, and a sentence about it."""
 
-    name: Literal["server", "database", "runtime", "link", "board", "simulator", "scene"]
+    name: PartName
     state: PartState
     text: str
     here: bool | None = Field(
-        default=None, description="of what may be started and ended: whether it runs on this computer"
+        default=None, description="true if a simulator that can be started and ended runs on this computer"
     )
 
 
 class Health(BaseModel):
-    """Everything together: "failed" where a part has failed, else "starting" where one starts, else "ok"."""
+    """The health of all parts: "failed" if one has failed, else "starting" if one starts, else "ok"."""
 
     status: Literal["ok", "starting", "failed"]
     version: str
@@ -47,7 +50,7 @@ class Health(BaseModel):
 
 
 class HealthMonitor:
-    """Keeps the newest block of each topic, and derives the health of each part."""
+    """Derives the health of each part from its process and the newest block of each topic."""
 
     def __init__(self, settings: Settings, clock: Clock, store: Store, parts: ProcessSupervisor) -> None:
         self._settings = settings
@@ -57,12 +60,12 @@ class HealthMonitor:
         self._began = clock.now()
         self._newest: dict[str, tuple[float, Block]] = {}
         self._bytes_received = -1
-        self._bytes_grew: float | None = None
+        self._bytes_grew = float("-inf")
         self._unrenderable = missing()
         self.last_heard = {"runtime": float("-inf"), "simulator": float("-inf")}
-        """s; when anything came from these processes last."""
+        """s; the arrival of the last block from these processes."""
         self.firmware_away: str | None = None
-        """Why the board does not run the robot's firmware, and what to do; None where it does."""
+        """Reason why the board does not run the robot's firmware, and the remedy; None if it does."""
 
     def see(self, block: Block) -> None:
         """Note a block."""
@@ -74,7 +77,7 @@ class HealthMonitor:
             self._see_link(block, now)
 
     def state(self) -> dict[str, Any] | None:
-        """The newest `state` document; None where there has been none that can be read."""
+        """The newest `state` document; None without a readable one."""
         if "state" not in self._newest:
             return None
         try:
@@ -84,24 +87,26 @@ class HealthMonitor:
         return document if isinstance(document, dict) else None
 
     def require_disarmed(self, why: str) -> None:
-        """Raises RefusedError, with this reason, where the robot is armed: heavy work waits until it
-        rests.
-        """
+        """Refuse heavy work while the robot is armed. Raises RefusedError, with the reason `why`."""
         state = self.state()
         if state is not None and state.get("armed"):
             raise RefusedError(f"{why} It is refused while the robot is armed: press STOP first.")
 
     def health(self) -> Health:
         """The health of every part now."""
-        parts = [
-            PartHealth(name="server", state="ok", text="It answers."),
-            self._database(),
-            self._runtime(),
-            self._link(),
-            self._board(),
-            self._simulator(),
-            self._scene(),
-        ]
+        conditions: dict[PartName, Condition] = {
+            "server": ("ok", "It answers."),
+            "database": self._database(),
+            "runtime": self._runtime(),
+            "link": self._link(),
+            "board": self._board(),
+            "simulator": self._simulator(),
+            "scene": self._scene(),
+        }
+        parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
+        simulator = self._processes.get("simulator")
+        if self._settings.in_the_loop and simulator is not None:
+            parts[5].here = simulator.state != "paused"
         states = {part.state for part in parts}
         status: Literal["ok", "starting", "failed"] = "ok"
         if "failed" in states:
@@ -117,93 +122,84 @@ class HealthMonitor:
             self._bytes_grew = now
         self._bytes_received = received
 
-    def _database(self) -> PartHealth:
-        problem = self._store.failing
-        if problem is not None:
-            return PartHealth(name="database", state="failed", text=f"Nothing can be stored: {problem}.")
-        return PartHealth(name="database", state="ok", text="It stores.")
+    def _database(self) -> Condition:
+        if self._store.failing is not None:
+            return "failed", f"Nothing can be stored: {self._store.failing}."
+        return "ok", "It stores."
 
-    def _runtime(self) -> PartHealth:
-        part = self._processes.get("runtime")
-        if part is not None and part.state == "failed":
-            return PartHealth(name="runtime", state="failed", text=_say_failed(part))
-        if part is not None and part.state == "paused":
-            return PartHealth(name="runtime", state="absent", text=part.problem)
-        if self._fresh("state", STATE_SECONDS):
-            return PartHealth(name="runtime", state="ok", text="It runs.")
-        return self._silent("runtime", part, "It runs, but says nothing.")
+    def _runtime(self) -> Condition:
+        process = self._processes.get("runtime")
+        if process is not None and process.state == "failed":
+            return "failed", f"It {process.problem}."
+        if process is not None and process.state == "paused":
+            return "absent", process.problem
+        if self._fresh("state", STATE_SECONDS, process):
+            return "ok", "It runs."
+        return self._silent(process, "It runs, but sends nothing.")
 
-    def _link(self) -> PartHealth:
+    def _link(self) -> Condition:
         runtime = self._processes.get("runtime")
         if runtime is not None and runtime.state == "paused":
-            return PartHealth(name="link", state="absent", text=runtime.problem)
-        if not self._fresh("state", STATE_SECONDS):
-            return self._silent("link", runtime, "Unknown: the runtime says nothing.")
+            return "absent", runtime.problem
+        if not self._fresh("state", STATE_SECONDS, runtime):
+            return self._silent(runtime, "Unknown: the runtime sends nothing.")
         state = self.state() or {}
         text = str(state.get("connection", ""))
         if state.get("connected") is True:
-            return PartHealth(name="link", state="ok", text=text)
+            return "ok", text
         if self.firmware_away is not None:
-            return PartHealth(name="link", state="failed", text=self.firmware_away)
-        return self._silent("link", runtime, text)
+            return "failed", self.firmware_away
+        return self._silent(runtime, text)
 
-    def _board(self) -> PartHealth:
-        part = self._processes.get("board")
-        if part is not None and part.state == "failed":
-            return PartHealth(name="board", state="failed", text=_say_failed(part))
-        runtime = self._processes.get("runtime")
+    def _board(self) -> Condition:
+        process, runtime = self._processes.get("board"), self._processes.get("runtime")
+        if process is not None and process.state == "failed":
+            return "failed", f"It {process.problem}."
         if runtime is not None and runtime.state == "paused":
-            return PartHealth(name="board", state="absent", text=runtime.problem)
-        now = self._clock.now()
-        if self._bytes_grew is not None and now - self._bytes_grew < LINK_SECONDS:
-            return PartHealth(name="board", state="ok", text="It sends.")
-        return self._silent("board", part or runtime, "Nothing arrives from it.")
+            return "absent", runtime.problem
+        if self._is_recent(self._bytes_grew, LINK_SECONDS, process or runtime):
+            return "ok", "It sends data."
+        return self._silent(process or runtime, "Nothing arrives from it.")
 
-    def _simulator(self) -> PartHealth:
-        health = self._water()
-        part = self._processes.get("simulator")
-        if self._settings.in_the_loop and part is not None:
-            health.here = part.state != "paused"
-        return health
-
-    def _water(self) -> PartHealth:
+    def _simulator(self) -> Condition:
         if self._settings.mode == "robot":
-            return PartHealth(name="simulator", state="absent", text="A real robot swims in real water.")
-        part = self._processes.get("simulator")
-        if part is not None and part.state == "failed":
-            return PartHealth(name="simulator", state="failed", text=_say_failed(part))
-        if part is not None and part.state == "paused" and not self._fresh("truth", TRUTH_SECONDS):
-            return PartHealth(name="simulator", state="absent", text=part.problem)
-        if self._fresh("truth", TRUTH_SECONDS):
-            return PartHealth(name="simulator", state="ok", text="The water is simulated.")
-        return self._silent("simulator", part, "It runs, but the simulated water stands still.")
+            return "absent", "A real robot swims in real water."
+        process = self._processes.get("simulator")
+        if process is not None and process.state == "failed":
+            return "failed", f"It {process.problem}."
+        # Hardware in the loop may be fed by a simulator on another computer.
+        if self._fresh("truth", TRUTH_SECONDS, process):
+            return "ok", "The water is simulated."
+        if process is not None and process.state == "paused":
+            return "absent", process.problem
+        return self._silent(process, "It runs, but the simulated water stands still.")
 
-    def _scene(self) -> PartHealth:
+    def _scene(self) -> Condition:
         if self._settings.mode == "robot":
-            return PartHealth(name="scene", state="absent", text="A real robot sees for itself.")
+            return "absent", "A real robot has a real camera."
         if self._unrenderable is not None:
-            return PartHealth(name="scene", state="absent", text=f"Not rendered: {self._unrenderable}.")
-        part = self._processes.get("scene")
-        if part is None or part.state == "paused":
-            return PartHealth(name="scene", state="absent", text="It does not run on this computer.")
-        if part.state == "failed":
-            return PartHealth(name="scene", state="failed", text=_say_failed(part))
-        if part.state == "running":
-            return PartHealth(name="scene", state="ok", text="It renders on demand.")
-        return self._silent("scene", part, "")
+            return "absent", f"Not rendered: {self._unrenderable}."
+        process = self._processes.get("scene")
+        if process is None or process.state == "paused":
+            return "absent", "It does not run on this computer."
+        if process.state == "failed":
+            return "failed", f"It {process.problem}."
+        if process.state == "running":
+            return "ok", "It renders on demand."
+        return self._silent(process, "")
 
-    def _fresh(self, topic: str, seconds: float) -> bool:
-        return topic in self._newest and self._clock.now() - self._newest[topic][0] < seconds
+    def _fresh(self, topic: str, seconds: float, process: ManagedProcess | None) -> bool:
+        return topic in self._newest and self._is_recent(self._newest[topic][0], seconds, process)
 
-    def _silent(self, name: Any, part: ManagedProcess | None, text: str) -> PartHealth:
-        if part is not None and part.state == "waiting":
-            missing = ", ".join(path.name for path in part.command.needs if not path.exists())
-            return PartHealth(name=name, state="starting", text=f"Waits for {missing or 'its turn'}.")
-        since = self._began if part is None else part.since
-        if (part is None or part.state == "running") and self._clock.now() - since < GRACE_SECONDS:
-            return PartHealth(name=name, state="starting", text=text or "It starts.")
-        return PartHealth(name=name, state="failed", text=text or "It says nothing.")
+    def _is_recent(self, moment: float, seconds: float, process: ManagedProcess | None) -> bool:
+        """True if the moment lies within the last `seconds`, and within the present run of the process."""
+        return self._clock.now() - moment < seconds and (process is None or moment >= process.since)
 
-
-def _say_failed(part: ManagedProcess) -> str:
-    return f"It {part.problem}."
+    def _silent(self, process: ManagedProcess | None, text: str) -> Condition:
+        if process is not None and process.state == "waiting":
+            missing = ", ".join(path.name for path in process.command.needs if not path.exists())
+            return "starting", f"It waits for {missing or 'its turn'}."
+        since = self._began if process is None else process.since
+        if (process is None or process.state == "running") and self._clock.now() - since < GRACE_SECONDS:
+            return "starting", text or "It starts."
+        return "failed", text or "It sends nothing."

@@ -76,6 +76,22 @@ def test_a_part_that_ended_has_failed_whatever_was_heard(rig: MonitorRig) -> Non
     assert rig.status == "failed"
 
 
+def test_a_process_that_was_started_again_is_starting_until_it_sends(rig: MonitorRig) -> None:
+    rig.run_all()
+    rig.clock.forward(60)
+    rig.receive(0)
+    rig.receive(1)
+    assert rig.status == "ok"
+    rig.clock.forward(0.1)
+    for name in ("simulator", "runtime", "board"):
+        for state in ("failed", "waiting", "running"):
+            rig.parts[name]._set(state)
+            assert rig.state(name) == ("failed" if state == "failed" else "starting"), state
+    rig.clock.forward(0.1)
+    rig.receive(2)
+    assert [rig.state(name) for name in ("simulator", "runtime", "link", "board")] == ["ok"] * 4
+
+
 def test_what_is_lent_is_absent_and_not_failed(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)
