@@ -97,7 +97,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/compare/lines"): "viewer",
     ("GET", "/api/compare/report"): "viewer",
     ("GET", "/api/exports"): "viewer",
-    ("POST", "/api/exports"): "operator",
+    ("POST", "/api/exports"): "viewer",
     ("GET", "/api/exports/{export}"): "viewer",
     ("DELETE", "/api/exports/{export}"): "operator",
     ("GET", "/api/exports/{export}/file"): "viewer",

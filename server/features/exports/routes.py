@@ -34,7 +34,7 @@ async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
 
 
 @router.operation(
-    "POST /exports", Need.OPERATOR, UnknownSessionError, ConflictError, ExportRequestError, status_code=201
+    "POST /exports", Need.VIEWER, UnknownSessionError, ConflictError, ExportRequestError, status_code=201
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
