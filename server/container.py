@@ -209,7 +209,7 @@ class Container:
             await self.arming.close()
             await self._end_session()
             await self.bridge.close()
-            await self.access.close()
+            await self.access.devices.close()
             await asyncio.to_thread(self.store.close)
 
     async def _catch_up(self, interrupted: InterruptedSession | None) -> None:

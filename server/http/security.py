@@ -1,17 +1,19 @@
-"""Checks of Host and Origin, and headers that bind the page.
+"""Checks of Host and Origin, security headers, and refusals before the application sees a request.
 
-Host guards against DNS rebinding, where a foreign name is made to point here; Origin against foreign pages
-in the operator's browser. Nothing is trusted by its address, and X-Forwarded-* are not looked at.
+The check of Host guards against DNS rebinding, where a foreign name points here; that of Origin against
+foreign pages in the operator's browser. No address is trusted, and X-Forwarded-* are ignored.
 """
 
+import json
 from collections.abc import Collection
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from server.http.refusal import SAFE_METHODS, refuse
-
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+POLICY_VIOLATION = 1008
+"""WebSocket close code for a client that breaks the rules."""
 BODY_BYTES_MAX = 65_536
 FRAMED = "/api/panels/frame"
 """What the page shows in a frame; it brings a stricter policy of its own (panels/frame.py)."""
@@ -109,3 +111,17 @@ def _has_large_body(scope: Scope) -> bool:
     headers = Headers(scope=scope)
     length = headers.get("content-length", "0")
     return "transfer-encoding" in headers or not length.isdecimal() or int(length) > BODY_BYTES_MAX
+
+
+async def refuse(scope: Scope, receive: Receive, send: Send, status: int, reason: str) -> None:
+    """Answer with a reason, without reading the rest of the request."""
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": POLICY_VIOLATION, "reason": reason})
+        return
+    body = json.dumps({"detail": reason}).encode()
+    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+    if status == 401:
+        headers.append((b"www-authenticate", b"Bearer"))
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})

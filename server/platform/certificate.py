@@ -58,16 +58,8 @@ def _make(folder: Path, settings: Settings) -> None:
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir(mode=0o700)
     names = ",".join(_alternative(name) for name in settings.allowed_hosts)
-    command = [
-        "openssl",
-        "req",
-        "-x509",
-        "-newkey",
-        "ec",
-        "-pkeyopt",
-        "ec_paramgen_curve:prime256v1",
-        "-nodes",
-    ]
+    command = ["openssl", "req", "-x509", "-nodes"]
+    command += ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1"]
     command += ["-keyout", str(part / KEY), "-out", str(part / CERTIFICATE), "-days", str(DAYS)]
     command += ["-subj", f"/CN={settings.robot}", "-addext", f"subjectAltName={names}"]
     command += ["-addext", "extendedKeyUsage=serverAuth"]

@@ -29,116 +29,53 @@ class SetupError(Exception):
     """The server cannot start; the text is one line that says why and what to do."""
 
 
-@dataclass(frozen=True, slots=True)
 class DataFolder:
-    """Everything the server keeps, and the sockets through which the processes meet."""
+    """The paths of everything that the server stores, and of the sockets that its processes share."""
 
-    path: Path
-
-    @property
-    def database(self) -> Path:
-        """Sessions and what was recorded in them."""
-        return self.path / "mucat.db"
-
-    @property
-    def backups(self) -> Path:
-        """Copies of databases of older versions."""
-        return self.path / "backups"
-
-    @property
-    def logs(self) -> Path:
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.database = path / "mucat.db"
+        """Sessions and their samples, and everything else that is stored."""
+        self.backups = path / "backups"
+        """Copies of the database."""
+        self.logs = path / "logs"
         """Output of the supervised processes."""
-        return self.path / "logs"
-
-    @property
-    def exports(self) -> Path:
-        """Sessions as files, to be taken home."""
-        return self.path / "exports"
-
-    @property
-    def imports(self) -> Path:
-        """Archives on their way in."""
-        return self.path / "imports"
-
-    @property
-    def run(self) -> Path:
-        """Sockets, and which processes run; emptied at a start where none of them has been left running."""
-        return self.path / "run"
-
-    @property
-    def lock(self) -> Path:
-        """Held by the one server that works on this folder."""
-        return self.path / "server.lock"
-
-    @property
-    def runner(self) -> Path:
-        """The process that runs the server of this folder."""
-        return self.path / "server.pid"
-
-    @property
-    def address(self) -> Path:
-        """Where the server that works on this folder, or did last, is to be asked: host and port."""
-        return self.path / "server.address"
-
-    @property
-    def token(self) -> Path:
+        self.exports = path / "exports"
+        """Exported files."""
+        self.imports = path / "imports"
+        """Archives while they are imported."""
+        self.run = path / "run"
+        """Sockets and PID files; emptied at a start if none of the processes is left running."""
+        self.lock = path / "server.lock"
+        """Held by the one server that uses this folder."""
+        self.runner = path / "server.pid"
+        """PID file of the process that runs the server."""
+        self.address = path / "server.address"
+        """The address of the server that uses this folder, or used it last."""
+        self.token = path / "server.token"
         """The token of this computer's shell for the running server; readable by its user alone."""
-        return self.path / "server.token"
-
-    @property
-    def tls(self) -> Path:
+        self.tls = path / "tls"
         """The robot's certificate and its key."""
-        return self.path / "tls"
-
-    @property
-    def runtime_socket(self) -> Path:
-        """Where the runtime listens for Zenoh."""
-        return self.run / "runtime.sock"
-
-    @property
-    def server_socket(self) -> Path:
-        """Where the server listens for Zenoh."""
-        return self.run / "server.sock"
-
-    @property
-    def scene_socket(self) -> Path:
-        """Where the scene listens for Zenoh; peers speak with those alone that they are connected to."""
-        return self.run / "scene.sock"
-
-    @property
-    def board_socket(self) -> Path:
-        """Where the emulated board listens for the water."""
-        return self.run / "board.sock"
-
-    @property
-    def board_tty(self) -> Path:
+        self.runtime_socket = self.run / "runtime.sock"
+        """The runtime's Zenoh endpoint."""
+        self.server_socket = self.run / "server.sock"
+        """The server's Zenoh endpoint."""
+        self.scene_socket = self.run / "scene.sock"
+        """The scene's Zenoh endpoint: peers reach only those that they are connected to."""
+        self.board_socket = self.run / "board.sock"
+        """The emulated board's socket for the simulator."""
+        self.board_tty = self.run / "board.tty"
         """The emulated board's end of the serial line."""
-        return self.run / "board.tty"
-
-    @property
-    def firmware_away(self) -> Path:
-        """There while the robot's board may hold anything but its firmware."""
-        return self.path / "firmware-away"
-
-    @property
-    def scenario_before(self) -> Path:
-        """There while a scenario runs on the robot: how everything was before."""
-        return self.path / "scenario-before.json"
-
-    @property
-    def scenarios(self) -> Path:
-        """One's own scenarios."""
-        return self.path / "scenarios"
-
-    @property
-    def panels(self) -> Path:
-        """Panels of one's own for the page (docs/use/panels.md)."""
-        return self.path / "panels"
-
-    @property
-    def board_eeprom(self) -> Path:
+        self.board_eeprom = path / "board.eeprom"
         """The emulated board's EEPROM."""
-        return self.path / "board.eeprom"
+        self.firmware_away = path / "firmware-away"
+        """Exists while the robot's board may hold another program than its firmware."""
+        self.scenario_before = path / "scenario-before.json"
+        """Exists while a scenario runs on the robot: the settings before it."""
+        self.scenarios = path / "scenarios"
+        """Your own scenarios."""
+        self.panels = path / "panels"
+        """Your own panels for the page (docs/use/panels.md)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """A process and its process group, watched by the event loop without a thread.
 
 asyncio's own subprocesses count as ended only when their output is closed, which a grandchild can hold open,
-and know nothing of processes that somebody else has started.
+and do not cover processes that somebody else has started.
 """
 
 import asyncio
@@ -17,14 +17,57 @@ from server.platform.pidfile import started_at
 
 READ_BYTES = 65_536
 KILL_SECONDS = 1.0
-"""Within which the kernel ends what is killed."""
+"""The time that the kernel takes at most to end a killed process."""
 
 
-class Process:
-    """Started at once, in a session and group of its own; what it and its children print goes to `output`.
+class ProcessGroup:
+    """A running process and its group, by the number of both. Call it in the event loop's thread."""
 
-    It reads `given` on its standard input, and nothing without. Raises OSError where it cannot be started.
-    Call it in the event loop's thread, and `close` in the end.
+    def __init__(self, pid: int) -> None:
+        self.pid = pid
+        self._loop = asyncio.get_running_loop()
+        self._ended: asyncio.Future[int | None] = self._loop.create_future()
+        self._handle = os.pidfd_open(pid)
+        self._loop.add_reader(self._handle, self._end)
+
+    async def wait(self) -> int | None:
+        """Wait until the process has ended, and end what it had started.
+
+        Returns the exit status, negative for the signal that ended it; None if it is not available.
+        """
+        return await asyncio.shield(self._ended)
+
+    def signal(self, number: Signals) -> None:
+        """Send a signal to the whole group, if the process still runs."""
+        if not self._ended.done():
+            self._signal_group(number)
+
+    def close(self) -> None:
+        """End the group, and release all resources."""
+        if not self._ended.done():
+            self._end()
+
+    def _reap(self) -> int | None:
+        raise NotImplementedError
+
+    def _end(self) -> None:
+        # Before the process is reaped its number still belongs to its group alone.
+        self._signal_group(SIGKILL)
+        status = self._reap()
+        self._loop.remove_reader(self._handle)
+        os.close(self._handle)
+        self._ended.set_result(status)
+
+    def _signal_group(self, number: Signals) -> None:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self.pid, number)
+
+
+class Process(ProcessGroup):
+    """A process started at once, in a session and group of its own; its output goes to `output`.
+
+    It reads `given` on its standard input, or nothing. Call `close` in the end. Raises OSError if it cannot
+    be started.
     """
 
     def __init__(
@@ -38,29 +81,10 @@ class Process:
             start_new_session=True,
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )
-        self._watched = _ProcessGroup(self._popen.pid, self._reap)
+        super().__init__(self._popen.pid)
 
-    @property
-    def pid(self) -> int:
-        """The process's number, also its group's."""
-        return self._popen.pid
-
-    async def wait(self) -> int:
-        """The exit status; negative for the signal that ended it. What it had started is then ended too."""
-        await self._watched.wait()
-        status: int = self._popen.returncode
-        return status
-
-    def signal(self, number: Signals) -> None:
-        """Send a signal to the whole group, where the process still runs."""
-        self._watched.signal(number)
-
-    def close(self) -> None:
-        """End the group, and release all resources."""
-        self._watched.close()
-
-    def _reap(self) -> None:
-        self._popen.wait()
+    def _reap(self) -> int | None:
+        return self._popen.wait()
 
 
 class PipedProcess(Process):
@@ -74,7 +98,6 @@ class PipedProcess(Process):
         assert self._popen.stdout is not None
         self._pipe = self._popen.stdout.fileno()
         os.set_blocking(self._pipe, False)
-        self._loop = asyncio.get_running_loop()
         self._loop.add_reader(self._pipe, self._read)
 
     def close(self) -> None:
@@ -92,83 +115,32 @@ class PipedProcess(Process):
             else:
                 self._loop.remove_reader(self._pipe)
 
-    def _reap(self) -> None:
-        super()._reap()
+    def _reap(self) -> int | None:
+        status = super()._reap()
         # All of its own output is in the pipe by now, which holds no more than one reading takes.
         self._read()
+        return status
 
 
-class AdoptedProcess:
-    """A process that another server has started, at a time as `started_at` has it; used as `Process`.
+class AdoptedProcess(ProcessGroup):
+    """A process that another server has started, at the time `started` (see `started_at`).
 
-    Raises OSError where it has ended.
+    Its exit status is not available. Raises OSError if it has ended.
     """
 
     def __init__(self, pid: int, started: int) -> None:
-        self.pid = pid
-        self._handle = os.pidfd_open(pid)
+        super().__init__(pid)
         if started_at(pid) != started:
+            self._loop.remove_reader(self._handle)
             os.close(self._handle)
             raise ProcessLookupError(f"process {pid} is another one by now")
-        self._watched = _ProcessGroup(pid, self._wait_killed)
 
-    async def wait(self) -> None:
-        """Wait for its end. Its exit status is not available."""
-        await self._watched.wait()
-
-    def signal(self, number: Signals) -> None:
-        """Send a signal to the whole group, where the process still runs."""
-        self._watched.signal(number)
-
-    def close(self) -> None:
-        """End the group, and release all resources."""
-        self._watched.close()
-
-    def _wait_killed(self) -> None:
+    def _reap(self) -> None:
         select.select([self._handle], [], [], KILL_SECONDS)
-        os.close(self._handle)
-
-
-class _ProcessGroup:
-    """A running process group, by its leader; `reap` is called once, when the leader has ended."""
-
-    def __init__(self, pid: int, reap: Callable[[], None]) -> None:
-        self._pid = pid
-        self._reap = reap
-        self._loop = asyncio.get_running_loop()
-        self._ended: asyncio.Future[None] = self._loop.create_future()
-        self._handle = os.pidfd_open(pid)
-        self._loop.add_reader(self._handle, self._end)
-
-    async def wait(self) -> None:
-        """Wait until the process has ended, and with it what it had started."""
-        await asyncio.shield(self._ended)
-
-    def signal(self, number: Signals) -> None:
-        """Send a signal to the whole group, where the process still runs."""
-        if not self._ended.done():
-            self._signal_group(number)
-
-    def close(self) -> None:
-        """End what still runs, and stop watching."""
-        if not self._ended.done():
-            self._end()
-
-    def _end(self) -> None:
-        # Before the process is reaped its number still belongs to its group alone.
-        self._signal_group(SIGKILL)
-        self._reap()
-        self._loop.remove_reader(self._handle)
-        os.close(self._handle)
-        self._ended.set_result(None)
-
-    def _signal_group(self, number: Signals) -> None:
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._pid, number)
 
 
 def describe_status(status: int | None) -> str:
-    """The end of a process, as words that follow its name; `status` is None where it is unknown."""
+    """The end of a process, in words that follow its name; `status` is None if it is not known."""
     if status is None:
         return "has ended; its exit status is not known, because an earlier server had started it"
     if status >= 0:

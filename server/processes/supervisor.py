@@ -26,7 +26,7 @@ from server.platform.pidfile import end_parts, pid_file
 from server.platform.settings import DataFolder, Settings
 from server.processes.backoff import Backoff, describe_pause
 from server.processes.logs import ProcessLog
-from server.processes.process import AdoptedProcess, Process, describe_status
+from server.processes.process import AdoptedProcess, Process, ProcessGroup, describe_status
 
 log = logging.getLogger(__name__)
 
@@ -84,7 +84,7 @@ class ManagedProcess:
         self._pid_file = pid_file(run, command.name)
         self._clock = clock
         self._see_down = see_down
-        self._process: Process | AdoptedProcess | None = None
+        self._process: ProcessGroup | None = None
         self._backoff = Backoff()
         self._hung = ""
 

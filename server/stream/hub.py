@@ -15,6 +15,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import Kind
 from robot_runtime.transport.blocks import Block
+from server.http.security import POLICY_VIOLATION
 from server.stream.broadcast import BroadcastBuffer, TopicHistory, Totals
 
 HISTORY_SECONDS = 600.0
@@ -33,8 +34,6 @@ STALL_SECONDS = 5.0
 WATCH_SECONDS = 1.0
 TRY_AGAIN_LATER = 1013
 """WebSocket close code for a client that the server cannot go on serving now."""
-POLICY_VIOLATION = 1008
-"""WebSocket close code for a client that may not go on."""
 
 Send = Callable[[bytes | str], Awaitable[None]]
 _NO_PICTURE = (0, b"")

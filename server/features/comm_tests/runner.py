@@ -192,7 +192,7 @@ class CommTestRunner:
             why = "It was cancelled." if self._cancelled else words or f"It {describe_status(status)}."
             raise CommTestError(f"The communication test could not begin. {why}")
 
-    async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int:
+    async def _wait_for(self, process: PipedProcess, output: "_Lines") -> int | None:
         status = await process.wait()
         output.end()
         return status

@@ -23,12 +23,13 @@ from server.features.lease.driving import Drive
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.page import Page
+from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import MESSAGES, Need, may_say
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
-from server.stream.hub import POLICY_VIOLATION, Client, EvictedError, Hub
+from server.stream.hub import Client, EvictedError, Hub
 
 NONSENSE_MAX = 20
 """Messages that are not understood, one after the other, before the socket is closed."""

@@ -1,6 +1,7 @@
 """Operations on people and devices: pairing, roles, tokens, revocation."""
 
 import time
+from dataclasses import asdict
 
 from fastapi import Request, Response
 
@@ -146,12 +147,4 @@ def _me(request: Request, settings: Settings, access: Access, identity: Identity
 
 
 def _describe(caller: Identity, device: Device) -> DeviceDetails:
-    return DeviceDetails(
-        id=device.id,
-        name=device.name,
-        role=device.role,
-        kind=device.kind,
-        paired=device.paired,
-        seen=device.seen,
-        you=caller.device == device.id,
-    )
+    return DeviceDetails(**asdict(device), you=caller.device == device.id)

@@ -130,10 +130,6 @@ class Access:
         await self._remove(self.devices.get(identity.device), "Signed out.")
         self._notify("access", "info", f"“{identity.name}” signed out.")
 
-    async def close(self) -> None:
-        """Nothing is asked any more."""
-        await self.devices.close()
-
     async def _remove(self, device: Device, reason: str) -> None:
         try:
             await self.devices.remove(device.id)

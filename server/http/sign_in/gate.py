@@ -4,7 +4,7 @@ from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from server.http.dependencies import find_service
-from server.http.refusal import SAFE_METHODS, refuse
+from server.http.security import SAFE_METHODS, refuse
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, Identity
 

@@ -86,7 +86,7 @@ class SigningIn(RuleBasedStateMachine):
 
     def end(self) -> None:
         """End the server in order."""
-        self.run(self.access.close())
+        self.run(self.access.devices.close())
         self.store.close()
 
     def teardown(self) -> None:
