@@ -2668,7 +2668,7 @@ export interface components {
         };
         /**
          * Health
-         * @description Everything together: "failed" where a part has failed, else "starting" where one starts, else "ok".
+         * @description The health of all parts: "failed" if one has failed, else "starting" if one starts, else "ok".
          */
         Health: {
             /**
@@ -3267,12 +3267,12 @@ export interface components {
         };
         /**
          * PartHealth
-         * @description One part, and how it does in words.
+         * @description A part: its state, and a sentence about it.
          */
         PartHealth: {
             /**
              * Here
-             * @description of what may be started and ended: whether it runs on this computer
+             * @description true if a simulator that can be started and ended runs on this computer
              */
             here?: boolean | null;
             /**

@@ -7,14 +7,14 @@ from datetime import UTC, datetime
 from typing import Any
 
 from pydantic import BaseModel
-from sqlalchemy import Connection, delete, func, insert, update
+from sqlalchemy import Connection, delete, func, update
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
 from server.features.layouts.document import LayoutDocument
 from server.platform.errors import NotFoundError
 from server.platform.models import LayoutRow
-from server.platform.store import Store
+from server.platform.store import Store, insert_row
 
 LAYOUTS_MOST = 200
 
@@ -73,10 +73,7 @@ class Layouts:
             count = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
             if count >= LAYOUTS_MOST:
                 raise RefusedError(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
-            row = {"name": name, "document": text, "saved": now}
-            key = connection.execute(insert(LayoutRow).values(row)).inserted_primary_key
-            assert key is not None
-            return int(key[0])
+            return insert_row(connection, LayoutRow, {"name": name, "document": text, "saved": now})
 
         return SavedLayout(id=await self._store.write(write), name=name, saved=_utc(now))
 

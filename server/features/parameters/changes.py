@@ -14,14 +14,14 @@ from datetime import UTC, datetime
 from time import time
 from typing import Any
 
-from sqlalchemy import Connection, delete, insert, update
+from sqlalchemy import Connection, delete, update
 from sqlmodel import col, desc, select
 
 from robot_runtime.contract.commands import ParametersCommand, RobotCommand
 from robot_runtime.errors import RefusedError
 from server.features.parameters.schemas import Change, ChangedValue, LeftOut, Restored
 from server.platform.models import ParameterChangeRow
-from server.platform.store import Store, StoreError
+from server.platform.store import Store, StoreError, insert_row
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
@@ -165,13 +165,8 @@ def _newest(rows: Sequence[ParameterChangeRow], run: str) -> ParameterChangeRow 
 
 
 def _insert(connection: Connection, row: ParameterChangeRow) -> None:
-    key = connection.execute(
-        insert(ParameterChangeRow).values(row.model_dump(exclude={"id"}))
-    ).inserted_primary_key
-    assert key is not None
-    connection.execute(
-        delete(ParameterChangeRow).where(col(ParameterChangeRow.id) <= int(key[0]) - CHANGES_MOST)
-    )
+    number = insert_row(connection, ParameterChangeRow, row.model_dump(exclude={"id"}))
+    connection.execute(delete(ParameterChangeRow).where(col(ParameterChangeRow.id) <= number - CHANGES_MOST))
 
 
 def _values(row: ParameterChangeRow) -> list[ChangedValue]:

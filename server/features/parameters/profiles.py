@@ -8,7 +8,7 @@ from time import time
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
-from sqlalchemy import Connection, delete, insert
+from sqlalchemy import Connection, delete
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
@@ -16,7 +16,7 @@ from server import VERSION
 from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Value, Values
 from server.platform.errors import InvalidError, NotFoundError
 from server.platform.models import ProfileRow
-from server.platform.store import Store
+from server.platform.store import Store, insert_row
 
 FORMAT = 1
 """Of profiles' files; a file of another one is refused."""
@@ -73,11 +73,7 @@ class Profiles:
                 )
             if len(names) >= PROFILES_MAX:
                 raise RefusedError(f"There are {PROFILES_MAX} profiles already. Delete some first.")
-            key = connection.execute(
-                insert(ProfileRow).values(row.model_dump(exclude={"id"}))
-            ).inserted_primary_key
-            assert key is not None
-            row.id = int(key[0])
+            row.id = insert_row(connection, ProfileRow, row.model_dump(exclude={"id"}))
             return _show(row)
 
         return await self._store.write(write)

@@ -42,9 +42,7 @@ LEFT_OUT = "Left-Out"
 
 router = Operations(prefix="/api", tags=["sessions"])
 
-
 NO_BOOKMARK = {404: "There is no such session, or it has no such bookmark"}
-
 
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
 

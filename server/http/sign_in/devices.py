@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sqlalchemy import Connection, delete, insert, update
+from sqlalchemy import delete, update
 from sqlmodel import col, select
 
 from robot_runtime.errors import RefusedError
@@ -14,7 +14,7 @@ from server.http.sign_in.identity import Identity, Kind, Role
 from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
 from server.platform.errors import NotFoundError
 from server.platform.models import DeviceRow
-from server.platform.store import Store, StoreError
+from server.platform.store import Store, StoreError, insert_row
 
 log = logging.getLogger(__name__)
 
@@ -95,14 +95,9 @@ class Devices:
         secret = make_token(TOKEN_PREFIX if kind == "program" else "")
         now = self._utc()
         row = DeviceRow(name=name, role=role, kind=kind, secret=digest(secret), paired=now, seen=now)
-
-        def change(connection: Connection) -> int:
-            made = connection.execute(insert(DeviceRow).values(**row.model_dump(exclude={"id"})))
-            assert made.inserted_primary_key is not None
-            number: int = made.inserted_primary_key[0]
-            return number
-
-        return self._keep(await self._store.write(change), row), secret
+        values = row.model_dump(exclude={"id"})
+        number = await self._store.write(lambda connection: insert_row(connection, DeviceRow, values))
+        return self._keep(number, row), secret
 
     async def set_role(self, number: int, role: Role) -> None:
         """Less is allowed from now on, whatever the database says; more once it is stored.
