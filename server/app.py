@@ -28,9 +28,9 @@ from server.http.error_handlers import add_error_handlers
 from server.http.help_pages import HelpPages, make_help_router
 from server.http.operations import EVERYWHERE
 from server.http.page import Page, make_router
-from server.http.security import Guard
+from server.http.security import SecurityMiddleware
 from server.http.sign_in.access import Access
-from server.http.sign_in.gate import Gate
+from server.http.sign_in.middleware import SignInMiddleware
 from server.http.sign_in.tokens import TOKEN_PREFIX, make_token
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
@@ -76,8 +76,8 @@ def create_app(
     )
     app.state.ended = ""
     # What is added last is asked first.
-    app.add_middleware(Gate)
-    app.add_middleware(Guard, allowed_hosts=settings.allowed_hosts, port=settings.port)
+    app.add_middleware(SignInMiddleware)
+    app.add_middleware(SecurityMiddleware, allowed_hosts=settings.allowed_hosts, port=settings.port)
     add_error_handlers(app)
     for module in ROUTES:
         app.include_router(module.router, dependencies=[Depends(admit)], responses=EVERYWHERE)

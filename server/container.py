@@ -12,7 +12,7 @@ from robot_runtime.contract.topics import SENT_BY
 from robot_runtime.control.alarms import Alarms
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
-from server.features.backup.download import Downloads
+from server.features.backup.download import DatabaseDownloads
 from server.features.comm_tests.board_reservation import BoardReservation, RobotBoard
 from server.features.comm_tests.runner import CommTestRunner
 from server.features.comm_tests.runs import CommTestStore
@@ -80,7 +80,7 @@ class Container:
         self._add_comm_tests()
         self._add_tuning()
         self._add_scenarios()
-        self.downloads = Downloads(settings.data)
+        self.downloads = DatabaseDownloads(settings.data)
         self.layouts = Layouts(self.store)
 
     def _add_lease(self) -> None:
@@ -103,7 +103,7 @@ class Container:
     def _add_sessions(self) -> None:
         self.recorder = Recorder(self.store, self.clock, self.notices, self._notify_session)
         self.catalogue = Catalogue(self.store, self.recorder)
-        self.markers = Bookmarks(self.store, self.clock, self.recorder)
+        self.bookmarks = Bookmarks(self.store, self.clock, self.recorder)
         self.retention = RetentionWorker(self.store, self.settings, self.notices, self.clock)
         self.arming = AutoRecorder(self.recorder, self.clock, self.notices, self._armed_row)
         self.jobs = Jobs(self.settings.data, self.store)
@@ -287,7 +287,7 @@ class Container:
 
     async def _beat(self) -> None:
         while True:
-            self.bridge.beat()
+            self.bridge.send_heartbeat()
             await asyncio.sleep(BEAT_SECONDS)
 
     async def _end_session(self) -> None:

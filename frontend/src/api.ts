@@ -9,7 +9,7 @@ export type { Answer, Downloaded } from './http';
 type Schemas = components['schemas'];
 export type Identity = Schemas['Identity'];
 export type Role = Identity['role'];
-export type Me = Schemas['Me'];
+export type CallerDetails = Schemas['CallerDetails'];
 export type Device = Schemas['DeviceDetails'];
 export type Invitation = Schemas['MadeCode'];
 export type Token = Schemas['MadeToken'];
@@ -39,7 +39,7 @@ export type ScenarioStart = Schemas['ScenarioStart'];
 export type VisionSettings = Commands['vision_settings'];
 export type { ColourRange } from './generated/topics';
 export type PickedColour = Schemas['PickedColour'];
-export type View = Schemas['View'];
+export type View = Schemas['SceneView'];
 export type Course = Commands['steering']['by'];
 export type KeptLayout = Schemas['SavedLayout'];
 export type OwnPanel = Schemas['OwnPanel'];
@@ -117,8 +117,8 @@ export const api = {
   takeControl: () => command('POST', '/control/take'),
   releaseControl: () => command('POST', '/control/release'),
   takeControlOver: () => command('POST', '/control/take?over=true'),
-  me: () => request<Me>('GET', '/access/me'),
-  pair: (code: string, name: string) => request<Me>('POST', '/access/pair', { code, name }),
+  me: () => request<CallerDetails>('GET', '/access/me'),
+  pair: (code: string, name: string) => request<CallerDetails>('POST', '/access/pair', { code, name }),
   signOut: () => command('POST', '/access/sign-out'),
   invite: (role: Role) => request<Invitation>('POST', '/access/codes', { role }),
   devices: () => request<Device[]>('GET', '/access/devices'),

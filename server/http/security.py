@@ -33,7 +33,7 @@ HEADERS = {
 }
 
 
-class Guard:
+class SecurityMiddleware:
     """ASGI middleware: refuses foreign hosts and origins with 403, and adds the security headers.
 
     `allowed_hosts` are names without a port; `port` is the one the server listens on.

@@ -5,7 +5,7 @@ import socket
 import uvicorn
 from fastapi import FastAPI
 
-from server.http.sockets import Sockets
+from server.http.websocket_protocol import WebSocketProtocol
 from server.platform.certificate import Certificate
 from server.platform.settings import SetupError
 
@@ -58,7 +58,7 @@ def make_server(app: FastAPI, certificate: Certificate | None = None) -> uvicorn
         ssl_certfile=None if certificate is None else certificate.file,
         ssl_keyfile=None if certificate is None else certificate.key,
         http="h11",
-        ws=Sockets,
+        ws=WebSocketProtocol,
         loop="asyncio",
         lifespan="on",
         log_level="warning",

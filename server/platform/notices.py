@@ -16,7 +16,7 @@ class Notices:
         self._deliver = deliver
         self._sent = 0
 
-    def go_on(self, number: int) -> None:
+    def continue_from(self, number: int) -> None:
         """Number on from here, where an earlier server's notices end."""
         self._sent = number
 

@@ -118,7 +118,7 @@ class Bridge:
         for name, filler in self._fillers.items():
             filler.begin_delivery(backlog.get(name))
 
-    def beat(self) -> None:
+    def send_heartbeat(self) -> None:
         """Send the runtime the server's heartbeat."""
         self._messages.publish(HEARTBEAT, b"")
 

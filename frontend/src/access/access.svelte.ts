@@ -1,5 +1,5 @@
 import { createContext } from 'svelte';
-import { api, type Identity, type Me } from '../api';
+import { api, type Identity, type CallerDetails } from '../api';
 import type { operations } from '../generated/api';
 import { onSignedOut } from '../http';
 import { access as texts } from '../texts/access';
@@ -76,7 +76,7 @@ export class Access {
     if (this.identity !== null) this.identity = { ...this.identity, ...identity };
   }
 
-  async #ask(): Promise<Me | null> {
+  async #ask(): Promise<CallerDetails | null> {
     const answer = await api.me();
     this.silent = 'problem' in answer;
     return 'value' in answer ? answer.value : null;
@@ -88,7 +88,7 @@ export class Access {
     return texts.operatorOnly;
   }
 
-  #take(me: Me): void {
+  #take(me: CallerDetails): void {
     this.#operatorsOnly = me.operators_only;
     this.robot = me.robot;
     this.identity = me.identity;

@@ -1908,6 +1908,24 @@ export interface components {
             time?: number | null;
         };
         /**
+         * CallerDetails
+         * @description The caller, and the robot; `pairing_open` is true while a pairing code is valid.
+         */
+        CallerDetails: {
+            identity: components["schemas"]["Identity"] | null;
+            /**
+             * Operators Only
+             * @description names of the operations that viewers may not call
+             */
+            operators_only: string[];
+            /** Pairing Open */
+            pairing_open: boolean;
+            /** Robot */
+            robot: string;
+            /** Signed In */
+            signed_in: boolean;
+        };
+        /**
          * CardCommand
          * @description Holds a card before the simulated camera, or takes it away.
          */
@@ -1980,12 +1998,12 @@ export interface components {
             time: string;
             /**
              * Undoable
-             * @description whether it is the next that can be undone
+             * @description true for the next change that can be undone
              */
             undoable: boolean;
             /**
              * Undone
-             * @description by whom; empty where it was not undone
+             * @description the person who undid it; empty if it was not undone
              */
             undone: string;
             /** Values */
@@ -1994,7 +2012,7 @@ export interface components {
             who: string;
             /**
              * Why
-             * @description “Profile NAME” where a profile was restored, else empty
+             * @description “Profile NAME” for a restored profile, else empty
              */
             why: string;
         };
@@ -2313,10 +2331,10 @@ export interface components {
         };
         /**
          * ControlDetails
-         * @description The same, and the counts of stick commands.
+         * @description The holder of control, and the counts of stick commands.
          */
         ControlDetails: {
-            driven: components["schemas"]["Driven"];
+            driven: components["schemas"]["DriveCounts"];
             /**
              * Epoch
              * @description grows with every change of the holder
@@ -2360,7 +2378,7 @@ export interface components {
         };
         /**
          * DeviceDetails
-         * @description A browser or a program that may come in; times in s since 1970.
+         * @description A paired browser or program; times in s since 1970.
          */
         DeviceDetails: {
             /** Id */
@@ -2383,7 +2401,7 @@ export interface components {
             seen: number;
             /**
              * You
-             * @description whether it is what asks
+             * @description true for the caller itself
              */
             you: boolean;
         };
@@ -2469,10 +2487,10 @@ export interface components {
             };
         };
         /**
-         * Driven
-         * @description Driving commands since the server started: how many reached the robot, and how many were dropped.
+         * DriveCounts
+         * @description Stick commands since the server started: passed to the robot, and dropped for a reason.
          */
-        Driven: {
+        DriveCounts: {
             /**
              * From The Future
              * @description more than 0.3 s ahead of the robot's clock
@@ -2728,7 +2746,7 @@ export interface components {
         };
         /**
          * Imported
-         * @description A profile from a file, and those of its parameters that this robot does not know.
+         * @description An imported profile, and its parameters that this robot does not know.
          */
         Imported: {
             profile: components["schemas"]["Profile"];
@@ -2787,7 +2805,7 @@ export interface components {
         };
         /**
          * LayoutDetails
-         * @description The same with its document, which may be of another version of the program.
+         * @description A saved layout with its document, which may be of another version of the program.
          */
         LayoutDetails: {
             /** Document */
@@ -2806,7 +2824,7 @@ export interface components {
         };
         /**
          * LayoutDocument
-         * @description Where the panels of Operate stand.
+         * @description The places of the panels of Operate.
          */
         LayoutDocument: {
             /**
@@ -2821,7 +2839,7 @@ export interface components {
         };
         /**
          * LeftOut
-         * @description A parameter that was not taken.
+         * @description A parameter that was not set, and the reason.
          */
         LeftOut: {
             /** Name */
@@ -2963,30 +2981,12 @@ export interface components {
         };
         /**
          * MadeToken
-         * @description A program's token, which is shown this once.
+         * @description A program's token, shown only this once.
          */
         MadeToken: {
             device: components["schemas"]["DeviceDetails"];
             /** Token */
             token: string;
-        };
-        /**
-         * Me
-         * @description The signed-in caller; `pairing_open` says that some pairing code is valid now.
-         */
-        Me: {
-            identity: components["schemas"]["Identity"] | null;
-            /**
-             * Operators Only
-             * @description operations that viewers are refused, by their names
-             */
-            operators_only: string[];
-            /** Pairing Open */
-            pairing_open: boolean;
-            /** Robot */
-            robot: string;
-            /** Signed In */
-            signed_in: boolean;
         };
         /**
          * MeasuredLimitCycle
@@ -3075,7 +3075,7 @@ export interface components {
         };
         /**
          * NewCode
-         * @description A code that is to be made.
+         * @description A pairing code to be made.
          */
         NewCode: {
             /**
@@ -3135,7 +3135,7 @@ export interface components {
         };
         /**
          * NewProfile
-         * @description The parameters in force are to be kept under this name.
+         * @description The name under which the present parameters are saved.
          */
         NewProfile: {
             /** Name */
@@ -3164,7 +3164,7 @@ export interface components {
         };
         /**
          * NewToken
-         * @description A program that is to be let in.
+         * @description A program that gets a token.
          */
         NewToken: {
             /** Name */
@@ -3191,7 +3191,7 @@ export interface components {
         };
         /**
          * OwnPanel
-         * @description A panel by the name of its file; `problem` says why it cannot be shown.
+         * @description A panel, named by its file; `problem` is the reason why it cannot be shown.
          */
         OwnPanel: {
             /** Name */
@@ -3224,7 +3224,7 @@ export interface components {
         };
         /**
          * Pairing
-         * @description A code, and what this browser is to be called.
+         * @description A code, and a name for this browser.
          */
         Pairing: {
             /** Code */
@@ -3295,7 +3295,7 @@ export interface components {
         PickPlace: {
             /**
              * Radius
-             * @description share of its width; what is nearer counts
+             * @description of the circle that is examined, as a share of the width
              * @default 0.02
              */
             radius: number;
@@ -3312,7 +3312,7 @@ export interface components {
         };
         /**
          * PickedColour
-         * @description The range that was found, and how much of the picture it holds.
+         * @description A colour range, and the share of the picture that lies in it.
          */
         PickedColour: {
             colour: components["schemas"]["ColourRange-Output"];
@@ -3320,16 +3320,8 @@ export interface components {
             share: number;
         };
         /**
-         * Place
-         * @description Place of the simulator; `here` is true for this computer.
-         */
-        Place: {
-            /** Here */
-            here: boolean;
-        };
-        /**
          * PlacedPanel
-         * @description A panel and where it stands, in columns and rows of the grid from its upper left corner.
+         * @description A panel, and its place in columns and rows of the grid from the upper left corner.
          */
         PlacedPanel: {
             chart?: components["schemas"]["ShownChart"] | null;
@@ -3356,7 +3348,7 @@ export interface components {
         };
         /**
          * Profile
-         * @description Parameters that are kept under a name.
+         * @description Parameters saved under a name.
          */
         Profile: {
             /** Id */
@@ -3508,7 +3500,7 @@ export interface components {
         };
         /**
          * Restored
-         * @description Result of restoring a profile.
+         * @description The parameters that a command changed, and those that it left out.
          */
         Restored: {
             /** Changed */
@@ -3713,6 +3705,33 @@ export interface components {
             text: string;
             /** Title */
             title: string;
+        };
+        /**
+         * SceneView
+         * @description The bystander's view; all pages share it.
+         */
+        SceneView: {
+            /**
+             * Azimuth
+             * @description ° of the line of sight, from heading or north
+             */
+            azimuth: number;
+            /**
+             * Distance
+             * @description m
+             */
+            distance: number;
+            /**
+             * Elevation
+             * @description ° above the robot
+             */
+            elevation: number;
+            /**
+             * Name
+             * @description follow turns with the robot, the others do not
+             * @enum {string}
+             */
+            name: "follow" | "side" | "top";
         };
         /**
          * Session
@@ -4015,6 +4034,14 @@ export interface components {
              * @description s since the session's start
              */
             time: number[];
+        };
+        /**
+         * SimulatorPlace
+         * @description The computer of the simulator; `here` is true for this one.
+         */
+        SimulatorPlace: {
+            /** Here */
+            here: boolean;
         };
         /**
          * Started
@@ -4509,38 +4536,11 @@ export interface components {
         };
         /**
          * Undo
-         * @description Which change is to be undone: the newest that is not undone.
+         * @description The change to undo: the newest that is not undone.
          */
         Undo: {
             /** Change */
             change: number;
-        };
-        /**
-         * View
-         * @description The bystander's view; all pages share it.
-         */
-        View: {
-            /**
-             * Azimuth
-             * @description ° of the line of sight, from heading or north
-             */
-            azimuth: number;
-            /**
-             * Distance
-             * @description m
-             */
-            distance: number;
-            /**
-             * Elevation
-             * @description ° above the robot
-             */
-            elevation: number;
-            /**
-             * Name
-             * @description follow turns with the robot, the others do not
-             * @enum {string}
-             */
-            name: "follow" | "side" | "top";
         };
         /**
          * VisionSettings
@@ -4908,7 +4908,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Me"];
+                    "application/json": components["schemas"]["CallerDetails"];
                 };
             };
             /** @description Something that the server needs does not work */
@@ -4950,7 +4950,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Me"];
+                    "application/json": components["schemas"]["CallerDetails"];
                 };
             };
             /** @description The code is not valid */
@@ -5132,7 +5132,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It cannot be copied */
+            /** @description The database cannot be copied */
             507: {
                 headers: {
                     [name: string]: unknown;
@@ -8120,7 +8120,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["View"];
+                "application/json": components["schemas"]["SceneView"];
             };
         };
         responses: {
@@ -8992,7 +8992,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Place"];
+                "application/json": components["schemas"]["SimulatorPlace"];
             };
         };
         responses: {

@@ -23,9 +23,9 @@ from server.platform.schema import explain, read_revision, refuse_unknown
 from server.platform.settings import DataFolder, Settings, SetupError
 
 LOGS = ("-wal", "-journal")
-"""What may hold a part of a database that was being written."""
+"""Files beside a database that may hold a part of it."""
 NICENESS = 15
-"""Control and recording go first."""
+"""Control and recording have priority."""
 
 
 @click.command("backup")
@@ -53,11 +53,11 @@ def restore(settings: Settings, file: Path) -> None:
 
 
 def back_up(folder: DataFolder, file: Path | None) -> str:
-    """Copy the database; what became of it, in words. Raises SetupError."""
+    """Copy the database; returns a sentence about the copy. Raises SetupError."""
     if not folder.database.is_file():
         raise SetupError(f"There is no database in {folder.path} yet, and so nothing to back up.")
     if file is not None and file.exists():
-        raise SetupError(f"{file} is there already. Name another file.")
+        raise SetupError(f"{file} exists already. Name another file.")
     try:
         path = file or place(folder, "backup")
         copy_database(folder.database, path)
@@ -71,7 +71,7 @@ def back_up(folder: DataFolder, file: Path | None) -> str:
 
 
 def put_back(folder: DataFolder, file: Path) -> str:
-    """Put a copy in the place of the database of a folder that is held; what was there is put aside.
+    """Replace the database of a claimed folder by a copy; the old one is put aside.
 
     Raises SetupError; then nothing has changed.
     """
@@ -85,8 +85,8 @@ def put_back(folder: DataFolder, file: Path) -> str:
     except (sqlite3.DatabaseError, OSError) as problem:
         fresh.unlink(missing_ok=True)
         raise SetupError(f"Nothing was restored: {explain(problem, folder.path)}") from problem
-    saved = f" What was there before is {aside}." if aside else ""
-    return f"{folder.database} is what it was in {file} (revision {revision}): {_count(file)}.{saved}"
+    saved = f" The database before is now {aside}." if aside else ""
+    return f"{folder.database} was restored from {file} (revision {revision}): {_count(file)}.{saved}"
 
 
 def _examine(file: Path) -> str:
@@ -95,7 +95,9 @@ def _examine(file: Path) -> str:
     try:
         listed = file.with_name(file.name + CHECKSUM)
         if listed.is_file() and listed.read_text(encoding="utf-8").split()[:1] != [sum_file(file)]:
-            raise SetupError(f"{file} is not what was backed up: its checksum in {listed} is another one.")
+            raise SetupError(
+                f"{file} has changed since the backup: its checksum differs from the one in {listed}."
+            )
         revision = read_revision(file)
     except (sqlite3.DatabaseError, OSError, UnicodeDecodeError) as problem:
         raise SetupError(f"{file} cannot be restored: {problem}.") from problem
@@ -108,8 +110,8 @@ def _examine(file: Path) -> str:
 def _put_aside(folder: DataFolder) -> Path:
     """Give the present database a second name, so that the copy takes its place in one step.
 
-    One that works is brought into one file first. Of a damaged one the files beside it are kept too; in their
-    place they must not stay, where SQLite would take them for the copy's.
+    A working database is first merged into one file. For a damaged one, the files beside it are saved too;
+    they must not stay in place, or SQLite would take them for the copy's.
     """
     aside = place(folder, "replaced")
     logs = {path: _beside(aside, end) for end in LOGS if (path := _beside(folder.database, end)).exists()}

@@ -1,6 +1,6 @@
 """Downloads of the database: one copy at a time, deleted afterwards.
 
-The copy has no name any more when its first byte is sent, so that it is gone however the sending ends.
+The file of the copy is unlinked before its first byte is sent, so that it is gone however the sending ends.
 """
 
 import asyncio
@@ -25,11 +25,11 @@ PIECE_BYTES = 1 << 18
 
 
 class DatabaseCopyError(InsufficientStorageError):
-    """It cannot be copied"""
+    """The database cannot be copied"""
 
 
-class Downloads:
-    """Makes copies of this folder's database to be sent."""
+class DatabaseDownloads:
+    """Copies of a folder's database, made for download."""
 
     def __init__(self, folder: DataFolder) -> None:
         self._folder = folder
@@ -37,7 +37,7 @@ class Downloads:
         self._busy = False
 
     def recover(self) -> None:
-        """Remove what a server that was killed has left. Raises OSError."""
+        """Remove the copy that a killed server has left. Raises OSError."""
         for path in (self._path, self._path.with_name(self._path.name + PART)):
             path.unlink(missing_ok=True)
 
@@ -51,7 +51,7 @@ class Downloads:
         except BaseException:
             self._busy = False
             raise
-        return Download(file, place(self._folder, "backup").name, self._end)
+        return FileDownload(file, place(self._folder, "backup").name, self._end)
 
     def _end(self) -> None:
         self._busy = False
@@ -71,16 +71,14 @@ class Downloads:
             file = self._path.open("rb")
             self._path.unlink()
         except (OSError, sqlite3.Error) as problem:
-            raise DatabaseCopyError(
-                f"The database cannot be copied: {problem}. Look at the disk."
-            ) from problem
+            raise DatabaseCopyError(f"The database cannot be copied: {problem}. Check the disk.") from problem
         return file
 
 
-class Download(StreamingResponse):
-    """Sends a file and closes it; calls `ended` then, or when the client is gone.
+class FileDownload(StreamingResponse):
+    """Sends a file, then closes it and calls `ended`; also if the client leaves.
 
-    A client that has stopped reading is gone after `server.http.serving.USER_TIMEOUT_MS`.
+    The connection to a client that has stopped reading ends after `server.http.serving.USER_TIMEOUT_MS`.
     """
 
     def __init__(self, file: BinaryIO, name: str, ended: Callable[[], None]) -> None:

@@ -1,1 +1,1 @@
-"""Layouts of panels, which people keep under names."""
+"""Saved layouts of panels."""

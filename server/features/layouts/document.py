@@ -25,7 +25,7 @@ class ShownChart(BaseModel):
 
 
 class PlacedPanel(BaseModel):
-    """A panel and where it stands, in columns and rows of the grid from its upper left corner."""
+    """A panel, and its place in columns and rows of the grid from the upper left corner."""
 
     model_config = ConfigDict(extra="forbid")
     id: Word
@@ -47,7 +47,7 @@ class PlacedPanel(BaseModel):
 
 
 class LayoutDocument(BaseModel):
-    """Where the panels of Operate stand."""
+    """The places of the panels of Operate."""
 
     model_config = ConfigDict(extra="forbid")
     format: Literal["mucat-layout"]
@@ -57,13 +57,13 @@ class LayoutDocument(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _know_the_version(cls, document: Any) -> Any:
-        # Before anything else: what another version says of its panels need mean nothing here.
+        # First of all: the panels of another version may have another form.
         if isinstance(document, dict) and document.get("format") == "mucat-layout":
             version = document.get("version")
             if version != VERSION or isinstance(version, bool):
                 raise _wrong(
-                    f"This layout is of version {str(version)[:20]}; this program reads version {VERSION}. "
-                    "Arrange the panels here, and save them anew."
+                    f"This layout has version {str(version)[:20]}; this program reads version {VERSION}. "
+                    "Arrange the panels again, and save them."
                 )
         return document
 

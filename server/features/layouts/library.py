@@ -1,4 +1,4 @@
-"""The layouts that people have kept, in the database. All methods raise StoreError."""
+"""Saved layouts in the database. All methods raise StoreError."""
 
 import json
 import time
@@ -32,7 +32,7 @@ class SavedLayout(BaseModel):
 
 
 class LayoutDetails(SavedLayout):
-    """The same with its document, which may be of another version of the program."""
+    """A saved layout with its document, which may be of another version of the program."""
 
     document: dict[str, Any]
 
@@ -51,7 +51,7 @@ class Layouts:
         return [SavedLayout(id=key or 0, name=name, saved=_utc(saved)) for key, name, saved in found]
 
     def get(self, layout: int) -> LayoutDetails:
-        """One of them. Raises UnknownLayoutError."""
+        """The layout of this number. Raises UnknownLayoutError."""
         with self._store.read() as database:
             row = database.get(LayoutRow, layout)
             if row is None:
@@ -61,7 +61,7 @@ class Layouts:
             )
 
     async def save(self, name: str, document: LayoutDocument) -> SavedLayout:
-        """Keep it under its name, over one of that name. Raises RefusedError where there are too many."""
+        """Save a layout, replacing one of the same name. Raises RefusedError if there are too many."""
         text, now = document.model_dump_json(exclude_none=True), time.time()
 
         def write(connection: Connection) -> int:
@@ -72,13 +72,13 @@ class Layouts:
                 return int(found)
             count = connection.execute(select(func.count()).select_from(LayoutRow)).scalar_one()
             if count >= LAYOUTS_MOST:
-                raise RefusedError(f"{LAYOUTS_MOST} layouts are kept already. Delete one that nobody needs.")
+                raise RefusedError(f"There are {LAYOUTS_MOST} layouts already. Delete one that nobody needs.")
             return insert_row(connection, LayoutRow, {"name": name, "document": text, "saved": now})
 
         return SavedLayout(id=await self._store.write(write), name=name, saved=_utc(now))
 
     async def delete(self, layout: int) -> None:
-        """Delete one for good. Raises UnknownLayoutError."""
+        """Delete a layout for good. Raises UnknownLayoutError."""
 
         def write(connection: Connection) -> None:
             if connection.execute(delete(LayoutRow).where(col(LayoutRow.id) == layout)).rowcount == 0:

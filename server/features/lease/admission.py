@@ -1,4 +1,4 @@
-"""Admission of requests: the role that an operation needs, and the control where it needs that."""
+"""Admission of requests: checks the caller's role, and its control if the operation needs it."""
 
 from typing import Annotated
 
@@ -16,10 +16,10 @@ HEADER = "x-mucat-client"
 
 
 async def admit(connection: HTTPConnection) -> None:
-    """For every router: raises ForbiddenError where this operation may not be asked for, and
-    NotInControlError where it needs the control, and another client has it.
+    """Check a request to any router.
 
-    The live socket is let in with a sign-in; each of its messages is then asked about (`may_say`).
+    The live socket needs a sign-in; each of its messages is checked by itself (`may_say`). Raises
+    ForbiddenError, or NotInControlError if the operation needs control and another client has it.
     """
     socket = connection.scope["type"] == "websocket"
     need = Need.VIEWER if socket else need_of(connection.scope["route"])
@@ -31,18 +31,18 @@ async def admit(connection: HTTPConnection) -> None:
 
 
 def require_control(connection: HTTPConnection) -> None:
-    """Raises NotInControlError if it comes from another client than the one in control."""
+    """Check that the client in control sends the request. Raises NotInControlError."""
     find_service(connection, ControlArbiter).require(_find_client(connection))
 
 
 async def require_client(connection: HTTPConnection) -> ControlClient:
-    """The client that this request comes from; a program needs none before. Raises ConflictError."""
+    """The client that sends the request; a program's is opened if needed. Raises ConflictError."""
     client, identity = _find_client(connection), connection.scope[IDENTITY]
     if client is None and HEADER not in connection.headers and identity.kind != "browser":
         client = find_service(connection, ControlArbiter).open_program(identity)
     if client is None:
         raise ConflictError(
-            "This request names no open page. A page has its key from `hello` while its live socket is open.",
+            "This request names no open page. A page gets its key in `hello` on its live socket: reload it.",
         )
     return client
 
@@ -52,6 +52,6 @@ OwnClient = Annotated[ControlClient, Depends(require_client)]
 
 
 def _find_client(connection: HTTPConnection) -> ControlClient | None:
-    """The page whose key this request names, or the programs of who asks; a program's lasts on by that."""
+    """The page whose key the request names, or the caller's programs, whose time starts anew."""
     identity: Identity = connection.scope[IDENTITY]
     return find_service(connection, ControlArbiter).clients.find(identity, connection.headers.get(HEADER))

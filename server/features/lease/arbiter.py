@@ -1,4 +1,4 @@
-"""The control of the robot: who has it, taking and releasing it, and what its holder's sticks send.
+"""The arbiter of control of the robot: one client has it, takes or releases it, and steers by its sticks.
 
 A client takes control that is free, or takes it over from another one on purpose. With each change the
 robot's sticks are neutral (`robot_runtime.control.pilot`). Viewers never have control.
@@ -13,7 +13,7 @@ from typing import Any
 from robot_runtime.clock import Clock
 from robot_runtime.errors import RefusedError
 from server.features.lease.clients import ControlClient, ControlClients
-from server.features.lease.driving import Drive, Driving
+from server.features.lease.driving import DriveCommand, DriveFilter
 from server.features.lease.lease import Change, Lease, NotInControlError
 from server.features.lease.schemas import ControlState, Holder
 from server.http.sign_in.identity import Identity
@@ -26,7 +26,7 @@ TEXTS: dict[Change, str] = {
 }
 
 RELOAD_SECONDS = 5.0
-"""A browser whose page had control may take it again within this, and neither change is in the record."""
+"""A page that reloads and takes control again within this time leaves no trace in the record."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class ControlArbiter:
         # The steady clock never runs back while the computer is up, and nobody changes the holder a thousand
         # times a second: so the first epoch of a restarted server is above all those of the last one.
         self.lease = Lease(int(clock.now() * 1000), self._note)
-        self.driving = Driving(clock, publish)
+        self.driving = DriveFilter(clock, publish)
         self._clock = clock
         self._notify = notify
         self._write = note
@@ -108,7 +108,7 @@ class ControlArbiter:
         if client is None or client.number != self.lease.holder:
             raise NotInControlError(f"Control is with {holder}. Agree with them, then take it over.")
 
-    def drive(self, client: ControlClient, command: Drive) -> None:
+    def drive(self, client: ControlClient, command: DriveCommand) -> None:
         """Pass a stick command on, or drop and count it."""
         self.expire()
         self.driving.take(command, self.lease.epoch if client.number == self.lease.holder else None)

@@ -7,7 +7,7 @@ from robot_runtime.clock import Clock
 from server.http.sign_in.identity import Identity
 
 PROGRAM_SECONDS = 10.0
-"""A program's client lasts so long after its last request that needs control."""
+"""A program's client expires this long after its last request that needs control."""
 
 
 @dataclass(slots=True)
@@ -40,7 +40,7 @@ class ControlClients:
         return found or self._open(identity, "", self._clock.now() + PROGRAM_SECONDS)
 
     def find(self, identity: Identity, key: str | None) -> ControlClient | None:
-        """The page with this key, or without a key the identity's programs, which last on by that."""
+        """The page with this key; without a key the identity's programs, whose time starts anew."""
         if key is None:
             now = self._clock.now()
             for client in self.of(identity.device):
@@ -50,7 +50,7 @@ class ControlClients:
             return None
         found = None
         for client in self.of(identity.device):
-            # Every key is compared, so that the time says nothing.
+            # Every key is compared, so that the time taken reveals nothing.
             if client.key and secrets.compare_digest(client.key.encode(), key.encode()):
                 found = client
         return found

@@ -1,4 +1,4 @@
-"""Control of the robot for a command in a shell: taken before, kept while it runs, released after."""
+"""Control of the robot for a shell command: taken before it, renewed during it, released after it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,13 +14,12 @@ def in_control(folder: DataFolder) -> Iterator[None]:
     try:
         yield
     finally:
-        # A server that is gone has ended the lease, too.
+        # A server that has ended has ended the lease, too.
         with suppress(SetupError):
             ask(folder, "POST", "/control/release")
 
 
 def renew_control(folder: DataFolder) -> None:
-    """Keep control that nobody has taken over; to be called every few seconds."""
-    # Without it, what was begun with it goes on.
+    """Renew control; call this every few seconds. Does nothing if somebody else took it over."""
     with suppress(SetupError):
         ask(folder, "POST", "/control/take")

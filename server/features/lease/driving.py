@@ -1,6 +1,6 @@
-"""Driving: what may pass from the driver's page to the runtime, and what is dropped and counted.
+"""The filter for stick commands between page and runtime: each passes at once, or is dropped and counted.
 
-Nothing is kept for later: a command that comes too late would steer a robot that has swum on.
+None is stored for later: a late command would steer a robot that has swum on.
 """
 
 import json
@@ -10,16 +10,16 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from robot_runtime.clock import Clock
-from server.features.lease.schemas import Driven
+from server.features.lease.schemas import DriveCounts
 
 LATE_SECONDS = 0.3
-"""By which a command may be older than now, or seem younger, on the robot's steady clock."""
+"""The greatest age of a command, and how far it may lie ahead, on the robot's steady clock."""
 
 Number = Annotated[int, Field(ge=0, le=2**53)]
 
 
-class Drive(BaseModel):
-    """Where the sticks are: x, y, z, roll, pitch, yaw, each -1 to 1; `taken` in s on the steady clock."""
+class DriveCommand(BaseModel):
+    """The position of the sticks: x, y, z, roll, pitch, yaw, each -1 to 1, at `taken` (s, steady clock)."""
 
     model_config = ConfigDict(strict=True)
     lease: Number
@@ -28,17 +28,17 @@ class Drive(BaseModel):
     axes: Annotated[list[Annotated[FiniteFloat, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 
 
-class Driving:
-    """Passes commands on to `publish`, at once or never."""
+class DriveFilter:
+    """Passes commands to `publish` at once, or drops and counts them."""
 
     def __init__(self, clock: Clock, publish: Callable[[bytes], None]) -> None:
-        self.counts = Driven()
+        self.counts = DriveCounts()
         self._clock = clock
         self._publish = publish
         self._lease = self._sequence = -1
 
-    def take(self, command: Drive, epoch: int | None) -> None:
-        """`epoch` is that of the control which the sender has; None where it has none."""
+    def take(self, command: DriveCommand, epoch: int | None) -> None:
+        """Pass or drop a command. `epoch` is that of the sender's control; None if it has none."""
         counts = self.counts
         age = self._clock.now() - command.taken
         if epoch is None:

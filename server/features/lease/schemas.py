@@ -1,4 +1,4 @@
-"""Schemas of the control in the interface."""
+"""Schemas of control in the HTTP interface."""
 
 from pydantic import BaseModel, Field
 
@@ -10,8 +10,8 @@ class Holder(BaseModel):
     name: str
 
 
-class Driven(BaseModel):
-    """Driving commands since the server started: how many reached the robot, and how many were dropped."""
+class DriveCounts(BaseModel):
+    """Stick commands since the server started: passed to the robot, and dropped for a reason."""
 
     passed: int = 0
     not_in_control: int = Field(default=0, description="from a client without control")
@@ -29,6 +29,6 @@ class ControlState(BaseModel):
 
 
 class ControlDetails(ControlState):
-    """The same, and the counts of stick commands."""
+    """The holder of control, and the counts of stick commands."""
 
-    driven: Driven
+    driven: DriveCounts

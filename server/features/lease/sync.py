@@ -1,4 +1,4 @@
-"""Tells the runtime the epoch of the control lease, so that it too drops what earlier holders sent."""
+"""Sends the runtime the epoch of the control lease, so that it also drops commands of earlier holders."""
 
 import asyncio
 import logging

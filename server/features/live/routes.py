@@ -1,7 +1,4 @@
-"""The live socket of a page, and the minutes before it was opened.
-
-The socket carries blocks and news to the page; pings, driving and STOP from it.
-"""
+"""The live socket of a page: blocks and notices to the page; pings, stick commands and STOP from it."""
 
 import asyncio
 import json
@@ -19,7 +16,7 @@ from robot_runtime.contract.topics import TOPICS, Kind
 from robot_runtime.errors import RefusedError
 from server.features.lease.arbiter import ControlArbiter
 from server.features.lease.clients import ControlClient
-from server.features.lease.driving import Drive
+from server.features.lease.driving import DriveCommand
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.page import Page
@@ -31,11 +28,11 @@ from server.platform.settings import Settings
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Client, EvictedError, Hub
 
-NONSENSE_MAX = 20
-"""Messages that are not understood, one after the other, before the socket is closed."""
-FAREWELL_SECONDS = 1.0
+INVALID_MAX = 20
+"""Invalid messages in a row after which the socket is closed."""
+CLOSE_SECONDS = 1.0
 WATCHABLE = frozenset({"picture", "observer", "mask", "balanced"})
-"""Topics of pictures that a page can have."""
+"""Topics of pictures that a page can watch."""
 
 router = Operations()
 
@@ -44,10 +41,10 @@ RowTopic = Annotated[str, StringConstraints(pattern=f"^({_ROWS})$")]
 
 
 class InvalidMessageError(ValueError):
-    """A message from the page that is not understood; the text says why."""
+    """An invalid message from the page; the text says why."""
 
 
-class _Conversation:
+class _LiveConnection:
     """Reads one page's messages and acts on them."""
 
     def __init__(
@@ -62,24 +59,24 @@ class _Conversation:
         self._stop_again = False
 
     async def listen(self, client: Client) -> None:
-        """Take in messages until the page leaves. Raises EvictedError where it talks nothing but nonsense."""
-        nonsense = 0
+        """Take in messages until the page leaves. Raises EvictedError where it talks nothing but invalid."""
+        invalid = 0
         while True:
             try:
                 message = await self._socket.receive()
                 if message["type"] == "websocket.disconnect":
                     return
-                self._obey(client, _read(message.get("text")))
-                nonsense = 0
+                self._perform(client, _read(message.get("text")))
+                invalid = 0
             except InvalidMessageError as problem:
-                nonsense += 1
-                if nonsense >= NONSENSE_MAX:
+                invalid += 1
+                if invalid >= INVALID_MAX:
                     raise EvictedError(
-                        f"{nonsense} messages in a row were not understood.", POLICY_VIOLATION
+                        f"{invalid} messages in a row were not valid.", POLICY_VIOLATION
                     ) from problem
                 client.answer({"op": "error", "text": str(problem)})
 
-    def _obey(self, client: Client, message: dict[str, Any]) -> None:
+    def _perform(self, client: Client, message: dict[str, Any]) -> None:
         op = message.get("op")
         if not isinstance(op, str) or op not in MESSAGES:
             raise InvalidMessageError(f"Unknown op {json.dumps(op)[:80]}; there are {', '.join(MESSAGES)}.")
@@ -101,7 +98,7 @@ class _Conversation:
                 self._arbiter.drive(self._owner, _drive(message))
 
     def _stop(self, client: Client) -> None:
-        # A STOP on its way is not enough: something may arm the robot after it. So one more follows.
+        # A STOP on its way is not enough: the robot may be armed after it. So another one follows.
         if self._stopping is not None and not self._stopping.done():
             self._stop_again = True
             return
@@ -153,18 +150,18 @@ async def live(
         await socket.send({"type": "websocket.send", kind: data})
 
     try:
-        # It may have been revoked while the socket opened; from here on the hub knows it.
-        if not access.still(caller):
+        # Access may have been revoked while the socket opened; from here on the hub dismisses it.
+        if not access.is_valid(caller):
             raise EvictedError("Access was revoked by an operator.", POLICY_VIOLATION)
         with arbiter.page(caller) as owner:
-            listen = _Conversation(socket, owner, hub, arbiter, bridge).listen
+            listen = _LiveConnection(socket, owner, hub, arbiter, bridge).listen
             await hub.serve(send, greeting(owner), listen, caller.device)
     except WebSocketDisconnect:
         return
     except EvictedError as reason:
-        # A client that does not read does not take the farewell either; the kernel then ends the connection.
+        # A client that does not read does not read the reason either; the kernel then ends the connection.
         try:
-            async with asyncio.timeout(FAREWELL_SECONDS):
+            async with asyncio.timeout(CLOSE_SECONDS):
                 await socket.close(reason.code, str(reason))
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
             return
@@ -204,9 +201,9 @@ def _topics(value: object) -> frozenset[str]:
     return frozenset(value)
 
 
-def _drive(message: dict[str, Any]) -> Drive:
+def _drive(message: dict[str, Any]) -> DriveCommand:
     try:
-        return Drive.model_validate(message)
+        return DriveCommand.model_validate(message)
     except ValidationError as problem:
         raise InvalidMessageError(
             "A drive needs lease and sequence, whole numbers from 0 on, taken (s), and six axes from -1 to 1."

@@ -1,1 +1,1 @@
-"""Panels of one's own: small scripts in the data folder, which the page runs apart from itself."""
+"""Your own panels: small scripts in the data folder, which the page runs in a separate frame."""

@@ -1,4 +1,4 @@
-"""The scripts in the folder of one's own panels; who may write there is who may write the data folder."""
+"""The scripts of your own panels, in a folder of the data folder."""
 
 import re
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ class UnknownPanelError(NotFoundError):
 
 
 class OwnPanel(BaseModel):
-    """A panel by the name of its file; `problem` says why it cannot be shown."""
+    """A panel, named by its file; `problem` is the reason why it cannot be shown."""
 
     name: str
     problem: str = ""
@@ -31,20 +31,20 @@ class OwnPanelScript(BaseModel):
 
 
 def list_panels(folder: Path) -> Sequence[OwnPanel]:
-    """All `*.js` of the folder, by name; none where there is no such folder."""
+    """All `*.js` of the folder, by name; none if there is no such folder."""
     return [OwnPanel(name=file.stem, problem=_problem(file)) for file in sorted(folder.glob("*.js"))]
 
 
 def read_panel(folder: Path, name: str) -> OwnPanelScript:
-    """The panel of this name. Raises UnknownPanelError, with what is wrong."""
-    # Looked up in the folder's own list: no name that is asked for becomes a path.
+    """The panel of this name. Raises UnknownPanelError, with the reason."""
+    # Found in the folder's list, so that no requested name becomes a path.
     for file in folder.glob("*.js"):
         if file.stem != name:
             continue
         if problem := _problem(file):
             raise UnknownPanelError(problem)
         return OwnPanelScript(name=name, script=file.read_text(encoding="utf-8"))
-    raise UnknownPanelError(f"There is no panel “{name}” in {folder} any more, or not yet.")
+    raise UnknownPanelError(f"There is no panel “{name}” in {folder}. GET /api/panels lists the panels.")
 
 
 def _problem(file: Path) -> str:

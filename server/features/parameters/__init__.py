@@ -1,1 +1,1 @@
-"""Parameters as people tune them: who changed what, undo, and profiles kept under names."""
+"""Parameters: their changes, undo, and saved profiles."""

@@ -1,7 +1,7 @@
 """History of parameter changes, with undo one change at a time.
 
-The runtime says with its answer to a command what the command changed. That is stored; what was changed
-before the runtime's last start cannot be undone, for a start brings the defaults back.
+The runtime's answer to a command lists the parameters that the command changed. They are stored. Changes from
+before the runtime's last start cannot be undone: a start restores the defaults.
 """
 
 import asyncio
@@ -37,7 +37,7 @@ Send = Callable[[RobotCommand], Awaitable[None]]
 
 @dataclass(slots=True)
 class _Group:
-    """Changes that are noted as one: each parameter's first and last value."""
+    """Changes that are stored as one: each parameter's first and last value."""
 
     who: str
     why: str
@@ -45,10 +45,10 @@ class _Group:
 
 
 class Changes:
-    """Sends commands to the runtime and notes in the history of parameters what they changed.
+    """Sends commands to the runtime, and stores the changes of parameters in the history.
 
-    Every command passes here, whoever sends it; STOP alone goes to the bridge directly. Every method raises
-    RefusedError, RuntimeSilentError, or StoreError where the history cannot be read.
+    All commands except STOP pass here. Every method raises RefusedError, RuntimeSilentError, or StoreError if
+    the history cannot be read.
     """
 
     def __init__(self, store: Store, bridge: Bridge) -> None:
@@ -58,7 +58,7 @@ class Changes:
         self._groups: list[_Group] = []
 
     async def command(self, who: str, command: RobotCommand, why: str = "") -> Restored:
-        """Send a command; the parameters that it changed, and those that it left out."""
+        """Send a command; returns the parameters that it changed, and those that it left out."""
         answer = await self._send(command)
         changed = answer.get("changed", {})
         if changed:
@@ -69,7 +69,7 @@ class Changes:
 
     @asynccontextmanager
     async def together(self, who: str, why: str) -> AsyncIterator[Send]:
-        """Sends several commands; at the end the history notes what they changed altogether."""
+        """Send several commands, whose changes the history stores as one at the end."""
         group = _Group(who, why)
 
         async def send(command: RobotCommand) -> None:
@@ -86,11 +86,11 @@ class Changes:
             await self._note_group(group)
 
     async def put_back(self, command: RobotCommand) -> None:
-        """Send a command that brings back values which the history has already; it is not noted."""
+        """Send a command that restores values of the history; its changes are not stored."""
         await self._send(command)
 
     def newest(self) -> list[Change]:
-        """The newest first. Blocks."""
+        """The newest changes, newest first. Blocks."""
         query = select(ParameterChangeRow).order_by(desc(col(ParameterChangeRow.id))).limit(SHOWN)
         with self._store.read() as database:
             rows = database.exec(query).all()
@@ -98,14 +98,14 @@ class Changes:
             return [_show(row, newest is not None and row.id == newest.id) for row in rows]
 
     async def undo(self, who: str, change: int) -> Restored:
-        """Set back what this change changed, which must be the newest that is not undone."""
+        """Undo a change, which must be the newest that is not undone."""
         async with self._undoing:
             await self._note_groups()
             row = await asyncio.to_thread(self._find_newest)
             if row is None:
-                raise RefusedError("Nothing is left to be undone since the robot's runtime has started.")
+                raise RefusedError("There is no change to undo since the robot's runtime started.")
             if row.id != change:
-                raise RefusedError("Somebody has changed something since. Look at the list, and try again.")
+                raise RefusedError("This is no longer the newest change. Look at the list, and try again.")
             values = _values(row)
             await self._send(
                 ParametersCommand(
@@ -125,7 +125,7 @@ class Changes:
         return await self._bridge.command(command.policy.name, command.payload())
 
     async def _note_groups(self) -> None:
-        """Note what open groups have changed so far, so that the history stays in order."""
+        """Store the changes of open groups so far, so that the history stays in order."""
         for group in self._groups:
             await self._note_group(group)
 
@@ -146,7 +146,7 @@ class Changes:
         try:
             await self._store.write(lambda connection: _insert(connection, row))
         except StoreError as problem:
-            # It is in force; a history with a hole is better than an answer that denies it.
+            # The change is in force: a gap in the history is better than an answer that denies it.
             log.warning("a change of parameters cannot be stored: %s", problem)
 
     def _find_newest(self) -> ParameterChangeRow | None:

@@ -1,4 +1,4 @@
-"""Profiles: parameters kept under a name, in the database and as files."""
+"""Profiles: parameters saved under a name, in the database and as files."""
 
 import json
 import re
@@ -19,7 +19,7 @@ from server.platform.models import ProfileRow
 from server.platform.store import Store, insert_row
 
 FORMAT = 1
-"""Of profiles' files; a file of another one is refused."""
+"""The format of profiles' files; a file of another format is refused."""
 PROFILES_MAX = 500
 
 
@@ -42,19 +42,19 @@ class ProfileFile(BaseModel):
 
 
 class Profiles:
-    """Every profile. Every method raises StoreError, and UnknownProfile where there is no such one."""
+    """The saved profiles. Every method raises StoreError, and UnknownProfileError for a missing profile."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
 
     def list(self) -> list[Profile]:
-        """In alphabetical order. Blocks."""
+        """All profiles, in alphabetical order. Blocks."""
         with self._store.read() as database:
             rows = database.exec(select(ProfileRow)).all()
         return sorted((_show(row) for row in rows), key=lambda one: one.name.casefold())
 
     def find(self, profile: int) -> Profile:
-        """One of them. Blocks."""
+        """The profile of this number. Blocks."""
         with self._store.read() as database:
             row = database.get(ProfileRow, profile)
         if row is None:
@@ -62,7 +62,7 @@ class Profiles:
         return _show(row)
 
     async def save(self, name: str, note: str, values: Mapping[str, Value]) -> Profile:
-        """Keep these values. Raises RefusedError where the name is taken, or where there are too many."""
+        """Save these values. Raises RefusedError if the name is taken, or if there are too many profiles."""
         row = ProfileRow(name=name, note=note, saved=time(), parameters=json.dumps(dict(values)))
 
         def write(connection: Connection) -> Profile:
@@ -79,7 +79,7 @@ class Profiles:
         return await self._store.write(write)
 
     async def delete(self, profile: int) -> None:
-        """Remove it for good."""
+        """Delete a profile for good."""
 
         def write(connection: Connection) -> None:
             found = connection.execute(delete(ProfileRow).where(col(ProfileRow.id) == profile))
@@ -113,13 +113,15 @@ def read_file(text: str) -> ProfileFile:
     try:
         content: Any = json.loads(text)
     except (ValueError, RecursionError) as problem:
-        raise ProfileError(f"The file is no profile: it is not JSON ({problem}).") from problem
+        raise ProfileError(f"The file is not a profile: it is not JSON ({problem}).") from problem
     if not isinstance(content, dict) or "format" not in content:
-        raise ProfileError("The file is no profile: it does not say its format. Save one here to see one.")
+        raise ProfileError(
+            "The file is not a profile: it has no format. Save a profile here to see its form."
+        )
     if content["format"] != FORMAT:
         raise ProfileError(
             f"The file is a profile of format {content['format']!r}, written by version "
-            f"{content.get('version')!r}; this version reads format {FORMAT} alone. Open it with the version "
+            f"{content.get('version')!r}; this version reads only format {FORMAT}. Open it with the version "
             "that wrote it."
         )
     try:

@@ -1,4 +1,4 @@
-"""Parameters, their changes and profiles as the interface shows them."""
+"""Schemas of parameters, their changes and profiles."""
 
 from datetime import datetime
 from typing import Annotated
@@ -30,21 +30,21 @@ class Change(BaseModel):
     id: int
     time: datetime = Field(description="UTC")
     who: str
-    why: str = Field(description="“Profile NAME” where a profile was restored, else empty")
+    why: str = Field(description="“Profile NAME” for a restored profile, else empty")
     values: list[ChangedValue]
-    undone: str = Field(description="by whom; empty where it was not undone")
-    undoable: bool = Field(description="whether it is the next that can be undone")
+    undone: str = Field(description="the person who undid it; empty if it was not undone")
+    undoable: bool = Field(description="true for the next change that can be undone")
 
 
 class Undo(BaseModel):
-    """Which change is to be undone: the newest that is not undone."""
+    """The change to undo: the newest that is not undone."""
 
     model_config = ConfigDict(extra="forbid")
     change: int
 
 
 class Profile(BaseModel):
-    """Parameters that are kept under a name."""
+    """Parameters saved under a name."""
 
     id: int
     name: str
@@ -54,7 +54,7 @@ class Profile(BaseModel):
 
 
 class NewProfile(BaseModel):
-    """The parameters in force are to be kept under this name."""
+    """The name under which the present parameters are saved."""
 
     model_config = ConfigDict(extra="forbid")
     name: ProfileName
@@ -62,14 +62,14 @@ class NewProfile(BaseModel):
 
 
 class LeftOut(BaseModel):
-    """A parameter that was not taken."""
+    """A parameter that was not set, and the reason."""
 
     name: str
     why: str
 
 
 class Restored(BaseModel):
-    """Result of restoring a profile."""
+    """The parameters that a command changed, and those that it left out."""
 
     changed: list[ChangedValue]
     left_out: list[LeftOut]
@@ -83,7 +83,7 @@ class ProfileText(BaseModel):
 
 
 class Imported(BaseModel):
-    """A profile from a file, and those of its parameters that this robot does not know."""
+    """An imported profile, and its parameters that this robot does not know."""
 
     profile: Profile
     unknown: list[str]

@@ -1,6 +1,6 @@
-"""`mucat pair` and `mucat access`: who may come in, from the shell of the robot's own computer.
+"""`mucat pair` and `mucat access`: pairing and roles from the shell of the robot's own computer.
 
-The running server does the work. It knows this shell by the token in its data folder.
+The running server does the work. The token in its data folder identifies this shell.
 """
 
 import sys
@@ -31,13 +31,13 @@ def pair(settings: Settings, role: str | None) -> None:
 
 @click.group()
 def access() -> None:
-    """Show and change who may come in, and in which role."""
+    """Show and change the paired browsers and programs, and their roles."""
 
 
 @access.command("list")
 @with_settings
 def list_devices(settings: Settings) -> None:
-    """List the browsers and programs that may come in."""
+    """List the paired browsers and programs."""
     devices = ask(settings.data, "GET", "/access/devices")
     click.echo(_tabulate(devices) or "Nobody is paired yet: `mucat pair` prints a link for a browser.")
 
@@ -62,9 +62,9 @@ def demote(settings: Settings, device: int) -> None:
 @click.argument("device", type=int)
 @with_settings
 def revoke(settings: Settings, device: int) -> None:
-    """Sign a device out, from this moment on."""
+    """Revoke a device's access at once."""
     ask(settings.data, "DELETE", f"/access/devices/{device}")
-    click.echo(f"Device {device} may not come in any longer.")
+    click.echo(f"The access of device {device} is revoked.")
 
 
 @access.command()
@@ -75,7 +75,7 @@ def token(settings: Settings, name: str, role: str) -> None:
     """Make a token for a program of this name, and print it."""
     made = ask(settings.data, "POST", "/access/tokens", {"name": name, "role": role})
     device = made["device"]
-    # Apart from the token, which another program may read.
+    # To standard error: another program may read the token from standard output.
     click.echo(f"“{device['name']}” is device {device['id']}. The token is not shown again:", err=True)
     click.echo(made["token"])
 

@@ -7,11 +7,11 @@ from fastapi import Request, Response
 
 from server.features.people.pairing_links import pairing_link, qr_svg
 from server.features.people.schemas import (
+    CallerDetails,
     DeviceChanges,
     DeviceDetails,
     MadeCode,
     MadeToken,
-    Me,
     NewCode,
     NewToken,
     Pairing,
@@ -36,9 +36,9 @@ router = Operations(prefix="/api/access", tags=["access"])
 
 
 @router.operation("GET /me", Need.NOTHING)
-async def get_me(request: Request, settings: Provided[Settings], access: Provided[Access]) -> Me:
+async def get_me(request: Request, settings: Provided[Settings], access: Provided[Access]) -> CallerDetails:
     """Return the caller: signed in or not, and in which role."""
-    return _me(request, settings, access, request.scope[IDENTITY])
+    return _describe_caller(request, settings, access, request.scope[IDENTITY])
 
 
 @router.operation("POST /pair", Need.NOTHING, WrongCodeError, TooManyTriesError, TOO_MANY)
@@ -48,7 +48,7 @@ async def pair_browser(
     access: Provided[Access],
     response: Response,
     body: Pairing,
-) -> Me:
+) -> CallerDetails:
     """Sign this browser in with a code.
 
     Sets a cookie. A browser that is signed in already keeps its cookie, and gets the code's role if that is
@@ -64,7 +64,7 @@ async def pair_browser(
             samesite="strict",
             secure=request.url.scheme == "https",
         )
-    return _me(request, settings, access, identity)
+    return _describe_caller(request, settings, access, identity)
 
 
 @router.operation("POST /sign-out", Need.VIEWER, {409: "The shell is not signed in"})
@@ -132,8 +132,10 @@ def _called(request: Request) -> str:
     return request.headers["host"].rsplit(":", 1)[0].lower()
 
 
-def _me(request: Request, settings: Settings, access: Access, identity: Identity | None) -> Me:
-    return Me(
+def _describe_caller(
+    request: Request, settings: Settings, access: Access, identity: Identity | None
+) -> CallerDetails:
+    return CallerDetails(
         signed_in=identity is not None,
         robot=settings.robot,
         identity=identity,

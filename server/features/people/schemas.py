@@ -1,4 +1,4 @@
-"""Schemas of people and programs that sign in."""
+"""Schemas of browsers and programs, and of pairing."""
 
 from typing import Annotated
 
@@ -12,25 +12,25 @@ NAME_LENGTH_MAX = 40
 def _check_name(name: str) -> str:
     name = " ".join(name.split())
     if not name or not name.isprintable():
-        raise ValueError("must have letters that can be seen, and no control characters")
+        raise ValueError("must have visible characters, and no control characters")
     return name
 
 
 Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(_check_name)]
 
 
-class Me(BaseModel):
-    """The signed-in caller; `pairing_open` says that some pairing code is valid now."""
+class CallerDetails(BaseModel):
+    """The caller, and the robot; `pairing_open` is true while a pairing code is valid."""
 
     signed_in: bool
     robot: str
     identity: Identity | None
     pairing_open: bool
-    operators_only: list[str] = Field(description="operations that viewers are refused, by their names")
+    operators_only: list[str] = Field(description="names of the operations that viewers may not call")
 
 
 class Pairing(BaseModel):
-    """A code, and what this browser is to be called."""
+    """A code, and a name for this browser."""
 
     model_config = ConfigDict(extra="forbid")
     code: Annotated[str, Field(min_length=1, max_length=64)]
@@ -38,7 +38,7 @@ class Pairing(BaseModel):
 
 
 class NewCode(BaseModel):
-    """A code that is to be made."""
+    """A pairing code to be made."""
 
     model_config = ConfigDict(extra="forbid")
     role: Role = "viewer"
@@ -55,7 +55,7 @@ class MadeCode(BaseModel):
 
 
 class DeviceDetails(BaseModel):
-    """A browser or a program that may come in; times in s since 1970."""
+    """A paired browser or program; times in s since 1970."""
 
     id: int
     name: str
@@ -63,7 +63,7 @@ class DeviceDetails(BaseModel):
     kind: Kind
     paired: float
     seen: float
-    you: Annotated[bool, Field(description="whether it is what asks")]
+    you: Annotated[bool, Field(description="true for the caller itself")]
 
 
 class DeviceChanges(BaseModel):
@@ -75,7 +75,7 @@ class DeviceChanges(BaseModel):
 
 
 class NewToken(BaseModel):
-    """A program that is to be let in."""
+    """A program that gets a token."""
 
     model_config = ConfigDict(extra="forbid")
     name: Name
@@ -83,7 +83,7 @@ class NewToken(BaseModel):
 
 
 class MadeToken(BaseModel):
-    """A program's token, which is shown this once."""
+    """A program's token, shown only this once."""
 
     token: str
     device: DeviceDetails

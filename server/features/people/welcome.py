@@ -13,11 +13,11 @@ from server.platform.settings import Settings, is_loopback
 def welcome(
     settings: Settings, access: Access, certificate: Certificate | None, *, picture: bool
 ) -> list[str]:
-    """Lines for the terminal; `picture` says whether it can show one.
+    """Lines for the terminal; with `picture` also a QR code.
 
-    Who holds the terminal of a server that only this computer reaches is its operator anyway, so each start
-    gives a link, and nobody has to type a code. A server that others reach gives one only while there is no
-    operator: its output may be kept in a log, and its reader is not always at the robot.
+    If only this computer reaches the server, the person at the terminal is its operator anyway, so each start
+    prints a link. A server that others reach prints one only while there is no operator: its output may be
+    stored in a log, and is not always read at the robot.
     """
     base = settings.base_url()
     lines = [f"µ-CAT {VERSION} ({settings.mode}): {base}/ (data in {settings.data.path})", _reach(settings)]

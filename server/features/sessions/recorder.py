@@ -153,7 +153,7 @@ class Recorder:
             if sender.same_run:
                 self._skip |= sender.first
         if "notice" in interrupted.last:
-            self._notices.go_on(interrupted.last["notice"].following)
+            self._notices.continue_from(interrupted.last["notice"].following)
         self.session = from_row(row)
         self._accepts = True
         away = self._clock.now() - row.started_steady - row.duration

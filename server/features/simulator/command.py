@@ -1,7 +1,4 @@
-"""`mucat simulator`: the water, and what there is to see in it, on a computer of their own.
-
-For a robot with its hardware in the loop.
-"""
+"""`mucat simulator`: water and scene on another computer, for a robot with its hardware in the loop."""
 
 import os
 import subprocess

@@ -15,14 +15,14 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 router = Operations(prefix="/api")
 
 
-class Place(BaseModel):
-    """Place of the simulator; `here` is true for this computer."""
+class SimulatorPlace(BaseModel):
+    """The computer of the simulator; `here` is true for this one."""
 
     model_config = ConfigDict(extra="forbid")
     here: bool
 
 
-class View(BaseModel):
+class SceneView(BaseModel):
     """The bystander's view; all pages share it."""
 
     model_config = ConfigDict(extra="forbid")
@@ -38,7 +38,7 @@ class View(BaseModel):
 
 @router.operation("PUT /simulator", Need.CONTROL, {409: "The robot is not in the loop"}, tags=["robot"])
 async def put_simulator(
-    settings: Provided[Settings], processes: Provided[ProcessSupervisor], body: Place
+    settings: Provided[Settings], processes: Provided[ProcessSupervisor], body: SimulatorPlace
 ) -> None:
     """Start or end the simulator on this computer.
 
@@ -57,7 +57,7 @@ async def put_simulator(
 
 
 @router.operation("PUT /scene/view", Need.OPERATOR, RuntimeSilentError, tags=["scene"])
-async def put_view(bridge: Provided[Bridge], view: View) -> None:
+async def put_view(bridge: Provided[Bridge], view: SceneView) -> None:
     """Choose the bystander's view.
 
     The pictures of the topic `observer` are taken from there.

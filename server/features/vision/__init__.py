@@ -1,1 +1,1 @@
-"""The vision node's settings: as the interface has them, and as a part of robot.toml."""
+"""The vision node's settings, in the interface and in robot.toml."""

@@ -23,12 +23,13 @@ class PickPlace(BaseModel):
     x: Annotated[Share, Field(description="share of the picture's width")]
     y: Annotated[Share, Field(description="share of its height")]
     radius: Annotated[
-        FiniteFloat, Field(ge=0.005, le=0.2, description="share of its width; what is nearer counts")
+        FiniteFloat,
+        Field(ge=0.005, le=0.2, description="of the circle that is examined, as a share of the width"),
     ] = 0.02
 
 
 class PickedColour(BaseModel):
-    """The range that was found, and how much of the picture it holds."""
+    """A colour range, and the share of the picture that lies in it."""
 
     colour: ColourRange
     share: float

@@ -11,7 +11,7 @@ from robot_runtime.durable_files import write_whole
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.devices import Device, Devices
 from server.http.sign_in.identity import SHELL, Identity, Role
-from server.http.sign_in.pairing_codes import Codes, TooManyTriesError
+from server.http.sign_in.pairing_codes import PairingCodes, TooManyTriesError
 from server.http.sign_in.tokens import digest
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -39,7 +39,7 @@ class Access:
     ) -> None:
         self.cookie = f"mucat_{settings.port}"
         """Its name: browsers keep the cookies of all ports of a computer together."""
-        self.codes = Codes(clock)
+        self.codes = PairingCodes(clock)
         self.devices = Devices(store)
         self._token_file = settings.data.token
         self._token = token
@@ -61,7 +61,7 @@ class Access:
             return self._find_bearer(header[len(BEARER) :].strip())
         return self._see(self.devices.find(connection.cookies.get(self.cookie, ""), "browser"))
 
-    def still(self, identity: Identity) -> bool:
+    def is_valid(self, identity: Identity) -> bool:
         """True while this identity is valid and unchanged."""
         return identity == SHELL or any(device.identity == identity for device in self.devices.all())
 

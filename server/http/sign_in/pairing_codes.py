@@ -49,7 +49,7 @@ class _Code:
     expires: float
 
 
-class Codes:
+class PairingCodes:
     """The codes that are valid now; times are of the steady clock, s."""
 
     def __init__(self, clock: Clock) -> None:

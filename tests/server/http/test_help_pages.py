@@ -8,14 +8,14 @@ import pytest
 from fastapi import FastAPI
 
 from server.http.help_pages import HelpPages, content_policy, make_help_router
-from server.http.security import Guard
+from server.http.security import SecurityMiddleware
 
 HTML = '<script src="x.js"></script><script id="c" type="application/json">{}</script><script>run()</script>'
 
 
 def get(folder: Path, path: str) -> httpx.Response:
     app = FastAPI()
-    app.add_middleware(Guard, allowed_hosts=["help"], port=80)
+    app.add_middleware(SecurityMiddleware, allowed_hosts=["help"], port=80)
     app.include_router(make_help_router(HelpPages(folder)))
 
     async def ask() -> httpx.Response:

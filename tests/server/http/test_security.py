@@ -4,7 +4,7 @@ from typing import Any
 import pytest
 from starlette.types import Message, Receive, Scope, Send
 
-from server.http.security import BODY_BYTES_MAX, Guard
+from server.http.security import BODY_BYTES_MAX, SecurityMiddleware
 
 HOSTS = ("localhost", "127.0.0.1", "[::1]", "turtle.local")
 OWN = "http://localhost:8000"
@@ -38,7 +38,7 @@ def ask(kind: str = "http", method: str = "GET", *, port: int = 8000, **headers:
         "headers": raw,
         "scheme": "ws" if kind == "websocket" else "http",
     }
-    asyncio.run(Guard(inner, HOSTS, port)(scope, receive, send))
+    asyncio.run(SecurityMiddleware(inner, HOSTS, port)(scope, receive, send))
     if kind == "websocket":
         return 101 if sent[0]["type"] == "websocket.accept" else 403
     status: int = sent[0]["status"]

@@ -1,7 +1,7 @@
 import pytest
 
 from robot_runtime.clock import SimulatedClock
-from server.http.sign_in.pairing_codes import CODES_MAX, Codes, TooManyTriesError, WrongCodeError
+from server.http.sign_in.pairing_codes import CODES_MAX, PairingCodes, TooManyTriesError, WrongCodeError
 from server.http.sign_in.tokens import CODE_ALPHABET, CODE_LENGTH, make_code, make_token
 
 
@@ -11,16 +11,16 @@ def clock() -> SimulatedClock:
 
 
 @pytest.fixture
-def codes(clock: SimulatedClock) -> Codes:
-    return Codes(clock)
+def codes(clock: SimulatedClock) -> PairingCodes:
+    return PairingCodes(clock)
 
 
-def try_wrong(codes: Codes) -> None:
+def try_wrong(codes: PairingCodes) -> None:
     with pytest.raises(WrongCodeError):
         codes.use("wrong")
 
 
-def test_a_code_works_once(codes: Codes) -> None:
+def test_a_code_works_once(codes: PairingCodes) -> None:
     code = codes.make("operator")
     assert codes.any_valid
     assert codes.use(code) == "operator"
@@ -29,17 +29,17 @@ def test_a_code_works_once(codes: Codes) -> None:
         codes.use(code)
 
 
-def test_a_code_may_be_typed_as_people_type(codes: Codes) -> None:
+def test_a_code_may_be_typed_as_people_type(codes: PairingCodes) -> None:
     code = codes.make("viewer")
     assert codes.use(f" {code.lower().replace('-', ' ')} ") == "viewer"
 
 
-def test_each_code_has_its_own_role(codes: Codes) -> None:
+def test_each_code_has_its_own_role(codes: PairingCodes) -> None:
     viewer, operator = codes.make("viewer"), codes.make("operator")
     assert (codes.use(operator), codes.use(viewer)) == ("operator", "viewer")
 
 
-def test_a_code_is_void_after_ten_minutes(codes: Codes, clock: SimulatedClock) -> None:
+def test_a_code_is_void_after_ten_minutes(codes: PairingCodes, clock: SimulatedClock) -> None:
     early, late = codes.make("operator"), codes.make("operator")
     clock.forward(599.9)
     assert codes.use(early) == "operator"
@@ -49,7 +49,7 @@ def test_a_code_is_void_after_ten_minutes(codes: Codes, clock: SimulatedClock) -
         codes.use(late)
 
 
-def test_three_wrong_codes_a_minute(codes: Codes, clock: SimulatedClock) -> None:
+def test_three_wrong_codes_a_minute(codes: PairingCodes, clock: SimulatedClock) -> None:
     code = codes.make("operator")
     for _ in range(3):
         try_wrong(codes)
@@ -64,7 +64,7 @@ def test_three_wrong_codes_a_minute(codes: Codes, clock: SimulatedClock) -> None
     assert codes.use(code) == "operator"
 
 
-def test_ten_wrong_codes_an_hour(codes: Codes, clock: SimulatedClock) -> None:
+def test_ten_wrong_codes_an_hour(codes: PairingCodes, clock: SimulatedClock) -> None:
     for _ in range(10):
         try_wrong(codes)
         clock.forward(60.0)
@@ -80,7 +80,7 @@ def test_ten_wrong_codes_an_hour(codes: Codes, clock: SimulatedClock) -> None:
     assert codes.use(code) == "operator"
 
 
-def test_refused_tries_do_not_prolong_the_wait(codes: Codes, clock: SimulatedClock) -> None:
+def test_refused_tries_do_not_prolong_the_wait(codes: PairingCodes, clock: SimulatedClock) -> None:
     for _ in range(3):
         try_wrong(codes)
     for _ in range(100):
@@ -90,19 +90,19 @@ def test_refused_tries_do_not_prolong_the_wait(codes: Codes, clock: SimulatedClo
     try_wrong(codes)
 
 
-def test_right_codes_are_no_tries(codes: Codes) -> None:
+def test_right_codes_are_no_tries(codes: PairingCodes) -> None:
     for _ in range(11):
         codes.use(codes.make("viewer"))
 
 
-def test_the_oldest_code_makes_room(codes: Codes) -> None:
+def test_the_oldest_code_makes_room(codes: PairingCodes) -> None:
     made = [codes.make("viewer") for _ in range(CODES_MAX + 1)]
     with pytest.raises(WrongCodeError):
         codes.use(made[0])
     assert all(codes.use(code) == "viewer" for code in made[1:])
 
 
-def test_what_is_kept_is_no_code(codes: Codes) -> None:
+def test_what_is_kept_is_no_code(codes: PairingCodes) -> None:
     code = codes.make("operator")
     assert code.replace("-", "") not in repr(vars(codes))
 

@@ -10,8 +10,8 @@ from starlette.requests import HTTPConnection
 
 from server.app import create_app
 from server.features.lease.admission import admit
-from server.http.sign_in.gate import OPEN
 from server.http.sign_in.identity import IDENTITY, SHELL
+from server.http.sign_in.middleware import OPEN
 from server.http.sign_in.policy import Need, list_needs, needs
 from server.platform.errors import ForbiddenError
 from server.platform.settings import DataFolder, Settings

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 import server.stream.hub as hub_module
 from robot_runtime.contract.packets import DEFINITIONS_HASH
 from robot_runtime.transport.blocks import Block, read_blocks
-from server.features.live.routes import NONSENSE_MAX
+from server.features.live.routes import INVALID_MAX
 from server.http.serving import MESSAGE_BYTES_MAX
 from server.platform.settings import Settings
 from tests.server.blocks import debug_block, depth_block, picture_block
@@ -172,11 +172,11 @@ def test_nonsense_is_answered_in_words_and_does_nothing(settings: Settings) -> N
 def test_nothing_but_nonsense_closes_the_socket(settings: Settings) -> None:
     async def scenario(served: Served) -> None:
         async with served.connect() as page:
-            for _ in range(NONSENSE_MAX - 1):
+            for _ in range(INVALID_MAX - 1):
                 await page.send("x")
             await page.send('{"op": "ping", "id": 1}')
             await next_text(page, "pong")
-            for _ in range(NONSENSE_MAX):
+            for _ in range(INVALID_MAX):
                 await page.send("x")
             with pytest.raises(ConnectionClosed) as closed:
                 await read_until(page, lambda _: False)

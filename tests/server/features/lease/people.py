@@ -5,7 +5,7 @@ from typing import Any
 
 from robot_runtime.clock import SimulatedClock
 from server.features.lease.arbiter import ControlArbiter
-from server.features.lease.driving import Drive
+from server.features.lease.driving import DriveCommand
 from server.http.sign_in.identity import Identity
 
 ANNA = Identity(1, "Anna", "operator", "browser")
@@ -26,7 +26,7 @@ class Seen:
     def _drive(self, data: bytes) -> None:
         self.driven.append(json.loads(data))
 
-    def drive(self, **changes: Any) -> Drive:
+    def drive(self, **changes: Any) -> DriveCommand:
         """A command that would pass, but for the changes."""
         whole = {
             "lease": self.arbiter.lease.epoch,
@@ -34,4 +34,4 @@ class Seen:
             "taken": self.clock.now(),
             "axes": [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
         }
-        return Drive.model_validate(whole | changes)
+        return DriveCommand.model_validate(whole | changes)

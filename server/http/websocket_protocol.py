@@ -16,7 +16,7 @@ _SHORT, _LONG = 125, 0xFFFF
 _HEAD, _HEAD_16, _HEAD_64 = Struct(">BB"), Struct(">BBH"), Struct(">BBQ")
 
 
-class Sockets(WebSocketsSansIOProtocol):
+class WebSocketProtocol(WebSocketsSansIOProtocol):
     """uvicorn's; binary messages go past websockets' own framing, which costs more than the system's send.
 
     It holds as long as nothing is compressed: `server.http.serving` turns that off.

@@ -19,7 +19,7 @@ NOBODY = (
 )
 
 
-class Gate:
+class SignInMiddleware:
     """ASGI middleware: puts the Identity of who asks into the scope; 401 where there is none, and 403 where
     a browser does not say that its page asks."""
 
