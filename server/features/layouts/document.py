@@ -62,7 +62,7 @@ class LayoutDocument(BaseModel):
             version = document.get("version")
             if version != VERSION or isinstance(version, bool):
                 raise _wrong(
-                    f"This layout has version {str(version)[:20]}; this program reads version {VERSION}. "
+                    f"This layout is of version {str(version)[:20]}; this program reads version {VERSION}. "
                     "Arrange the panels again, and save them."
                 )
         return document

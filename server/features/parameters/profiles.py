@@ -121,7 +121,7 @@ def read_file(text: str) -> ProfileFile:
     if content["format"] != FORMAT:
         raise ProfileError(
             f"The file is a profile of format {content['format']!r}, written by version "
-            f"{content.get('version')!r}; this version reads only format {FORMAT}. Open it with the version "
+            f"{content.get('version')!r}; this version reads format {FORMAT}. Open it with the version "
             "that wrote it."
         )
     try:

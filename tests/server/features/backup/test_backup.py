@@ -58,7 +58,7 @@ def test_a_backup_is_whole_private_and_has_a_checksum(
     assert sorted(one.name for one in tmp_path.iterdir()) == ["copy.db", "copy.db.sha256"]
     assert names(path) == ["two", "one"]
     assert run(settings, "backup", str(path)) == 1
-    assert "is there already" in capsys.readouterr().err
+    assert "exists already" in capsys.readouterr().err
 
 
 def test_a_backup_is_of_one_moment_while_it_is_written(settings: Settings, tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ def test_people_and_programs_are_let_in_and_out_from_the_shell(settings: Setting
                 ["3", "operator", "program"],
             ]
             assert [line.split()[-1] for line in listed] == ["first", "second", "script"]
-            assert "may not come in" in await say("access", "revoke", "2")
+            assert "is revoked" in await say("access", "revoke", "2")
             assert "no device 2" in await say("access", "revoke", "2", status=1)
             assert "an operator" in await say("pair")
 
