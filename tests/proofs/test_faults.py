@@ -6,8 +6,6 @@ from tests.board.rig import ROOT, build
 from tests.proofs import faults, outages
 from tests.proofs.faults import ROWS, Row
 
-pytestmark = pytest.mark.stack
-
 SLOW = {"capsized", "not_rising", "battery_low"}
 """Half a minute each; `tests/runtime/control/test_faults_in_water.py` has them, too."""
 
@@ -23,6 +21,7 @@ def test_a_fault_is_told_and_the_fins_stop_in_time(row: Row) -> None:
     assert faults.measure(row, 2, seed=3).problems == []
 
 
+@pytest.mark.stack
 @pytest.mark.timeout(300)
 def test_processes_that_are_killed_or_hang_stop_the_robot_and_come_back() -> None:
     outcomes = outages.measure(1, seed=3)

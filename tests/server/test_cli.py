@@ -20,8 +20,6 @@ from server.platform.pidfile import pid_file, running_parts
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders, read_settings
 from tests.server.waiting import alive
 
-pytestmark = pytest.mark.stack
-
 ROOT = Path(__file__).resolve().parents[2]
 
 

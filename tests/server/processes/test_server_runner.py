@@ -15,8 +15,6 @@ from server.platform.folder_lock import runner_of
 from server.platform.settings import DataFolder
 from tests.server.waiting import SECONDS, alive
 
-pytestmark = pytest.mark.stack
-
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("mucat-runner", "mucat-server")
 

@@ -20,8 +20,6 @@ from tests.server.blocks import state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
-pytestmark = pytest.mark.stack
-
 
 class Robot:
     """A real robot's settings, with a port that is there, and what uploads to it."""

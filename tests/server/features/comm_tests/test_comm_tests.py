@@ -30,8 +30,6 @@ from tests.board.rig import ROOT, build
 from tests.server.features.comm_tests.stored_runs import ENTRY, LOST, begin
 from tests.server.older import upgrade_to
 
-pytestmark = pytest.mark.stack
-
 
 @pytest.fixture(scope="module", autouse=True)
 def _board() -> None:

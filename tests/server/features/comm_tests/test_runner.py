@@ -20,8 +20,6 @@ from tests.board.rig import ROOT, build
 from tests.server.serving import Served, next_text, serve
 from tests.server.waiting import until
 
-pytestmark = pytest.mark.stack
-
 QUICK: dict[str, Any] = {
     "id": 1,
     "name": "two delays",

@@ -22,8 +22,6 @@ from server.features.scenarios.live_setup import LiveSetup
 from server.stream.bridge import Bridge
 from tests.stack import ROOT
 
-pytestmark = pytest.mark.stack
-
 STATE = {
     "set_point_default": 0.9,
     "set_point_detected": 1.1,

@@ -9,8 +9,6 @@ import pytest
 
 from tests.stack import ROOT
 
-pytestmark = pytest.mark.stack
-
 DISK = "4m"
 
 
