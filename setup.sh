@@ -40,6 +40,7 @@ wish libgl1-mesa-dri "/usr/lib/*/dri/*_dri.so"
 if [ "${1:-run}" = test ]; then
     need g++ g++
     need chromium chromium
+    need chromium-headless-shell chromium-headless-shell
     need clang-format clang-format
     need iproute2 ip
     need clang clang

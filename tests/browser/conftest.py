@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, sync_playwright
 
 from robot_runtime.transport.zenoh_transport import ZenohTransport
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
+from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, sign_in
 from tests.stack import Stack
 
 DESKTOP: ViewportSize = {"width": 1440, "height": 900}
@@ -27,9 +27,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=HEADLESS_SHELL, args=ARGUMENTS)
         yield browser
         browser.close()
+
+
+@pytest.fixture(autouse=True)
+def _no_page_is_left(browser: Browser) -> Iterator[None]:
+    """Close what a test that fails has left open: such pages would take the computer from the tests after it."""
+    before = list(browser.contexts)
+    yield
+    for context in [one for one in browser.contexts if one not in before]:
+        context.close()
 
 
 @pytest.fixture(scope="package")

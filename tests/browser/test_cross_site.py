@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, StorageState
 
-from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL
 from tests.stack import Stack
 
 FOREIGN = "evil.example"
@@ -109,7 +109,7 @@ def evil_port() -> Iterator[int]:
 def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
     """Somebody's browser, signed in, in a net whose names an attacker may choose."""
     rules = f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"
-    other = browser.browser_type.launch(executable_path=EXECUTABLE, args=[*ARGUMENTS, rules])
+    other = browser.browser_type.launch(executable_path=HEADLESS_SHELL, args=[*ARGUMENTS, rules])
     yield other.new_context(storage_state=cookies)
     other.close()
 

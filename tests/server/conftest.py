@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
+from tests.server.new_database import place_empty
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def settings() -> Iterator[Settings]:
 
 @pytest.fixture
 def store(settings: Settings) -> Iterator[Store]:
-    prepare(settings.data)
+    place_empty(settings.data)
     store = Store(settings.data.database)
     yield store
     store.close()

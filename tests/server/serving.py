@@ -22,6 +22,7 @@ from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.processes.supervisor import ProcessCommand
 from server.stream.bridge import RuntimeSilentError
+from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import SECONDS, until
 from tests.shell import ShellToken, shell_headers
@@ -74,6 +75,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
     certificate = prepare_certificate(settings) if settings.tls else None
     with open_socket("127.0.0.1", 0) as listener:
         settings = replace(settings, port=listener.getsockname()[1])
+        await place_with_samples(settings.data)
         prepare(settings.data)
         app = create_app(settings, commands)
         server = make_server(app, certificate)
@@ -84,7 +86,7 @@ async def serve(settings: Settings, commands: Sequence[ProcessCommand] = ()) -> 
                 await until(lambda: server.started or running.done(), "the server to start")
                 url = f"{settings.scheme}://127.0.0.1:{settings.port}/api"
                 shell = ShellToken(settings.data)
-                verify = trust_only(settings.data) if settings.tls else True
+                verify = trust_only(settings.data) if settings.tls else False
                 async with httpx.AsyncClient(base_url=url, timeout=10, auth=shell, verify=verify) as api:
                     served = Served(settings, app.state.container, api, runtime)
                     await served.heard("stream")

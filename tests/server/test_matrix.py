@@ -17,9 +17,9 @@ from starlette.types import Message
 from server.app import create_app
 from server.container import Container
 from server.http.sign_in.policy import MESSAGES
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
+from tests.server.new_database import place_with_samples
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
@@ -301,7 +301,7 @@ class LiveSocket:
 @asynccontextmanager
 async def open_house(settings: Settings) -> AsyncIterator[House]:
     """A running application, and everybody signed in; who is in control has a live page."""
-    prepare(settings.data)
+    await place_with_samples(settings.data)
     app = create_app(settings)
     with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
         async with app.router.lifespan_context(app):
