@@ -34,7 +34,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(autouse=True)
 def _no_page_is_left(browser: Browser) -> Iterator[None]:
-    """Close what a test that fails has left open: such pages would take the computer from the tests after it."""
+    """Close what a failed test has left open: such pages would take the computer from the tests after it."""
     before = list(browser.contexts)
     yield
     for context in [one for one in browser.contexts if one not in before]:
