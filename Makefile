@@ -14,9 +14,11 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
+# Named, so that nothing else is collected.
+REAL_TIME = tests/browser $(shell grep -rl --include='test_*.py' mark.stack tests)
 
 .DEFAULT_GOAL := help
-.PHONY: help run test long check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -25,16 +27,19 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every test, after every check
+test: ## every check and every test; what one of the two lanes says comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory check
-	$(PYTHON) -m pytest -m "not stack and not long" --numprocesses 2 --dist loadfile
-	$(PYTHON) -m pytest -m "stack and not long"
-	cd frontend && npm test --silent
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=line test-real-time test-rest
 
-long: setup-test ## the tests that take minutes: the thesis's whole example in the browser
-	$(PYTHON) -m pytest -m long
+# Robots in real time are served first. Each takes half a core or more, so that there is one of them at a time.
+test-real-time:
+	$(PYTHON) -m pytest -m stack $(REAL_TIME)
+
+test-rest:
+	@nice $(MAKE) --no-print-directory check
+	cd frontend && nice npm test --silent
+	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check
