@@ -16,6 +16,7 @@ PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -t
 HELP_SOURCES := $(shell find docs -type f)
 # Named, so that nothing else is collected.
 REAL_TIME = tests/browser $(shell grep -rl --include='test_*.py' mark.stack tests)
+LONGEST_FIRST := tests/server/features/comm_tests/test_thesis_example.py tests/documents tests/proofs tests
 
 .DEFAULT_GOAL := help
 .PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
@@ -39,7 +40,8 @@ test-real-time:
 test-rest:
 	@nice $(MAKE) --no-print-directory check
 	cd frontend && nice npm test --silent
-	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile
+	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile \
+		--no-loadscope-reorder $(LONGEST_FIRST)
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check
