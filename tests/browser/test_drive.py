@@ -87,7 +87,7 @@ def look_away(page: Page) -> float:
     session.send("Emulation.setFocusEmulationEnabled", {"enabled": False})
     page.evaluate("addEventListener('blur', () => { globalThis.left = Date.now(); })")
     page.context.new_page().bring_to_front()
-    return float(page.wait_for_function("globalThis.left").json_value()) / 1000
+    return float(page.wait_for_function("() => globalThis.left").json_value()) / 1000
 
 
 def exported(stack: Stack, session: int) -> dict[str, list[dict[str, str]]]:
