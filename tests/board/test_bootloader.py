@@ -153,6 +153,7 @@ def test_a_program_that_reaches_into_the_boot_loader_is_refused(tmp_path: Path) 
         assert rig.board.stats()["crashes"] == 0
 
 
+@pytest.mark.stack
 def test_avrdude_uploads_a_program_and_then_the_robots(tmp_path: Path) -> None:
     build(ROOT / "firmware", "robot")
     with empty_board(tmp_path) as (process, board):
@@ -168,6 +169,7 @@ def test_avrdude_uploads_a_program_and_then_the_robots(tmp_path: Path) -> None:
         assert [type_ for type_, _ in frame.messages] == [Hello.type]
 
 
+@pytest.mark.stack
 def test_an_interrupted_upload_can_be_done_again(tmp_path: Path) -> None:
     with empty_board(tmp_path) as (process, board):
         avrdude = upload(process.tty, SKETCHES / "monitor.hex")
@@ -179,6 +181,7 @@ def test_an_interrupted_upload_can_be_done_again(tmp_path: Path) -> None:
         assert echoes(process, board)
 
 
+@pytest.mark.stack
 def test_an_upload_at_a_wrong_speed_fails_and_changes_nothing(tmp_path: Path) -> None:
     with empty_board(tmp_path) as (process, board):
         insist_on_upload(process.tty, SKETCHES / "echo.hex")

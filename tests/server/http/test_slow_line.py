@@ -6,12 +6,17 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.transport.blocks import read_blocks, read_rows
+from robot_runtime.transport.outbox import STREAM
+from robot_runtime.transport.zenoh_transport import ZenohTransport
 from tests.stack import ROOT, Stack
 
 pytestmark = pytest.mark.stack
 
 BAUD = 9600
 PATIENCE = 20.0
+DEEP = 0.4
+"""m; its set point is 0.5."""
 
 
 def test_the_whole_robot_dives_at_9600_baud(tmp_path: Path) -> None:
@@ -23,6 +28,7 @@ def test_the_whole_robot_dives_at_9600_baud(tmp_path: Path) -> None:
         wait_for(stack, lambda state: state["refusals"] == [])
         stack.api.post("/robot/commands/arm").raise_for_status()
         frames = wait_for_navigation(stack)
+        wait_for_depth(stack)
         state = stack.api.get("/robot").json()
         assert (state["baud"], state["armed"]) == (BAUD, True)
         assert {pace["topic"]: round(pace["period"], 2) for pace in state["paces"]}["depth"] == 0.07
@@ -38,6 +44,24 @@ def wait_for(stack: Stack, holds: Any) -> None:
     while not holds(stack.api.get("/robot").json()):
         assert time.monotonic() < end, stack.api.get("/robot").json()
         time.sleep(0.05)
+
+
+def wait_for_depth(stack: Stack) -> None:
+    """Wait until the robot's own sensor says that it is deep."""
+    depths: list[float] = []
+
+    def take(_: str, data: bytes) -> None:
+        for block in read_blocks(data):
+            if block.topic.name == "depth":
+                depths.extend(record.depth for _, record in read_rows(block))
+
+    end = time.monotonic() + PATIENCE
+    runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
+    with ZenohTransport("turtle", connect=[runtime], client=True) as messages:
+        messages.subscribe(STREAM, take)
+        while not depths or depths[-1] < DEEP:
+            assert time.monotonic() < end, depths[-5:]
+            time.sleep(0.05)
 
 
 def wait_for_navigation(stack: Stack) -> Any:

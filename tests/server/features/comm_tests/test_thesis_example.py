@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from bench.samples import FOLDER
 from server.cli import main
-from server.features.comm_tests.samples.__main__ import FOLDER
 from server.features.comm_tests.shipped import THESIS
 from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
