@@ -9,7 +9,7 @@ from server.platform.settings import DataFolder
 from tests.shell import ShellToken
 
 EXECUTABLE = Path(__file__).with_name("chromium.sh")
-"""The whole browser: what the benchmark and the screenshots look at."""
+"""The whole browser, for the benchmark, the screenshots, and what needs a window."""
 HEADLESS_SHELL = Path(__file__).with_name("headless_shell.sh")
 """Its engine without windows: what the tests look at. A new page takes it a third of the browser's time."""
 ARGUMENTS = [

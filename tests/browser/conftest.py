@@ -65,16 +65,17 @@ def any_page(
     request: pytest.FixtureRequest, browser: Browser, stack: Stack, cookies: StorageState
 ) -> Iterator[Page]:
     """The page at both sizes; what its code complains about fails the test."""
-    yield from _open(browser, stack, cookies, request.param)
+    yield from open_page(browser, stack, cookies, request.param)
 
 
 @pytest.fixture
 def page(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
     """The page at desktop size; what its code complains about fails the test."""
-    yield from _open(browser, stack, cookies, DESKTOP)
+    yield from open_page(browser, stack, cookies, DESKTOP)
 
 
-def _open(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
+def open_page(browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
+    """The page at this size, robot at the surface; afterwards all is at rest."""
     # Charts then move once a second, which leaves the computer to what is tested.
     context = browser.new_context(
         viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"

@@ -6,10 +6,14 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.driving import hold_to_arm
+from tests.browser.pages import samples
+from tests.proofs.watching import wait
 from tests.stack import Stack
 
 STEP_MS = 20_000
 LINES = ".scatterlayer .trace path.js-line"
+DRAWN = 500
+"""Samples, of about 300 a second."""
 
 
 def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
@@ -18,7 +22,7 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
     page.goto(f"{stack.url}/#/operate")
     if armed:
         hold_to_arm(page)
-    page.wait_for_timeout(2500)  # so that there is something to be drawn
+    wait(lambda: samples(stack, session["id"]) > DRAWN, "something to be drawn")
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
     return int(session["id"])

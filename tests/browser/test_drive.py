@@ -14,7 +14,8 @@ import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
 from server.platform.settings import DataFolder
-from tests.browser.conftest import PHONE, put_to_rest
+from tests.browser.chromium import ARGUMENTS, EXECUTABLE
+from tests.browser.conftest import DESKTOP, PHONE, open_page, put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
 from tests.exports import export_session
 from tests.proofs.watching import Fins
@@ -53,7 +54,16 @@ def expect_full_speed(page: Page) -> None:
     expect(command.locator(".value").first).to_have_text(re.compile(r"^\s*1\.00$"))
 
 
-def test_keys_drive_and_rest_where_nobody_looks(page: Page, stack: Stack) -> None:
+@pytest.fixture
+def in_a_window(browser: Browser, stack: Stack, cookies: StorageState) -> Iterator[Page]:
+    """The page in the whole browser: without windows no page leaves the front for another."""
+    whole = browser.browser_type.launch(executable_path=EXECUTABLE, args=ARGUMENTS)
+    yield from open_page(whole, stack, cookies, DESKTOP)
+    whole.close()
+
+
+def test_keys_drive_and_rest_where_nobody_looks(in_a_window: Page, stack: Stack) -> None:
+    page = in_a_window
     session = stack.api.post("/sessions", json={"name": "by hand"}).raise_for_status().json()["id"]
     arm_by_hand(page)
     page.keyboard.press("9")
