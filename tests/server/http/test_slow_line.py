@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from robot_runtime.contract.packets import Depth
 from robot_runtime.transport.blocks import read_blocks, read_rows
 from robot_runtime.transport.outbox import STREAM
 from robot_runtime.transport.zenoh_transport import ZenohTransport
@@ -53,7 +54,7 @@ def wait_for_depth(stack: Stack) -> None:
     def take(_: str, data: bytes) -> None:
         for block in read_blocks(data):
             if block.topic.name == "depth":
-                depths.extend(record.depth for _, record in read_rows(block))
+                depths.extend(record.depth for _, record in read_rows(block) if isinstance(record, Depth))
 
     end = time.monotonic() + PATIENCE
     runtime = f"unixsock-stream/{stack.data}/run/runtime.sock"
