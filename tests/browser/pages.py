@@ -30,7 +30,7 @@ PAGES = (
     View("tune-vision", "tune/vision", "Tune"),
     View("scenarios", "scenarios", "New run"),
     View("comm-tests", "comm-tests", "Runs"),
-    View("comm-test", "comm-tests/runs/{run}", "Every cell"),
+    View("comm-test", "comm-tests/runs/{run}", "All cells"),
     View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Compare runs"),
     View("sessions", "sessions", "Recorded"),
     View("session", "sessions/{first}", "Export"),

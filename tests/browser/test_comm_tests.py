@@ -88,7 +88,7 @@ def check_run(page: Page, tmp_path: Path, grid: Grid, timeout: float) -> None:
     expect(figure).to_be_visible(timeout=timeout)
     expect(page.get_by_text("complete", exact=True)).to_be_visible()
     expect(figure.locator(".point")).to_have_count(many, timeout=STEP_MS)
-    shown = {place_of(row): (row[3], row[4]) for row in rows_of(page, "Every cell")}
+    shown = {place_of(row): (row[3], row[4]) for row in rows_of(page, "All cells")}
     assert set(shown) == set(grid.places)
 
     check_explanation(page, grid.places.index(EXPLAINED), shown[EXPLAINED][1])
@@ -100,7 +100,7 @@ def check_run(page: Page, tmp_path: Path, grid: Grid, timeout: float) -> None:
 def make_smaller(page: Page, grid: Grid) -> None:
     """The same test with fewer cells."""
     page.get_by_role("button", name="Edit", exact=True).click()
-    for label, values in zip(("Bauds", "Arduino's delays", "Pi's delays"), grid, strict=True):
+    for label, values in zip(("Baud rates", "Arduino delays", "Pi delays"), grid, strict=True):
         page.get_by_label(re.compile(f"^{label}")).fill(", ".join(f"{value:g}" for value in values))
 
 
@@ -128,7 +128,7 @@ def check_csv(page: Page, tmp_path: Path, shown: dict[Place, tuple[str, str]]) -
         place = int(row["baud"]), float(row["arduino_delay"]), float(row["pi_delay"])
         rate, causes = shown[place]
         assert f"{float(row['rate']):.2f}" == rate, place
-        assert (row["causes"] or "nothing") == causes, place
+        assert (row["causes"] or "none") == causes, place
 
 
 def check_json(page: Page, tmp_path: Path, grid: Grid) -> None:
@@ -150,7 +150,7 @@ def check_comparison(page: Page, shown: dict[Place, str]) -> None:
     expect(page.get_by_role("heading", name="Compare runs")).to_be_visible()
     expect(page.locator(".point")).to_have_count(75 + 2 * len(shown), timeout=STEP_MS)
     thesis = read_table("table6")
-    rows = rows_of(page, "Every cell")
+    rows = rows_of(page, "All cells")
     assert len(rows) == 75
     for row in rows:
         place = place_of(row)
@@ -166,11 +166,11 @@ def check_comparison(page: Page, shown: dict[Place, str]) -> None:
 def test_a_bad_document_is_told_field_by_field(page: Page) -> None:
     open_comm_tests(page)
     page.get_by_role("button", name="Edit", exact=True).click()
-    page.get_by_label("Bauds, bit/s").fill("9600, 300000")
-    expect(page.get_by_role("textbox", name="Bauds, bit/s")).to_have_attribute("aria-invalid", "true")
+    page.get_by_label("Baud rates, bit/s").fill("9600, 300000")
+    expect(page.get_by_role("textbox", name="Baud rates, bit/s")).to_have_attribute("aria-invalid", "true")
     expect(page.get_by_text("Entry 2 is")).to_be_visible()
     expect(page.get_by_role("button", name="Start the test")).to_be_disabled()
-    page.get_by_label("Bauds, bit/s").fill("9600, 250000")
+    page.get_by_label("Baud rates, bit/s").fill("9600, 250000")
     expect(page.get_by_role("button", name="Start the test")).to_be_enabled()
     page.get_by_role("button", name="JSON").click()
     document = page.get_by_role("textbox", name="The document as JSON")
@@ -204,7 +204,7 @@ def test_a_newcomer_sees_the_samples_beside_the_thesis(any_page: Page) -> None:
     any_page.get_by_role("link", name="Comm tests", exact=True).click()
     any_page.get_by_role("link", name="Compare with the thesis").click()
     compared = any_page.get_by_role("region", name="Compared runs")
-    expect(compared.get_by_role("row").filter(has_text="robot's own link")).to_contain_text("1.00")
+    expect(compared.get_by_role("row").filter(has_text="own link")).to_contain_text("1.00")
     expect(any_page.locator(".point").first).to_be_visible(timeout=STEP_MS)
     wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
     assert any_page.evaluate(wider) == 0

@@ -82,10 +82,10 @@ export const scenarios = {
     notRecorded: 'Nothing was recorded.',
     session: 'Session',
     compare: 'Compare with the previous run',
-    hints: {
-      complete: 'Ran to the end',
-      cancelled: 'Cancelled before the end. The recording is saved.',
-      failed: 'Stopped by an error. The recording is saved.',
+    states: {
+      complete: { name: 'complete', meaning: 'Ran to the end.' },
+      cancelled: { name: 'cancelled', meaning: 'Cancelled before the end. The recording is saved.' },
+      failed: { name: 'failed', meaning: 'Stopped by an error. The recording is saved.' },
     },
   },
 } as const;

@@ -36,9 +36,9 @@ export const sessions = {
       `${origin}${scenario ? ` “${scenario}”` : ''}${bookmarks ? `, ${bookmarks}` : ''}`,
   },
   states: {
-    recording: 'still recording',
-    complete: 'recorded to the end',
-    interrupted: 'the server stopped during the recording; data up to then is stored',
+    recording: { name: 'recording', meaning: 'Still recording.' },
+    complete: { name: 'complete', meaning: 'Recorded to the end.' },
+    interrupted: { name: 'interrupted', meaning: 'The server stopped during the recording. The data up to then is stored.' },
   },
   origins: {
     operator: 'by hand',

@@ -77,11 +77,11 @@ export const tune = {
     actions: 'Rename or delete',
     name: 'Name of the run',
     states: {
-      running: 'Running now',
-      complete: 'Measured to the end',
-      stopped: 'Ended by a person, or the robot was disarmed',
-      failed: 'Ended early',
-      interrupted: 'The server stopped during the run',
+      running: { name: 'running', meaning: 'Running now.' },
+      complete: { name: 'complete', meaning: 'Measured to the end.' },
+      stopped: { name: 'stopped', meaning: 'Ended by a person, or the robot was disarmed.' },
+      failed: { name: 'failed', meaning: 'Ended early.' },
+      interrupted: { name: 'interrupted', meaning: 'The server stopped during the run.' },
     },
   },
   curves: {

@@ -1,4 +1,5 @@
 /** The test document as text and as tests: what the form shows and changes is the text, and nothing beside it. */
+import { commTests as texts } from '../../texts/comm_tests';
 
 /** One test with its fields as they stand, also those that the server will refuse. */
 export type Fields = Readonly<Record<string, unknown>>;
@@ -14,13 +15,13 @@ export function readDocument(text: string): Reading {
   try {
     document = JSON.parse(text);
   } catch (problem) {
-    return { problem: `The text is not JSON: ${problem instanceof Error ? problem.message : String(problem)}` };
+    return { problem: texts.editor.notJson(problem instanceof Error ? problem.message : String(problem)) };
   }
   if (!Array.isArray(document) || document.length === 0) {
-    return { problem: 'The document must be a list, in brackets, of one or more tests.' };
+    return { problem: texts.editor.notList };
   }
   const entries: readonly unknown[] = document;
-  if (!entries.every(isFields)) return { problem: 'Each test of the document must be an object in braces.' };
+  if (!entries.every(isFields)) return { problem: texts.editor.notObject };
   return { tests: entries };
 }
 
@@ -109,22 +110,15 @@ export function faultText(test: Fields, name: string, place?: number): string {
   return one === undefined || one === null ? '' : entryText(one);
 }
 
-const FAULTS: Readonly<Record<string, (value: string, second: string) => string>> = {
-  bit_errors: (rate) => `flipped bits ${rate}`,
-  drop: (rate) => `dropped bytes ${rate}`,
-  double: (rate) => `doubled bytes ${rate}`,
-  insert: (rate) => `inserted bytes ${rate}`,
-  burst: (rate, bits) => `bursts ${rate} of ${bits} bits`,
-  stall: (every, seconds) => `a stall of ${seconds} s every ${every} s`,
-  cut: (every, seconds) => `cut for ${seconds} s every ${every} s`,
-};
+/** The summaries of faults, by the fault's field. */
+const FAULTS: Readonly<Record<string, (value: string, second: string) => string>> = texts.faults.summary;
 
-/** Whether the field beside which `FaultFields` tells of a problem is of this name. */
+/** Whether `FaultFields` shows the problems of the field of this name. */
 export function isFault(name: string): boolean {
   return ['faults', 'faults.seed', ...Object.keys(FAULTS).map((one) => `faults.${one}`)].includes(name);
 }
 
-/** What a test does to its line, in words; '' where nothing. */
+/** The faults of a test's line in words; '' where there are none. */
 export function faultWords(test: Fields): string {
   return Object.entries(FAULTS)
     .map(([name, say]) => {

@@ -7,6 +7,7 @@
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { facetColumns, gridOf, key, placeWords, type Grid, type Place } from './grid';
 import type { Paint } from './scale';
+import { commTests as texts } from '../../texts/comm_tests';
 
 export interface FigureCell {
   readonly place: Place;
@@ -80,7 +81,7 @@ export function drawFigure(cells: readonly FigureCell[], width: number, chosen: 
     hoverlabel: { bgcolor: look.panel, bordercolor: look.line, font },
     barmode: 'overlay',
     annotations: facets.map(({ baud, x, y }) => ({
-      text: `${baud} baud`,
+      text: texts.baud(baud),
       xref: 'paper',
       yref: 'paper',
       x: (x[0] + x[1]) / 2,
@@ -130,7 +131,7 @@ function acrossAxis({ suffix, x, cellWide }: Facet, { piDelays }: Grid) {
     side: 'top',
     range: [-0.5, piDelays.length - 0.5],
     tickvals: piDelays.map((_, at) => at),
-    ticktext: piDelays.map((delay) => (cellWide < TEXT_LEAST ? String(delay) : `${delay} s`)),
+    ticktext: piDelays.map((delay) => (cellWide < TEXT_LEAST ? String(delay) : texts.delay(delay))),
     tickangle: 0,
   };
 }
@@ -142,7 +143,7 @@ function downAxis({ suffix, y, leftmost }: Facet, { arduinoDelays }: Grid) {
     anchor: `x${suffix}`,
     range: [arduinoDelays.length - 0.5, -0.5],
     tickvals: arduinoDelays.map((_, at) => at),
-    ticktext: arduinoDelays.map((delay) => `${delay} s`),
+    ticktext: arduinoDelays.map(texts.delay),
     showticklabels: leftmost,
   };
 }

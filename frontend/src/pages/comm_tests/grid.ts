@@ -1,4 +1,5 @@
-/** Places of a test's grid: a baud (bit/s), the Arduino's and the Pi's delay after each number (s). */
+/** Places of a test's grid: a baud rate (bit/s), the Arduino's and the Pi's delay after each number (s). */
+import { commTests as texts } from '../../texts/comm_tests';
 
 export interface Place {
   readonly baud: number;
@@ -16,7 +17,7 @@ export const key = ({ baud, arduino_delay, pi_delay }: Place): string => `${baud
 
 /** A place in words: 9600 baud, Arduino 0.5 s, Pi 0 s. */
 export const placeWords = ({ baud, arduino_delay, pi_delay }: Place): string =>
-  `${baud} baud, Arduino ${arduino_delay} s, Pi ${pi_delay} s`;
+  texts.place(baud, arduino_delay, pi_delay);
 
 /** Every value that occurs along each side, the least first. */
 export function gridOf(places: readonly Place[]): Grid {

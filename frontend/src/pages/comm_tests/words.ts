@@ -1,42 +1,28 @@
-/** What the server names, in words for people. */
+/** Names and numbers of tests in words. */
+import type { CommTestSummary } from '../../api';
 import { MISSING } from '../../format';
+import { commTests as texts } from '../../texts/comm_tests';
 
-export const FRAMINGS: Readonly<Record<string, string>> = {
-  plain: 'plain numbers',
-  thesis: "thesis's packet",
-  robot: "robot's own link",
-};
+const FRAMINGS: Readonly<Record<string, { readonly name: string }>> = texts.framings;
 
-export const DIRECTIONS: Readonly<Record<string, string>> = {
-  to_board: 'Pi to Arduino',
-  to_host: 'Arduino to Pi',
-  both: 'both ways at once',
-};
-
-export const PLACES: Readonly<Record<string, string>> = {
-  emulated: 'emulated time',
-  robot: "robot's board",
-};
-
-/** What a run is, beside its name. */
-export function aboutRun(run: { readonly framing: string; readonly direction: string }): string {
-  return `${FRAMINGS[run.framing] ?? run.framing}, ${DIRECTIONS[run.direction] ?? run.direction}`;
+/** The framing and the direction of a run. */
+export function aboutRun(run: Pick<CommTestSummary, 'framing' | 'direction'>): string {
+  return texts.method(FRAMINGS[run.framing]?.name ?? run.framing, texts.directions[run.direction].name);
 }
 
-/** A time that nobody needs to the second: about 40 s, about 3 min, about 1 h 10 min. */
+/** A time rounded for reading: about 40 s, about 3 min, about 1 h 10 min. */
 export function roughly(seconds: number): string {
-  if (seconds < 55) return `about ${Math.max(5, Math.ceil(seconds / 5) * 5)} s`;
+  if (seconds < 55) return texts.progress.aboutSeconds(Math.max(5, Math.ceil(seconds / 5) * 5));
   const minutes = Math.max(1, Math.round(seconds / 60));
-  if (minutes < 60) return `about ${minutes} min`;
-  const rest = minutes % 60;
-  return `about ${Math.floor(minutes / 60)} h${rest === 0 ? '' : ` ${rest} min`}`;
+  if (minutes < 60) return texts.progress.aboutMinutes(minutes);
+  return texts.progress.aboutHours(Math.floor(minutes / 60), minutes % 60);
 }
 
-/** What is left of a test, of which `remaining` s were left `ago` s ago. */
+/** The remaining time of a test, of which `remaining` s were left `ago` s ago. */
 export function remainingWords(remaining: number | null, ago: number): string {
-  if (remaining === null) return 'not known yet';
+  if (remaining === null) return texts.progress.unknown;
   const left = remaining - ago;
-  return left < 1 ? 'a moment' : roughly(left);
+  return left < 1 ? texts.progress.moment : roughly(left);
 }
 
 /** A rate as the thesis prints it. */
