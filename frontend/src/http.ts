@@ -1,7 +1,9 @@
 /** How the page talks to the server: what every call carries, how long it may take, and what went wrong in words. */
+import { connection } from './texts/connection';
 
 export type Answer<T> = { readonly value: T } | { readonly problem: string };
 
+const texts = connection.requests;
 const TIMEOUT = 5000;
 const SAFE = 'GET';
 const UNAUTHORISED = 401;
@@ -49,7 +51,7 @@ export async function send<T>(
     if (!response.ok) return refused(response.status, await response.text());
     return { value: await read(response) };
   } catch {
-    return { problem: 'The server does not answer. Look whether it runs and whether this device is in its network.' };
+    return { problem: texts.noAnswer };
   }
 }
 
@@ -81,7 +83,7 @@ export function upload<T>(path: string, file: File, progress: (share: number) =>
       if (sending.status >= 400) resolve(refused(sending.status, sending.responseText));
       else resolve({ value: JSON.parse(sending.responseText) as T });
     };
-    sending.onerror = () => resolve({ problem: `${file.name} could not be sent whole. Look whether the server runs, and try again.` });
+    sending.onerror = () => resolve({ problem: texts.uploadFailed(file.name) });
     sending.open('POST', `/api${path}`);
     for (const [name, value] of Object.entries(headers('POST'))) sending.setRequestHeader(name, value);
     sending.send(file);
@@ -111,7 +113,7 @@ export async function download(path: string, progress: (received: number, total:
     const blob = await new Response(response.body.pipeThrough(counted)).blob();
     return { value: { blob, name } };
   } catch {
-    return { problem: 'The download was broken off. Look whether the server runs and whether this device is in its network.' };
+    return { problem: texts.downloadFailed };
   }
 }
 
@@ -123,5 +125,5 @@ function describe(status: number, text: string): string {
   } catch {
     // Not JSON: something between the page and the server answered in its place.
   }
-  return `The server refused with status ${status} and gave no reason. Try again, and look into its log.`;
+  return texts.noReason(status);
 }

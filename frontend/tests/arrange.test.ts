@@ -27,7 +27,7 @@ describe('Arranger', () => {
   it('lets a panel change places with the one that it is moved into most', () => {
     const done = arranger.move(PANELS_THREE, 'a', 1, 0);
     expect([where(done, 'a'), where(done, 'b')]).toEqual([[12, 0, 12, 12], [0, 0, 12, 12]]);
-    expect(done).toHaveProperty('told', 'a and b have changed places.');
+    expect(done).toHaveProperty('told', 'a and b swapped places.');
   });
 
   it('stops at the edges', () => {
@@ -122,15 +122,15 @@ describe('readLayout', () => {
 
   it('refuses another version before it looks at anything else', () => {
     expect(readLayout({ ...good, version: 2, panels: 'elsewhere' })).toEqual({
-      problem: 'This layout is of version 2; this program reads version 1. Nothing was changed.',
+      problem: 'This layout has version 2. This program reads version 1. Nothing was changed.',
     });
   });
 
   it.each([
-    ['{', 'no layout'],
-    [null, 'no layout'],
-    [[good], 'no layout'],
-    [{ ...good, format: 'other' }, 'no layout'],
+    ['{', 'not a panel layout'],
+    [null, 'not a panel layout'],
+    [[good], 'not a panel layout'],
+    [{ ...good, format: 'other' }, 'not a panel layout'],
     [{ ...good, panels: {} }, 'damaged'],
     [{ ...good, panels: [...good.panels, ...good.panels] }, 'damaged'],
     [{ ...good, panels: [panel('a', 20, 0, 5, 5)] }, 'damaged'],

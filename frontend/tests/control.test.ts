@@ -90,7 +90,7 @@ describe('a page and the control', () => {
     control.greet({ ...OPERATOR, role: 'viewer' });
     control.hear(message());
     expect(asked).toEqual([]);
-    expect(control.barred).toBe('Viewers may watch and STOP.');
+    expect(control.barred).toBe('Viewers can watch and press STOP.');
   });
 
   it('says in words why it cannot command', () => {
@@ -99,7 +99,7 @@ describe('a page and the control', () => {
     control.hear(message({ holder: other }));
     expect(control.barred).toContain('Safari on iPad');
     control.hear(message());
-    expect(control.barred).toContain('take it');
+    expect(control.barred).toContain('Take control');
     control.hear(message({ holder: { client: 1, name: 'me' } }));
     expect(control.barred).toBeNull();
     control.leave();

@@ -80,5 +80,5 @@ def test_pause_zoom_and_cursor(any_page: Page) -> None:
     expect(cursor).to_have_attribute("aria-valuemin", "-60")
     pinch(page, cursor)
     expect(panel.get_by_text("Zoomed")).to_be_visible()
-    panel.get_by_role("button", name="Go on").click()
+    panel.get_by_role("button", name="Resume").click()
     expect(cursor).to_have_attribute("aria-valuemin", "-60")

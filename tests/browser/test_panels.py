@@ -93,7 +93,7 @@ def test_panels_are_arranged_kept_and_reset(fresh: Page, stack: Stack) -> None:
     told = bar.get_by_role("status")
 
     handle(page, "Attitude").press("ArrowDown")
-    expect(told).to_have_text("Attitude and Fins have changed places.")
+    expect(told).to_have_text("Attitude and Fins swapped places.")
     expect(handle(page, "Fins")).to_have_accessible_name("Fins: column 18, row 1, 7 wide, 6 high")
     handle(page, "Camera").press("Shift+ArrowLeft")
     expect(told).to_have_text("Camera: 16 wide, 11 high.")
@@ -105,7 +105,7 @@ def test_panels_are_arranged_kept_and_reset(fresh: Page, stack: Stack) -> None:
     expect(told).to_have_text("Fins cannot be smaller.")
 
     drag(page, handle(page, "Navigation command"), handle(page, "Events"))
-    expect(told).to_have_text("Navigation command and Events have changed places.")
+    expect(told).to_have_text("Navigation command and Events swapped places.")
     handle(page, "Console").press("Delete")
     add(page, bar, "Chart")
     bar.get_by_role("button", name="Undo").click()
@@ -151,19 +151,19 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
 
     bar.get_by_role("button", name="File").click()
     file.write_text(json.dumps(layout | {"version": 2, "panels": []}))
-    bar.get_by_label("A layout’s file").set_input_files(file)
+    bar.get_by_label("Open a layout file").set_input_files(file)
     expect(bar.get_by_role("alert")).to_have_text(
-        "This layout is of version 2; this program reads version 1. Nothing was changed."
+        "This layout has version 2. This program reads version 1. Nothing was changed."
     )
     after = [one.get_attribute("aria-label") for one in page.get_by_role("application", name="column").all()]
     assert after == before
 
     unknown = {"id": "a", "panel": "sonar", "x": 0, "y": 0, "width": 6, "height": 6}
     file.write_text(json.dumps(layout | {"panels": [unknown]}))
-    bar.get_by_label("A layout’s file").set_input_files(file)
+    bar.get_by_label("Open a layout file").set_input_files(file)
     expect(handle(page, "Unknown panel “sonar”")).to_be_visible()
     bar.get_by_role("button", name="Done").click()
-    expect(page.get_by_role("region", name="sonar")).to_contain_text("which this program does not have")
+    expect(page.get_by_role("region", name="sonar")).to_contain_text("which this version does not have")
 
 
 def test_a_panel_of_ones_own_hears_samples_and_reaches_nothing(fresh: Page, stack: Stack) -> None:

@@ -75,5 +75,5 @@ def test_a_viewer_sees_them_and_is_told_why_they_are_fixed(browser: Browser, sta
     with somebody(browser, stack, "viewer") as page:
         page.goto(f"{stack.url}/#/tune/parameters")
         expect(page.get_by_label(KP, exact=True)).to_be_disabled()
-        expect(page.get_by_role("note")).to_contain_text("Viewers may watch")
+        expect(page.get_by_role("note")).to_contain_text("Viewers can watch")
         expect(page.get_by_role("button", name="Undo")).to_be_disabled()

@@ -42,7 +42,7 @@ def test_a_code_can_be_typed(browser: Browser, stack: Stack) -> None:
 def test_a_viewer_stops_and_does_not_arm(page: Page, browser: Browser, stack: Stack) -> None:
     with somebody(browser, stack, "viewer") as viewer:
         arm = viewer.get_by_role("region", name="Arm", exact=True)
-        expect(arm).to_contain_text("Viewers may watch and STOP.")
+        expect(arm).to_contain_text("Viewers can watch and press STOP.")
         expect(arm.get_by_role("button", name="Hold to arm")).to_be_disabled()
         hold_to_arm(page)
         expect(arm).to_contain_text("Armed")

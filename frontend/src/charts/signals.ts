@@ -1,6 +1,7 @@
 /** Every number of every topic of rows, as something that a chart can show. */
 import { ROW_TOPICS, type Field, type Rows } from '../generated/topics';
 import type { ChoiceGroup } from '../parts/choices';
+import { charts as texts } from '../texts/charts';
 
 export interface Signal {
   /** as recordings and exports call it: `depth.depth`, or `motor.angle_2` where a field holds several */
@@ -22,20 +23,19 @@ export interface Signal {
 }
 
 const QUATERNION = ['w', 'x', 'y', 'z'];
-const FINS = ['front right', 'back right', 'back left', 'front left'];
 /** What the places of a field mean; of what is not here they are numbered. */
 const ELEMENTS: Readonly<Record<string, readonly string[]>> = {
   'imu.attitude': QUATERNION,
   'imu.rate': ['x', 'y', 'z'],
   'imu.force': ['x', 'y', 'z'],
-  'motor.wanted': FINS,
-  'motor.angle': FINS,
-  'motor.drive': FINS,
-  'truth.position': ['north', 'east', 'down'],
+  'motor.wanted': texts.fins,
+  'motor.angle': texts.fins,
+  'motor.drive': texts.fins,
+  'truth.position': texts.directions,
   'truth.attitude': QUATERNION,
   'truth.velocity': ['x', 'y', 'z'],
   'truth.rate': ['x', 'y', 'z'],
-  'truth.fins': FINS,
+  'truth.fins': texts.fins,
 };
 const DEPTHS: ReadonlySet<string> = new Set(['depth.depth', 'control.set_point', 'control.depth', 'truth.position_2']);
 const DECIMALS_MOST = 4;
@@ -56,7 +56,7 @@ function signalsOf(topic: keyof Rows, field: Field): Signal[] {
       topic,
       field: field.name,
       element,
-      label: field.count > 1 ? `${words} ${place}` : words,
+      label: field.count > 1 ? texts.element(words, place) : words,
       unit: field.unit,
       decimals: decimalsOf(field),
       meaning: field.meaning,

@@ -1,5 +1,6 @@
 /** Which stretch of time charts show, and how it is zoomed and moved. Times in s, steady clock. */
 import { HISTORY_SHOWN } from '../live/periods';
+import { charts as texts } from '../texts/charts';
 
 /** `seconds` is kept rather than computed: a difference of large numbers would not be the same each time. */
 export interface View {
@@ -10,12 +11,12 @@ export interface View {
 
 /** s that charts show, to choose from */
 export const SPANS: readonly { readonly seconds: number; readonly title: string }[] = [
-  { seconds: 10, title: '10 s' },
-  { seconds: 30, title: '30 s' },
-  { seconds: 60, title: '1 min' },
-  { seconds: 120, title: '2 min' },
-  { seconds: 300, title: '5 min' },
-  { seconds: 600, title: '10 min' },
+  { seconds: 10, title: texts.spans.s10 },
+  { seconds: 30, title: texts.spans.s30 },
+  { seconds: 60, title: texts.spans.m1 },
+  { seconds: 120, title: texts.spans.m2 },
+  { seconds: 300, title: texts.spans.m5 },
+  { seconds: 600, title: texts.spans.m10 },
 ];
 
 /** s; ten samples at 100 Hz */

@@ -6,6 +6,7 @@
  */
 import type { Size } from '../parts/panelKind';
 import { COLUMNS, overlaps, PANELS_MOST, ROWS_MOST, ROWS_SEEN, rowsOf, within, type Placed, type Rect } from './layout';
+import { layout as texts } from '../texts/layout';
 
 export type Arranged = { readonly panels: readonly Placed[]; readonly told: string } | { readonly refused: string };
 
@@ -19,7 +20,7 @@ export class Arranger {
   move(panels: readonly Placed[], id: string, columns: number, rows: number): Arranged {
     const moved = find(panels, id);
     const target = { ...moved, x: moved.x + columns, y: moved.y + rows };
-    if (!within(target)) return { refused: `${this.#title(moved)} is at the edge.` };
+    if (!within(target)) return { refused: texts.refused.edge(this.#title(moved)) };
     const met = panels.filter((one) => one.id !== id && overlaps(one, target));
     const [other] = met.sort((one, two) => shared(two, target) - shared(one, target));
     if (other === undefined) return this.#place(panels, target);
@@ -31,51 +32,51 @@ export class Arranger {
     const one = find(panels, id);
     const two = find(panels, other);
     for (const [panel, rect] of [[one, two], [two, one]] as const) {
-      if (!this.#fits(panel, rect)) return { refused: `${this.#title(panel)} needs more room than that.` };
+      if (!this.#fits(panel, rect)) return { refused: texts.refused.tooSmall(this.#title(panel)) };
     }
     const changed = panels.map((panel) =>
       panel.id === id ? { ...panel, ...rectOf(two) } : panel.id === other ? { ...panel, ...rectOf(one) } : panel,
     );
-    return { panels: changed, told: `${this.#title(one)} and ${this.#title(two)} have changed places.` };
+    return { panels: changed, told: texts.done.swapped(this.#title(one), this.#title(two)) };
   }
 
   /** Give a panel these edges, which takes from others what they can spare. */
   resize(panels: readonly Placed[], id: string, wanted: Rect): Arranged {
     const before = find(panels, id);
     const target = { ...before, ...rectOf(wanted) };
-    if (!within(target)) return { refused: `${this.#title(target)} is at the edge.` };
-    if (!this.#fits(before, target)) return { refused: `${this.#title(target)} cannot be smaller.` };
+    if (!within(target)) return { refused: texts.refused.edge(this.#title(target)) };
+    if (!this.#fits(before, target)) return { refused: texts.refused.smallest(this.#title(target)) };
     const changed: Placed[] = [];
     for (const panel of panels) {
       if (panel.id === id) changed.push(target);
       else if (!overlaps(panel, target)) changed.push(panel);
       else {
         const rest = { ...panel, ...cut(panel, before, target) };
-        if (!this.#fits(panel, rest) || overlaps(rest, target)) return { refused: `${this.#title(panel)} cannot be smaller.` };
+        if (!this.#fits(panel, rest) || overlaps(rest, target)) return { refused: texts.refused.smallest(this.#title(panel)) };
         changed.push(rest);
       }
     }
-    return { panels: changed, told: `${this.#title(target)}: ${sizeWords(target)}.` };
+    return { panels: changed, told: texts.done.resized(this.#title(target), sizeWords(target)) };
   }
 
   /** Stand a new panel where there is room: of this size, smaller, or below all others. */
   add(panels: readonly Placed[], added: Omit<Placed, keyof Rect>, size: Size): Arranged {
-    if (panels.length >= PANELS_MOST) return { refused: `There is room for ${PANELS_MOST} panels.` };
+    if (panels.length >= PANELS_MOST) return { refused: texts.refused.most(PANELS_MOST) };
     const { least } = this.known(added.panel);
     const rows = rowsOf(panels);
     const rect =
       free(panels, size, ROWS_SEEN) ?? free(panels, least, ROWS_SEEN) ?? free(panels, size, Math.min(ROWS_MOST, rows + size.height));
-    if (rect === null) return { refused: 'There is no room for another panel. Remove one first.' };
+    if (rect === null) return { refused: texts.refused.full };
     return this.#place([...panels, { ...added, ...rect }], { ...added, ...rect });
   }
 
   remove(panels: readonly Placed[], id: string): Arranged {
-    return { panels: panels.filter((one) => one.id !== id), told: `${this.#title(find(panels, id))} is removed.` };
+    return { panels: panels.filter((one) => one.id !== id), told: texts.done.removed(this.#title(find(panels, id))) };
   }
 
   #place(panels: readonly Placed[], target: Placed): Arranged {
     const changed = panels.map((one) => (one.id === target.id ? target : one));
-    return { panels: changed, told: `${this.#title(target)}: ${placeWords(target)}.` };
+    return { panels: changed, told: texts.done.moved(this.#title(target), placeWords(target)) };
   }
 
   #title(panel: Placed): string {
@@ -89,8 +90,8 @@ export class Arranger {
   }
 }
 
-export const placeWords = ({ x, y }: Rect): string => `column ${x + 1}, row ${y + 1}`;
-export const sizeWords = ({ width, height }: Size): string => `${width} wide, ${height} high`;
+export const placeWords = ({ x, y }: Rect): string => texts.place(x + 1, y + 1);
+export const sizeWords = ({ width, height }: Size): string => texts.size(width, height);
 
 function find(panels: readonly Placed[], id: string): Placed {
   const found = panels.find((one) => one.id === id);

@@ -5,6 +5,7 @@ import type { ShownChart } from '../parts/panelKind';
 import { FORMAT, readLayout, VERSION, type Layout, type Placed } from './layout';
 import { CHART, describe } from '../panels/registry';
 import { SHIPPED } from './shipped';
+import { layout as texts } from '../texts/layout';
 
 const STANDARD = 'standard';
 const UNDO_MOST = 100;
@@ -95,7 +96,7 @@ export class Arrangement {
     if (before === undefined) return;
     this.#past = this.#past.slice(0, -1);
     this.#now = before;
-    this.told = 'Undone.';
+    this.told = texts.done.undone;
     this.#remember();
   }
 
@@ -125,7 +126,7 @@ export class Arrangement {
     const answer = await api.saveLayout(name, this.document);
     if ('problem' in answer) return answer.problem;
     this.#now = { ...this.#now, choice: keptChoice(answer.value.id), title: answer.value.name, changed: false };
-    this.told = `Saved as “${answer.value.name}”.`;
+    this.told = texts.done.saved(answer.value.name);
     this.#remember();
     await this.list();
     return null;
@@ -156,7 +157,7 @@ export class Arrangement {
 
   #apply(standing: Standing): void {
     this.#become({ ...standing, panels: inReadingOrder(standing.panels) });
-    this.told = `“${standing.title}” is shown.`;
+    this.told = texts.done.shown(standing.title);
   }
 
   #become(next: Standing): void {

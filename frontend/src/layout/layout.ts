@@ -1,6 +1,7 @@
 /** Where the panels of Operate stand: a document that the server keeps (server/features/layouts/document.py) and files hold. */
 
 import type { ShownChart } from '../parts/panelKind';
+import { layout as texts } from '../texts/layout';
 
 export const FORMAT = 'mucat-layout';
 export const VERSION = 1;
@@ -54,21 +55,19 @@ export function rowsOf(panels: readonly Rect[]): number {
 /** The layout that this text or object holds, or why it is none, in words. */
 export function readLayout(given: unknown): Layout | { readonly problem: string } {
   const document = typeof given === 'string' ? parse(given) : given;
-  if (!isObject(document) || document.format !== FORMAT) return { problem: 'This is no layout of panels.' };
+  if (!isObject(document) || document.format !== FORMAT) return { problem: texts.invalid.noLayout };
   const { version, panels } = document;
   if (version !== VERSION) {
-    return {
-      problem: `This layout is of version ${String(version).slice(0, 20)}; this program reads version ${VERSION}. Nothing was changed.`,
-    };
+    return { problem: texts.invalid.version(String(version).slice(0, 20), VERSION) };
   }
   if (!Array.isArray(panels) || panels.length > PANELS_MOST || !panels.every(isPlaced)) {
-    return { problem: 'This layout is damaged: what it says of its panels cannot be read. Nothing was changed.' };
+    return { problem: texts.invalid.unreadable };
   }
   const sound =
     new Set(panels.map(({ id }) => id)).size === panels.length &&
     panels.every(within) &&
     panels.every((one, index) => !panels.slice(index + 1).some((other) => overlaps(one, other)));
-  if (!sound) return { problem: 'This layout is damaged: its panels do not fit beside each other. Nothing was changed.' };
+  if (!sound) return { problem: texts.invalid.overlapping };
   return { format: FORMAT, version: VERSION, panels };
 }
 

@@ -1,5 +1,6 @@
 /** Layouts that come with the program. */
 import type { ShownChart } from '../parts/panelKind';
+import { layout as texts } from '../texts/layout';
 import { FORMAT, VERSION, type Layout, type Placed, type Rect } from './layout';
 
 export interface Shipped {
@@ -58,6 +59,6 @@ const SENSORS = layout(
 const ROOMY_FROM = 1900;
 
 export const SHIPPED: readonly Shipped[] = [
-  { name: 'standard', title: 'Standard', layout: () => (window.innerWidth >= ROOMY_FROM ? ROOMY : STANDARD) },
-  { name: 'sensors', title: 'Sensors', layout: () => SENSORS },
+  { name: 'standard', title: texts.shipped.standard, layout: () => (window.innerWidth >= ROOMY_FROM ? ROOMY : STANDARD) },
+  { name: 'sensors', title: texts.shipped.sensors, layout: () => SENSORS },
 ];

@@ -1,4 +1,7 @@
+import { connection } from '../texts/connection';
 import type { ControlMessage, You } from './messages';
+
+const texts = connection.barred;
 
 /**
  * Who has the control of the robot: one page or program at a time.
@@ -31,11 +34,11 @@ export class Control {
 
   /** Why this page cannot command the robot, in words; null where it can. STOP always can. */
   get barred(): string | null {
-    if (this.you === null || this.now === null) return 'It is not known yet who has control.';
-    if (this.you.role === 'viewer') return 'Viewers may watch and STOP.';
+    if (this.you === null || this.now === null) return texts.unknown;
+    if (this.you.role === 'viewer') return texts.viewer;
     if (this.mine) return null;
-    if (this.now.holder === null) return 'Nobody has control: take it first.';
-    return `Control is with ${this.now.holder.name}: take it over first.`;
+    if (this.now.holder === null) return texts.nobody;
+    return texts.other(this.now.holder.name);
   }
 
   greet(you: You): void {

@@ -1,10 +1,13 @@
 import type { Part } from '../api';
+import { connection as connectionTexts } from '../texts/connection';
+
+const texts = connectionTexts.hops;
 
 /** The three hops between a person and the robot's chip. */
 export const HOPS = [
-  { name: 'browser-server', from: 'This page', to: 'Server' },
-  { name: 'server-runtime', from: 'Server', to: 'Runtime' },
-  { name: 'runtime-Arduino', from: 'Runtime', to: 'Arduino' },
+  { name: 'browser-server', from: texts.page, to: texts.server },
+  { name: 'server-runtime', from: texts.server, to: texts.runtime },
+  { name: 'runtime-Arduino', from: texts.runtime, to: texts.arduino },
 ] as const;
 
 export interface Broken {
@@ -29,27 +32,27 @@ export function findBroken({ connection, farewell, parts, stateFresh, state }: H
   if (connection === 'lost') {
     return {
       hop: 0,
-      title: farewell === '' ? 'The server does not answer' : 'The server ended the connection',
-      what: `${sentence(farewell)}The page tries again by itself. If this lasts: is the robot switched on, is this device in its network, does the server run?`,
+      title: farewell === '' ? texts.serverSilent : texts.serverEnded,
+      what: `${sentence(farewell)}${texts.pageReconnects}`,
     };
   }
   if (connection === 'connecting') return null;
   const runtime = parts.find((part) => part.name === 'runtime');
   if (runtime?.state === 'starting') {
-    return { hop: 1, title: 'The runtime is starting', what: runtime.text };
+    return { hop: 1, title: texts.runtimeStarting, what: runtime.text };
   }
   if (runtime?.state === 'failed' || runtime?.state === 'absent' || (runtime !== undefined && !stateFresh)) {
     return {
       hop: 1,
-      title: 'The runtime does not answer the server',
-      what: `${sentence(runtime.state === 'ok' ? 'Nothing has come from it for a while' : runtime.text)}The server starts it again by itself; System tells more.`,
+      title: texts.runtimeSilent,
+      what: `${sentence(runtime.state === 'ok' ? texts.noData : runtime.text)}${texts.serverRestarts}`,
     };
   }
   if (state?.connected === false) {
     return {
       hop: 2,
-      title: 'The Arduino does not answer the runtime',
-      what: `${sentence(state.connection)}The runtime tries again by itself; without its commands the fins rest and the robot floats up.`,
+      title: texts.arduinoSilent,
+      what: `${sentence(state.connection)}${texts.runtimeReconnects}`,
     };
   }
   return null;

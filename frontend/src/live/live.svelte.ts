@@ -24,6 +24,7 @@ import type { Hello } from './messages';
 import { PERIODS, THUMBNAIL_PERIOD, type Timed } from './periods';
 import type { Stop } from './stop.svelte';
 import { createRings, Gaps } from './store';
+import { connection } from '../texts/connection';
 
 const FRAME_LEAST = 30;
 const TICK_EVERY = 125;
@@ -111,7 +112,7 @@ export class Live {
 
   /** Why the robot cannot be commanded from here, in words; null where it can. STOP always can. */
   get barred(): string | null {
-    return this.control === null ? 'This is a replay: nothing can be commanded here.' : this.control.barred;
+    return this.control === null ? connection.barred.replay : this.control.barred;
   }
 
   /** What is wrong, or was and nobody has acknowledged it; the most urgent first. */

@@ -1,0 +1,22 @@
+/** Texts of the charts over time. */
+export const charts = {
+  zoomed: 'Zoomed',
+  paused: 'Paused',
+  pause: 'Pause',
+  resume: 'Resume',
+  all: 'All charts of the page together',
+  span: 'Time shown',
+  spans: { s10: '10 s', s30: '30 s', m1: '1 min', m2: '2 min', m5: '5 min', m10: '10 min' },
+  cursorIn: (chart: string) => `Cursor in ${chart}`,
+  now: 'now',
+  here: 'here',
+  atRightEdge: 'at the right edge',
+  ago: (seconds: string) => `${seconds} s ago`,
+  at: (time: string) => `at ${time}`,
+  values: (when: string, values: readonly string[]) => `${when}: ${values.join(', ')}`,
+  value: (signal: string, value: string, unit: string) => `${signal} ${value} ${unit}`,
+  range: (least: string, most: string) => `${least} to ${most}`,
+  element: (field: string, element: string) => `${field} ${element}`,
+  fins: ['front right', 'back right', 'back left', 'front left'],
+  directions: ['north', 'east', 'down'],
+} as const;
