@@ -37,7 +37,7 @@ function isCode(node) {
 export const textsApart = {
   meta: { type: 'problem', messages: { literal: '“{{ words }}” is read by people: it belongs in src/texts.' }, schema: [] },
   create(context) {
-    if (!context.filename.endsWith('.svelte')) return {};
+    if (!/\/src\/.*\.svelte$/.test(context.filename)) return {};
     function check(node) {
       const text = words(node).trim();
       if (WORD.test(text) && !UNITS.has(text)) context.report({ node, messageId: 'literal', data: { words: text } });
