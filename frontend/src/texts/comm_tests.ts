@@ -84,7 +84,6 @@ export const commTests = {
     count: (numbers: number) => `${numbers} numbers are sent in each cell.`,
     framing: 'Framing',
     direction: 'Direction',
-    entry: (number: number, problem: string) => `entry ${number}: ${problem}`,
     problemOf: (field: string, problem: string) => `${field}: ${problem}`,
   },
   faults: {
