@@ -1,4 +1,4 @@
-"""`python -m bench [PART ...]`: measure, print a table beside the goals, and write build/bench.json."""
+"""`python -m bench [PART ...]`: measures, prints a table with the goals, and writes build/bench.json."""
 
 import argparse
 import importlib

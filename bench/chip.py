@@ -1,4 +1,4 @@
-"""What the link carries with the chip's own end at one side, both ways at once, in emulated time."""
+"""Goodput of the link with the chip's own end, both ways at once, in emulated time."""
 
 import subprocess
 import tempfile
@@ -112,14 +112,14 @@ class _Host:
         self.talk(_START + 10 * 64 * self._byte_time)
 
     def talk(self, seconds: float) -> None:
-        """Let time pass with more to say than the line carries."""
+        """Lets time pass with more to send than the line carries."""
         end = self.now + seconds
         while self.now < end:
             self._top_up()
             self._pass()
 
     def check(self) -> None:
-        """Let all arrive that is under way. Raises RuntimeError where lines are missing or not in order."""
+        """Waits until everything has arrived. Raises RuntimeError if lines are missing or not in order."""
         end = self.now + _DRAIN * 64 * self._byte_time + 1.0
         while self._channel.pending() and self.now < end:
             self._pass()

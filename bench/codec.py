@@ -1,4 +1,4 @@
-"""What a packet on the line costs the host, beside other codecs in the same run."""
+"""Cost of a packet for the host, compared with other codecs in the same run."""
 
 import time
 import timeit

@@ -1,4 +1,4 @@
-"""What it takes to lay three one-hour sessions over each other: over HTTP, and until a page shows them."""
+"""Time to compare three one-hour sessions: over HTTP, and until a page shows them."""
 
 import os
 import signal

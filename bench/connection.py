@@ -1,4 +1,4 @@
-"""What the connection to the board costs the host's processor."""
+"""Processor time of the host for the connection to the board."""
 
 import tempfile
 import time

@@ -1,4 +1,4 @@
-"""A made-up dive with the robot's rates and about its numbers: what an hour of it looks like to the recorder.
+"""A synthetic dive with the robot's rates and similar values, as input of the recorder.
 
 The depth follows its set point with a delay and swings about it, as under the bang-bang controller; the set
 point steps down for a minute in every four, as if a card were shown. Noise is as the sensors', so that it

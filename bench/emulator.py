@@ -1,4 +1,4 @@
-"""The emulated board flat out: emulated seconds in each second of the wall."""
+"""Speed of the emulated board: emulated seconds in a real second."""
 
 import tempfile
 import time

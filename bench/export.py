@@ -1,4 +1,4 @@
-"""An hour at full rate as a file, beside the same rows written by plain pandas and by the mcap writer.
+"""Export of an hour at full rate, compared with plain pandas and the mcap writer.
 
 All are s of a processor, which other work on the computer does not lengthen. Ours includes reading and
 unpacking what is stored, and pictures; the others are given the rows in memory, and only write them.

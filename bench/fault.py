@@ -1,4 +1,4 @@
-"""How soon each fault is noticed and the fins stop, and how soon what was killed is back: the longest, ms."""
+"""Longest times in ms until a fault is noticed, the fins stop, and a killed process is back."""
 
 from tests.proofs import faults, injections, outages
 

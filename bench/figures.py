@@ -32,7 +32,7 @@ MEASURED, WANTED, THIRD = "#0072b2", "#c25200", "#4a5a64"
 
 @dataclass(frozen=True)
 class Experiment:
-    """What was recorded; times in s since the session's start, depths in m."""
+    """The recorded data; times in s since the session's start, depths in m."""
 
     times: "Floats"
     depth: "Floats"
@@ -111,7 +111,7 @@ def seen_panel(experiment: Experiment) -> Panel:
 
 
 def figures(experiment: Experiment) -> list[str]:
-    """What can be said in numbers, a line for each change of the set point."""
+    """The figures, one line for each change of the set point."""
     times, wanted = experiment.times, experiment.set_point
     changes = [0, *(np.flatnonzero(np.diff(wanted)) + 1), len(times)]
     lines = [describe(experiment, first, last) for first, last in pairwise(changes)]

@@ -1,4 +1,4 @@
-"""The firmware: what it takes of the chip, and how it keeps its pace while the line is full both ways."""
+"""The firmware's use of memory, and its timing while the line is full both ways."""
 
 import subprocess
 import tempfile
@@ -102,7 +102,7 @@ class _Host:
         self._run(_STEP)
 
     def flood(self, seconds: float) -> None:
-        """Let time pass while there is always more to say than the line carries."""
+        """Lets time pass with more to send than the line carries."""
         end = self.now + seconds
         while self.now < end:
             channel = self._session._channel
@@ -116,7 +116,7 @@ class _Host:
             self._pass(self._session.poll(self.now))
 
     def _fill(self) -> bytes:
-        """What fills the line for a step: whatever the session has to say, and else another command."""
+        """Bytes that fill the line for a step: the session's, otherwise another command."""
         side = 1.0 if self.now % 2 < 1 else -1.0
         command = Navigation(x=0.5, y=0.0, z=side, roll=0.0, pitch=0.0, yaw=0.5 * side)
         data = b""

@@ -1,4 +1,4 @@
-"""What the figures should come to."""
+"""Goals of the figures."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ class Goal(NamedTuple):
     is_least: bool
 
     def met(self, value: float) -> bool:
-        """Whether a figure of this value is good enough."""
+        """True if a figure of this value meets its goal."""
         return value >= self.limit if self.is_least else value <= self.limit
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What it costs to give every sample to every viewer, and how late they get it, beside foxglove-sdk."""
+"""Cost and delay of every sample to every viewer, compared with foxglove-sdk."""
 
 import json
 import subprocess

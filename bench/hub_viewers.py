@@ -1,4 +1,4 @@
-"""Viewers that cost little themselves, so that many of them leave the computer to what is measured."""
+"""Viewers that need little processor time, so that many of them do not disturb the measurement."""
 
 import select
 import socket
@@ -70,7 +70,7 @@ class Viewer:
                 raise OSError(f"{url} cannot be opened: {self._protocol.handshake_exc}")
 
     def messages(self) -> Iterator[str | bytes]:
-        """What comes, until nothing comes any more."""
+        """The messages until none comes any more."""
         while True:
             while self._ready:
                 yield self._ready.pop(0)

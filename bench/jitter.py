@@ -1,4 +1,4 @@
-"""How evenly the control loop ticks, alone and while a session is exported and the scene is rendered."""
+"""Jitter of the control loop, alone and while a session is exported and the scene is rendered."""
 
 import tempfile
 import time

@@ -1,4 +1,4 @@
-"""Between chip and browser: how old a depth is when it is drawn, and how soon a key moves a fin."""
+"""Latency between chip and browser: age of a depth when it is drawn, and time from a key to a fin."""
 
 import random
 import tempfile

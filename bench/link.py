@@ -1,4 +1,4 @@
-"""What the link carries of what the wire could, both ways at once, on a simulated line."""
+"""Goodput of the link as a share of the wire's capacity, both ways at once, on a simulated line."""
 
 from tests.runtime.link.line import goodput
 

@@ -1,4 +1,4 @@
-"""The simulated water flat out: simulated seconds in each second of the wall."""
+"""Speed of the simulated water: simulated seconds in a real second."""
 
 import time
 from math import cos, pi, sin

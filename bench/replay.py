@@ -1,4 +1,4 @@
-"""How soon a moment of an hour is there, after somebody has sought it."""
+"""Time of a seek in a replay of one hour."""
 
 import random
 import tempfile

@@ -1,4 +1,4 @@
-"""From the host's port to an H-bridge: how soon a command moves a fin."""
+"""Delay of a command from the host's port to an H-bridge."""
 
 import random
 import tempfile

@@ -1,4 +1,4 @@
-"""What the runtime and the server cost at full rate, recording, with one viewer."""
+"""Processor time and memory of runtime and server at full rate, recording, with one viewer."""
 
 import tempfile
 import threading

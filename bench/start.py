@@ -1,4 +1,4 @@
-"""How long a warm start of the whole takes."""
+"""Time of a warm start of everything."""
 
 import tempfile
 import time

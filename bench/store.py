@@ -1,4 +1,4 @@
-"""How fast the recorder takes in samples, and how much room they take: recorder to SQLite, as it is."""
+"""Speed of the recorder, and size of its samples in SQLite."""
 
 import asyncio
 import tempfile

@@ -1,4 +1,4 @@
-"""Lines over time as an SVG that stands in a document: panels below each other, one time axis."""
+"""Lines over time as an SVG for documents: stacked panels with one time axis."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Axis:
     step: float
 
     def share(self, value: "Floats | float") -> "Floats | float":
-        """How far along the axis a value is, 0 to 1."""
+        """Position of a value along the axis, 0 to 1."""
         return (value - self.first) / (self.last - self.first)
 
     @property

@@ -1,4 +1,4 @@
-"""What relay tuning is worth: the depth's limit cycle, and a step with the gains that each rule proposes.
+"""Results of relay tuning: the depth's limit cycle, and a step with the gains of each rule.
 
 In simulated time, with the robot's own firmware on this computer. `python -m bench.tuning` prints the
 tables of docs/develop/proofs/tuning.md.
@@ -21,7 +21,7 @@ SHOWN = ("overshoot", "settling_near", "rise_time", "steady_swing", "steady_erro
 
 
 def measure() -> dict[str, float]:
-    """Of the depth's PID by one rule, from a relay experiment on the emulated robot."""
+    """Figures of the depth's PID by one rule, from a relay experiment on the emulated robot."""
     cycle = _relay(AMPLITUDE)
     gains = {one.rule: one.gains for one in propose("depth", cycle, {})}[RULE]
     figures = _step("pid", gains)

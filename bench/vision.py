@@ -1,4 +1,4 @@
-"""The vision node: what a picture of 640 × 480 costs, and how old it is when it has changed the set point."""
+"""The vision node: computing time of a picture of 640 × 480, and its age when it changes the set point."""
 
 import json
 import random

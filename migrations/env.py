@@ -1,4 +1,4 @@
-"""Run by Alembic: brings the database of the connection that it is handed to the wanted revision."""
+"""Alembic's entry point: upgrades the database of the given connection to the requested revision."""
 
 from alembic import context
 from sqlmodel import SQLModel

@@ -1,4 +1,4 @@
-"""Exports of a running server, as clients of its interface make them."""
+"""Exports of a running server, over its HTTP interface."""
 
 import time
 from typing import Any, Protocol

@@ -1,4 +1,4 @@
-"""`python -m tests.in_the_loop DATA`: a robot on one host and its simulator on another, told as JSON.
+"""`python -m tests.in_the_loop DATA`: a robot on one host and its simulator on another; prints JSON.
 
 The robot's board computes its fins; the network between the hosts delays, jitters, loses, and is cut for a
 while.

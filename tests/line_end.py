@@ -1,4 +1,4 @@
-"""Either end of the serial line in the hand of a test: it says what it is told, when it is told."""
+"""One end of the serial line that sends what a test tells it to, at the test's time."""
 
 from collections.abc import Sequence
 
@@ -33,12 +33,12 @@ class LineEnd:
 
     @property
     def joined(self) -> bool:
-        """Whether it knows of the other end's session."""
+        """True if it has a session with the other end."""
         return self._channel.key != OPEN
 
     @property
     def urgent(self) -> bool:
-        """Whether something is to be acknowledged, by either end."""
+        """True if an acknowledgement is due at either end."""
         return self._channel.urgent
 
     def say(self, packets: Sequence[Packet], now: float) -> bytes:
@@ -57,7 +57,7 @@ class LineEnd:
         return data + (self.poll(now) if len(opened) < len(packets) else b"")
 
     def poll(self, now: float) -> bytes:
-        """What is due by itself: repetitions and acknowledgements."""
+        """Frames that are due without the test: repetitions and acknowledgements."""
         data = b""
         while frame := self._channel.poll(now):
             data += frame

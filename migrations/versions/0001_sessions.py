@@ -1,4 +1,4 @@
-"""Sessions, their chunks, and what is missing in them."""
+"""Sessions, their chunks and their gaps."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Runs know where they ran and whether they came with the program; cells, how much was sent again."""
+"""Adds the place of a run, the mark of a shipped run, and the repeated frames of a cell."""
 
 import sqlalchemy as sa
 from alembic import op

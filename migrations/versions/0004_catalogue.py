@@ -1,4 +1,4 @@
-"""Sessions know where they come from and what ran; tags, markers, and a way to find a moment quickly."""
+"""Adds origin and provenance of sessions, tags, bookmarks, and an index of times."""
 
 import sqlalchemy as sa
 from alembic import op

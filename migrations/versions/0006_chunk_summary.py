@@ -1,4 +1,4 @@
-"""An index that holds a summary of a session's topics, so that chunks are not read for it."""
+"""Adds an index with a summary of a session's topics, so that the summary needs no chunks."""
 
 from alembic import op
 

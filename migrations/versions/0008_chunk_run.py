@@ -1,4 +1,4 @@
-"""Each chunk says which run of the runtime or the simulator has sent it."""
+"""Adds to each chunk the run of the runtime or simulator that sent it."""
 
 import sqlalchemy as sa
 from alembic import op

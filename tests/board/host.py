@@ -1,4 +1,4 @@
-"""A board that runs the firmware, and a host that speaks with it in emulated time."""
+"""A board that runs the firmware, and a host connected to it, in emulated time."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -44,7 +44,7 @@ class Robot:
         self.rig.port.write(self._end.say(packets, self._passed))
 
     def listen(self, seconds: float) -> list[Packet]:
-        """What the board says in this much emulated time while the host is silent."""
+        """Packets of the board in this emulated time while the host is silent."""
         self.board.run(seconds)
         self._passed += seconds
         messages = self._end.hear(self.rig.port.read(), self._passed)
@@ -124,7 +124,7 @@ class Host:
         self._write(self.session.send(packets, self.now))
 
     def run(self, seconds: float) -> list[tuple[float, Packet]]:
-        """What comes in this much emulated time, and when; the command, if any, is given at 10 Hz."""
+        """Packets in this emulated time, with their times; the command, if any, is sent at 10 Hz."""
         before = len(self.heard)
         for _ in range(round(seconds / TICK)):
             self.board.run(TICK)

@@ -1,4 +1,4 @@
-"""A board under test whose time the test alone lets pass, with a host at its serial port."""
+"""A board whose time passes only by the test, with a host at its serial port."""
 
 import fcntl
 import os

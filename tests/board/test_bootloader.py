@@ -70,7 +70,7 @@ def empty_board(folder: Path) -> Iterator[tuple[EmulatorProcess, EmulatorClient]
 
 
 def echoes(process: EmulatorProcess, board: EmulatorClient) -> bool:
-    """Whether the sketch `echo` runs once the boot loader has waited in vain."""
+    """True if the sketch `echo` runs after the boot loader's waiting time."""
     with serial.Serial(str(process.tty), BOOT_BAUD, timeout=5) as port:
         opened = board.stats()["time"]
         wait_for(lambda: board.stats()["time"] > opened + TIMEOUT + 0.1, "the boot loader's timeout")

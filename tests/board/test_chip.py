@@ -1,4 +1,4 @@
-"""Resets, the watchdog, sleep, the EEPROM and programs that go astray."""
+"""Resets, the watchdog, sleep, the EEPROM and programs that crash."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The firmware for hardware in the loop: no device answers, and a host tells what sensors would show."""
+"""The firmware for hardware in the loop: no device answers, and a host sends the sensors' values."""
 
 from collections.abc import Iterator
 from math import pi
@@ -49,7 +49,7 @@ def robot(built: None, tmp_path: Path) -> Iterator[Robot]:  # noqa: ARG001 - bui
 
 
 def feel(robot: Robot, depth: float, seconds: float, command: Navigation | None = None) -> list[object]:
-    """Tell the board so for this long, fifty times a second."""
+    """Sends these values to the board for this time, fifty times a second."""
     heard: list[object] = []
     for _ in range(round(seconds / (2 * TICK))):
         robot.send(word(depth))

@@ -1,4 +1,4 @@
-"""Faults on the serial line, injected into the emulated board at a seed's choice and counted."""
+"""Faults of the serial line, injected into the emulated board from a seed, and counted."""
 
 import random
 from collections import Counter
@@ -38,7 +38,7 @@ def count(rig: Rig, direction: LineDirection, what: str) -> int:
 
 
 def is_part(part: bytes, whole: bytes) -> bool:
-    """Whether `part` is `whole` with some bytes left out."""
+    """True if `part` is `whole` without some bytes."""
     rest = iter(whole)
     return all(byte in rest for byte in part)
 

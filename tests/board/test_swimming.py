@@ -1,4 +1,4 @@
-"""The robot's firmware, on the emulated board, swims in the simulated water with sound and broken sensors."""
+"""The robot's firmware on the emulated board swims in the simulated water with working or faulty sensors."""
 
 import math
 import tempfile
@@ -130,7 +130,7 @@ def test_a_bus_error_that_is_asked_for_reaches_the_firmware(
 
 
 def is_wet(board: EmulatorClient) -> bool:
-    """Whether another connection is the water by now."""
+    """True if another connection is the water."""
     try:
         board.sense(STILL_WATER)
     except BoardError:

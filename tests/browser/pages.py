@@ -1,4 +1,4 @@
-"""Every page that there is, and how to come to it: for what looks at all of them."""
+"""All pages, and the way to open each."""
 
 import re
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""More than one person at one robot: other browsers, let in by links as people are."""
+"""Other browsers of one robot, signed in by pairing links."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""Every page, and what opens on it, looked at by axe-core for those who see badly or have no pointer."""
+"""Accessibility of every page and its panels, checked by axe-core."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -64,7 +64,7 @@ def seen(
 
 
 def faults(page: Page, how: str = USUAL) -> list[str]:
-    """What is wrong on the page as it is now, for a person: the rule, and where."""
+    """Violations on the present page: the rule, and the place."""
     found: dict[str, Any] = page.evaluate(f"axe.run({how})")
     return [
         f"{fault['id']}: {fault['help']}: {node['target']} {node.get('failureSummary', '')}"

@@ -1,4 +1,4 @@
-"""Addresses of the page: one that does not exist is said to, with a way back."""
+"""Addresses of the page: one that does not exist is reported, with a link back."""
 
 from playwright.sync_api import Page, expect
 

@@ -1,4 +1,4 @@
-"""Who has control: taken, taken over, released."""
+"""Control: taken, taken over, released."""
 
 import re
 
@@ -11,7 +11,7 @@ MINE = re.compile("^Control: this page$")
 
 
 def control(page: Page) -> Locator:
-    """What the bar says of the control."""
+    """Text of the bar's control button."""
     return page.get_by_role("button", name=re.compile("^Control:"))
 
 

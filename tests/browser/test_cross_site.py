@@ -115,7 +115,7 @@ def victim(browser: Browser, cookies: StorageState) -> Iterator[BrowserContext]:
 
 
 def snapshot(stack: Stack) -> dict[str, Any]:
-    """What an attack might have changed."""
+    """State that an attack might change."""
     robot = stack.api.get("/robot").raise_for_status().json()
     names = ("mode", "armed", "set_point_default", "set_point_detected", "card", "vision_rate")
     found: dict[str, Any] = {name: robot[name] for name in names}

@@ -1,4 +1,4 @@
-"""Driving by hand: the robot moves while something is held and somebody looks, and rests otherwise."""
+"""Driving by hand: the robot moves only while something is held on a visible page."""
 
 import csv
 import io

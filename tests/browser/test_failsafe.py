@@ -1,4 +1,4 @@
-"""A fault: the robot stops by itself, says why, and is armed again only by somebody who has seen it."""
+"""A fault: the robot stops, reports the reason, and can be armed only after an acknowledgement."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Parts of the page that come when they are wanted, and sometimes do not."""
+"""Parts of the page that are loaded on demand, and failures of that."""
 
 from playwright.sync_api import Page, expect
 

@@ -1,4 +1,4 @@
-"""The devices on the board's buses, as far as the firmware's drivers can tell: fakes for tests."""
+"""Fake devices on the board's buses, as detailed as the firmware's drivers need."""
 
 import math
 import struct
@@ -141,7 +141,7 @@ class Motor:
 
     @property
     def counts(self) -> int:
-        """What its encoder shows."""
+        """Reading of its encoder."""
         return round(self.zero - self.shaft * 1024 / math.tau)
 
     @property

@@ -1,4 +1,4 @@
-"""A whole robot of the firmware on a board in memory, in time that passes when told to."""
+"""The whole firmware on a board in memory, in simulated time."""
 
 import ctypes
 from typing import TYPE_CHECKING, Self, TypeVar
@@ -107,7 +107,7 @@ class Robot:
 
     @property
     def power(self) -> bool:
-        """Whether the motors have power."""
+        """True if the motors have power."""
         return bool(self.firmware.board_motor_power())
 
     def say(self, *packets: Packet) -> None:
@@ -118,7 +118,7 @@ class Robot:
         self.firmware.board_receive(data, len(data))
 
     def run(self, milliseconds: int) -> list[Packet]:
-        """Let time pass; the packets that the board sent meanwhile."""
+        """Lets time pass; returns the packets that the board sent."""
         heard: list[Packet] = []
         while milliseconds > 0:
             part = min(milliseconds, TICK - self.now % TICK)
@@ -155,11 +155,11 @@ class Robot:
 
     @property
     def texts(self) -> list[str]:
-        """What the board said in words."""
+        """The board's lines of text."""
         return [line.text for line in self.lines]
 
     def beat(self, milliseconds: int, every: int = 100) -> None:
-        """Let time pass with a heartbeat at its start and every so often."""
+        """Lets time pass with a heartbeat at its start and periodically."""
         for _ in range(milliseconds // every):
             self.say(Heartbeat(time=self.now))
             self.run(every)
@@ -178,7 +178,7 @@ class Robot:
         assert self.texts[-1] == "armed"
 
     def swim(self, milliseconds: int, command: Navigation) -> None:
-        """Let time pass under a command that is said at its start and every 50 ms."""
+        """Lets time pass with a command at its start and every 50 ms."""
         while milliseconds > 0:
             self.say(command)
             self.run(min(50, milliseconds))

@@ -1,4 +1,4 @@
-"""The firmware for the chip: it fits, leaves room for the stack, and is laid out as the Arduino IDE wants."""
+"""The firmware for the chip: it fits, leaves room for the stack, and has the layout of the Arduino IDE."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""The mixer: the force and the torque that its fins give, computed from where they sit and how they point."""
+"""The mixer: force and torque of its fins, computed from their places and directions."""
 
 import ctypes
 import math

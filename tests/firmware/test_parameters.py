@@ -1,4 +1,4 @@
-"""What may be tuned on the chip: taken within its limits, answered always, forgotten at a reset."""
+"""Parameters on the chip: limited, always answered, lost at a reset."""
 
 import math
 from itertools import pairwise
@@ -115,7 +115,7 @@ def test_amplitude_is_that_of_full_command(robot: Robot) -> None:
 
 
 def strokes(robot: Robot, milliseconds: int) -> int:
-    """How often the first fin is wanted to pass its middle upwards."""
+    """Count of the first fin's strokes, by its set point."""
     robot.received.clear()
     robot.swim(milliseconds, navigation(x=1))
     wanted = [packet.wanted[0] for packet in robot.received if isinstance(packet, Motor)]

@@ -1,4 +1,4 @@
-"""The firmware's link keeps frames that came before their turn, says which, and takes them in order."""
+"""The firmware's link stores frames that arrive out of order, reports them, and accepts them in order."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""Arming and what takes it away, in the robot as a whole and in emulated time."""
+"""Arming and disarming of the whole firmware, in simulated time."""
 
 import pytest
 from hypothesis import given
@@ -33,7 +33,7 @@ def angles(packets: list[Packet]) -> list[tuple[float, ...]]:
 
 
 def span(packets: list[Packet]) -> float:
-    """How far the fin that moved most went, rad."""
+    """Largest movement of a fin, rad."""
     spans: list[float] = [max(fin) - min(fin) for fin in zip(*angles(packets), strict=True)]
     return max(spans)
 
@@ -72,7 +72,7 @@ def test_board_answers_each_hello(robot: Robot) -> None:
 
 
 def refused(robot: Robot, reason: str, *packets: Packet) -> None:
-    """What is sent with these packets is refused for this reason, and nothing arms."""
+    """Checks that these packets are refused for this reason, and that nothing arms."""
     robot.say(*packets)
     robot.run(30)
     assert robot.texts[-1] == f"START refused: {reason}"
@@ -168,7 +168,7 @@ def test_forward_flaps_the_front_fins(robot: Robot) -> None:
 
 @pytest.mark.parametrize("late", [0, 7, 190, 385, 620])
 def test_fins_rest_half_a_second_after_the_last_command(robot: Robot, late: int) -> None:
-    """Whatever the flap's phase when the commands end; the host is still there."""
+    """Holds for any phase of the stroke when the commands end; the host is still there."""
     robot.arm()
     robot.swim(1000 + late, FORWARD)
     robot.say(FORWARD)

@@ -1,4 +1,4 @@
-"""Everything that can go wrong, while it records: `python -m tests.proofs.chaos 3600`; status 1 for losses.
+"""All faults in turn, while the robot records: `python -m tests.proofs.chaos 3600`; status 1 for losses.
 
 Noise and cuts on the serial line, processes killed and stopped, pages that read slowly or not at all, a disk
 that fills up, a wall clock that jumps, one after the other at random. Afterwards what was counted must be
@@ -58,7 +58,7 @@ LINE_SECONDS = (20.0, 600.0)
 
 @dataclass
 class Report:
-    """What was done, what came of it, and what must not be."""
+    """Injected faults, their effects, and the problems found."""
 
     seconds: float = 0.0
     done: Counter[str] = field(default_factory=Counter)
@@ -104,7 +104,7 @@ class Storm:
         self._world.close()
 
     def rage(self, seconds: float) -> None:
-        """Let it befall them for so long, the second half without kills, and count afterwards."""
+        """Injects faults for this time, the second half without kills, and counts afterwards."""
         session = self._stack.api.post("/sessions", json={"name": "chaos"}).json()["id"]
         began = time.monotonic()
         for gentle in (False, True):

@@ -26,7 +26,7 @@ SETTLE = 1.0
 
 @dataclass
 class Counts:
-    """Of one direction: how many frames were damaged, and how many of them the receiver has counted.
+    """Damaged frames of one direction, and the receiver's count of them.
 
     `unreliable` of them are sent once; the host counts as `missed` what the numbers show to be missing.
     """
@@ -48,7 +48,7 @@ class Wire(EmulatedBoard):
         super().__init__(BUILD / "board", firmware_path(BUILD, LinkConfig().baud, ".elf"), water)
 
     def run(self, periods: int) -> bytes:
-        """Let time pass; what came for the host, some of it damaged."""
+        """Lets time pass; returns the bytes for the host, some of them damaged."""
         *frames, self._partial = (self._partial + super().run(periods)).split(b"\0")
         return b"".join(self._pass(frame, self.to_host) + b"\0" for frame in frames)
 

@@ -1,4 +1,4 @@
-"""What a program did to its files, step by step, and what a disk may hold of it after a power cut.
+"""A program's file operations, step by step, and the disks that a power cut may leave.
 
 `tests/proofs/disk_log.c`, preloaded, writes the steps down. Synced bytes and names stay. Of what was not
 synced anything may be there or not, in any order: whole writes, or only some of their sectors; a name without
@@ -78,7 +78,7 @@ def read(log: Path) -> Iterator[Step]:
 
 @dataclass
 class File:
-    """What is on the disk for sure, and what was done since the last sync: offset and bytes, or size."""
+    """A file's synced content, and its changes since: offset and bytes, or size."""
 
     synced: bytearray = field(default_factory=bytearray)
     pending: list[tuple[int, bytes | None]] = field(default_factory=list)
@@ -177,7 +177,7 @@ def _some(all_: list[T], cut: Cut, chance: random.Random) -> list[T]:
 
 
 def _is_there(name: str, names: dict[str, int | None]) -> bool:
-    """Whether all the folders that it lies in are there; the first is."""
+    """True if all its folders exist; the first always does."""
     folder = os.path.dirname(name)  # noqa: PTH120 - a text
     first = next(iter(names))
     while len(folder) > len(first):

@@ -1,4 +1,4 @@
-"""What a database says, as facts with names, to be compared with what had been acknowledged."""
+"""The contents of a database as named facts, to compare with the acknowledged ones."""
 
 import sqlite3
 import zlib
@@ -47,5 +47,5 @@ def read_facts(database: Path, mode: Literal["ro", "rw"]) -> dict[str, Any]:
 
 
 def holds(fact: Any, allowed: list[Any], *, grows: bool) -> bool:
-    """Whether a fact is one of those allowed, or more where it only grows."""
+    """True if a fact is one of those allowed, or larger if it only grows."""
     return fact in allowed or (grows and isinstance(fact, int) and fact >= min(allowed))

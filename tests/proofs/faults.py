@@ -1,4 +1,4 @@
-"""Each fault that the robot must notice, injected over and over: how soon it is told, and the fins stop.
+"""Injects each fault repeatedly: time until the alarm, and until the fins stop.
 
 The compiled firmware on the emulated chip, the whole runtime and the water, in simulated time: times are what
 a real robot's would be, whatever the computer does. `tests.proofs.outages` has the processes' faults.
@@ -75,7 +75,7 @@ class Swim(Flight):
         return acos(max(1 - 2 * (x * x + y * y), -1.0))
 
     def calm(self, mode: Mode) -> None:
-        """Let all be well, then swim."""
+        """Waits until all is well, then swims."""
         self.supervisor.stop("The next one.")
         self.until(lambda: not any(alarm.active for alarm in self.supervisor.alarms), CALM)
         self.supervisor.acknowledge()

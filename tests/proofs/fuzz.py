@@ -38,7 +38,7 @@ _GREETING = Hello(definitions=DEFINITIONS_HASH, epoch=HOST, credit=4096)
 
 
 class FuzzError(Exception):
-    """What the fuzzer found, with its words."""
+    """A finding of the fuzzer, with its text."""
 
 
 def raw(packets: Sequence[Packet], number: int, key: int = _KEY) -> bytes:

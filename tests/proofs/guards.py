@@ -1,4 +1,4 @@
-"""Each guard taken away in turn, in a copy of the tree: does a test notice?
+"""Removes each guard in turn, in a copy of the tree, and checks that a test fails.
 
 `python -m tests.proofs.guards` does so for all of `guards.toml`, or for those whose names hold one of the
 words given, and prints a table; status 1 where a guard is not missed by any of its tests.
@@ -53,7 +53,7 @@ class Guard:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How the tests went: those that failed, and those that could not even begin."""
+    """Result of the tests: those that failed, and those that could not start."""
 
     failed: tuple[str, ...]
     broken: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Hostile words through every entrance that leads to a build, an upload, a file's name or a path.
+"""Hostile inputs to everything that leads to a build, an upload, a file name or a path.
 
 A canary is a file that a command in one of them would make, a secret a file that a path would lead to.
 `python -m tests.proofs.hostile TIMES` takes that many words to each entrance; it fails where one gets in.
@@ -44,7 +44,7 @@ ENTRANCES: dict[str, Callable[["Field"], object]] = {}
 
 
 class Field:
-    """What the words are let loose on: a server, in whose folder lie a secret and no canary."""
+    """The target: a server whose folder holds a secret file and no marker file."""
 
     def __init__(self, surface: Surface, seed: int) -> None:
         self.surface = surface

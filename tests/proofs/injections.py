@@ -1,4 +1,4 @@
-"""`python -m tests.proofs.injections 100`: every fault so many times; status 1 where the robot is too late.
+"""`python -m tests.proofs.injections 100`: injects every fault so often; status 1 if the robot is too late.
 
 First the faults of robot and chip, in simulated time, then those of the processes, in real time, for which
 the computer should have nothing else to do. The figures go to build/faults.json.

@@ -1,4 +1,4 @@
-"""The server killed with -9 at random moments of recording, and started again: is anything missing?
+"""Kills the server with -9 at random moments of recording, restarts it, and looks for losses.
 
 The whole robot as a person starts it, in real time. `python -m tests.proofs.kills 100` prints what it finds;
 status 1 where a proof fails. Every fourth time the server is killed again while it starts.
@@ -42,7 +42,7 @@ class Hole(NamedTuple):
 
 @dataclass
 class Report:
-    """What came of it."""
+    """Results of the kills."""
 
     kills: int = 0
     rows: int = 0
@@ -63,7 +63,7 @@ class Report:
 
     @property
     def problems(self) -> list[str]:
-        """What must not be."""
+        """Problems found."""
         found = [f"{hole.samples} samples of {hole.topic} are missing" for hole in self.holes]
         found += [f"a gap is noted: {missed} of {topic} ({kind})" for topic, kind, missed in self.gaps]
         found += [f"the {name} did not outlive the server" for name in self.replaced]

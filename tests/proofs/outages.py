@@ -1,4 +1,4 @@
-"""Processes killed or stopped under a robot that swims or waits: do the fins stop, and is all well again?
+"""Kills or stops processes of a swimming or waiting robot: the fins must stop, and all must recover.
 
 The whole robot as a person starts it, in real time; the fins are watched from outside, at the board.
 """
@@ -38,7 +38,7 @@ STEADY = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Outage:
-    """Who is hit and how, what the page must say, and the s within which the fins rest and lose their power.
+    """The process and its fault, the alarm, and the limits in s for the fins to rest and lose power.
 
     Of the runtime they count from its last byte at the chip, which a busy computer passes on late.
 
@@ -75,7 +75,7 @@ OUTAGES = (
 
 @dataclass
 class Outcome:
-    """What came of one outage: s after the blow, and what must not be."""
+    """Result of one outage: s after the fault, and problems."""
 
     outage: Outage
     armed: bool
@@ -89,7 +89,7 @@ class Outcome:
 
     @property
     def is_slow(self) -> bool:
-        """Whether it took too long until all was well; that depends on what else the computer does."""
+        """True if the recovery took too long; that depends on the load of the computer."""
         return self.again > AGAIN
 
 
@@ -196,14 +196,14 @@ class World:
         return psutil.Process(running_parts(self.folder.run)[name].pid)
 
     def is_replaced(self, name: str, pid: int) -> bool:
-        """Whether there is another of this name."""
+        """True if a new process has this name."""
         try:
             return self.find(name).pid != pid
         except (LookupError, psutil.Error):
             return False
 
     def well(self, since: float) -> bool:
-        """Whether all parts are well, by what has come since then."""
+        """True if all parts are well, by data since then."""
         if not self.viewer.fresh(ALWAYS, since) or not self.viewer.state["connected"]:
             return False
         try:

@@ -1,4 +1,4 @@
-"""The power cut while the server stores: is anything lost that had been acknowledged?
+"""Cuts the power while the server stores, and looks for acknowledged data that is lost.
 
 `python -m tests.proofs.power 10000` writes down what the server's own parts do to their files
 (`power_work.py`, `disk_log.c`), cuts the power at so many moments, builds what the disk may then hold
@@ -36,7 +36,7 @@ WEAKER = {
 
 @dataclass
 class Report:
-    """What came of the cuts: how many of each kind, with how many facts acknowledged, and what was wrong."""
+    """Result of the cuts: count of each kind, acknowledged facts, and problems."""
 
     cuts: Counter[Cut] = field(default_factory=Counter)
     facts: int = 0
@@ -63,7 +63,7 @@ HEADER = f"{'':<22}{'states':>8}{'damaged':>9}{'lossy':>8}{'lost':>9}   bad stat
 
 
 def record(folder: Path, library: Path, *weaker: str) -> tuple[Path, Disk, list[Step]]:
-    """Let the work be done in `folder`; where its data lie, the disk before it, and its steps."""
+    """Does the work in `folder`; returns its data folder, the disk before it, and its steps."""
     log = folder / "steps"
     work = folder / "work"
     work.mkdir()
@@ -93,7 +93,7 @@ def replay(data: Path, at: Disk, steps: list[Step], states: int, seed: int) -> R
 
 
 def is_whole(data: Path, at: Disk) -> bool:
-    """Whether the steps that were seen explain every byte of what lies in the folder now."""
+    """True if the recorded steps explain every byte in the folder."""
     seen = at.after("kept", random.Random(0))
     watched = [data / "mucat.db", *data.glob("exports/*"), *data.glob("backups/*"), *data.glob("scenarios/*")]
     return all(seen.get(str(path)) == path.read_bytes() for path in watched) and not any(

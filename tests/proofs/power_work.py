@@ -68,7 +68,7 @@ class Work:
         self._told = facts
 
     def doubtful(self, prefix: str) -> None:
-        """What begins so is about to change, and may be found before or after."""
+        """Facts that begin with this are about to change: old and new values are right."""
         note(self._log, {name: None for name in self._told if name.startswith(prefix)})
         self._told = {name: value for name, value in self._told.items() if not name.startswith(prefix)}
 

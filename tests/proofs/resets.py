@@ -62,7 +62,7 @@ class Return(NamedTuple):
 
 @dataclass
 class Report:
-    """What many resets led to; `problems` are counted by their kind, and told in `words`."""
+    """Result of many resets; `problems` are counted by kind and described in `words`."""
 
     resets: Counter[Reset] = field(default_factory=Counter)
     returns: list[Return] = field(default_factory=list)
@@ -86,7 +86,7 @@ class Report:
         )
 
     def seconds(self, reset: Reset, noisy: bool) -> list[float]:
-        """How long each return of that kind took."""
+        """Durations of each recovery of that kind."""
         return [one.seconds for one in self.returns if (one.reset, one.noisy) == (reset, noisy)]
 
     def table(self) -> str:

@@ -1,4 +1,4 @@
-"""A page on a poor connection: it reads too slowly, and counts what it is told it missed."""
+"""A page on a poor connection: it reads too slowly, and counts the reported losses."""
 
 import json
 import socket

@@ -1,4 +1,4 @@
-"""A short version of `make fuzz`, and the same for the host: right checksums around whatever may be wrong."""
+"""A short version of `make fuzz`, and the same for the host: right checksums around any content."""
 
 import ctypes
 import zlib

@@ -1,4 +1,4 @@
-"""Some hostile words through every entrance; `make hostile` takes ten thousand and more."""
+"""A short version of `make hostile`."""
 
 import ast
 import json

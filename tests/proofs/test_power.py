@@ -1,4 +1,4 @@
-"""A short version of `make power`, and who writes the database."""
+"""A short version of `make power`, and a check that one connection writes the database."""
 
 import tempfile
 from collections.abc import Iterator

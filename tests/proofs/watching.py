@@ -1,4 +1,4 @@
-"""What injected faults are measured by: the fins, as the emulated board has them, and what a page is told."""
+"""Measures the effect of faults: the fins at the emulated board, and the messages to a page."""
 
 import json
 import threading
@@ -55,7 +55,7 @@ class Motion:
         self._looks: deque[tuple[float, tuple[float, ...]]] = deque()
 
     def see(self, time: float, fins: FinMotion) -> bool:
-        """Whether any has moved in the last `SPAN`; `time` in s."""
+        """True if any fin moved in the last `SPAN`; `time` in s."""
         looks = self._looks
         if looks and time > looks[-1][0] + SPAN / 2:
             # Nobody knows when in between it moved.
@@ -78,16 +78,16 @@ class Fins:
         self._thread.start()
 
     def close(self) -> None:
-        """Look no more."""
+        """Ends the observation."""
         self._ending.set()
         self._thread.join()
 
     def moved_for(self, since: float) -> float:
-        """How long they have moved since then, in the board's time (s)."""
+        """s of the board's time that the fins moved since then."""
         return self._last(since, lambda one: one.moving)
 
     def powered_for(self, since: float) -> float:
-        """How long their motors had power since then, in the board's time (s)."""
+        """s of the board's time that the motors had power since then."""
         return self._last(since, lambda one: one.powered)
 
     def silence(self, since: float) -> float:
@@ -139,11 +139,11 @@ class Viewer:
         self._thread.join()
 
     def fresh(self, topics: tuple[str, ...], since: float) -> bool:
-        """Whether something taken later than that has come of all of them."""
+        """True if every topic has a sample newer than that."""
         return all(self.newest.get(topic, 0.0) > since for topic in topics)
 
     def tells(self, fault: str) -> bool:
-        """Whether this alarm is shown, and wrong still or not acknowledged."""
+        """True if this alarm is active or not acknowledged."""
         return any(alarm["fault"] == fault for alarm in self.alarms)
 
     def _watch(self) -> None:

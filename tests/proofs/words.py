@@ -1,4 +1,4 @@
-"""Words and numbers as somebody would send them who means harm: made from a seed, by the thousand."""
+"""Hostile words and numbers, thousands of them from a seed."""
 
 import random
 from pathlib import Path

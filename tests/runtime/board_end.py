@@ -1,4 +1,4 @@
-"""The board's end of a pseudo-terminal, in the hand of a test."""
+"""The board's end of a pseudo-terminal, driven by a test."""
 
 import os
 import select
@@ -53,7 +53,7 @@ class BoardEnd:
 
     @property
     def waiting(self) -> bool:
-        """Whether something that it said is not acknowledged."""
+        """True if a sent frame is not acknowledged."""
         return self._end.urgent
 
     def hear_until(self, condition: Callable[[], bool]) -> None:

@@ -1,4 +1,4 @@
-"""Attitudes as the IMU tells them."""
+"""Attitudes as IMU samples."""
 
 from math import cos, sin
 

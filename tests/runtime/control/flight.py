@@ -1,4 +1,4 @@
-"""The whole robot in simulated time, its firmware and water included, with an operator who is the test."""
+"""The whole robot in simulated time, with firmware and water; the test is the operator."""
 
 import json
 from collections.abc import Callable
@@ -54,7 +54,7 @@ class Flight:
         return self.clock.now()
 
     def run(self, seconds: float) -> None:
-        """Let time pass."""
+        """Lets time pass."""
         end = self.now + seconds
         while self.now < end - 1e-6:
             if self.server:
@@ -99,7 +99,7 @@ class Flight:
             self.board.line(f"line {way} cut {'on' if on else 'off'}")
 
     def alarm(self, fault: str) -> bool:
-        """Whether this is in the list of alarms, and wrong still."""
+        """True if this alarm is active."""
         return any(one.fault == fault and one.active for one in self.supervisor.alarms)
 
     def _hear(self, _: str, document: object) -> None:

@@ -20,7 +20,7 @@ from robot_runtime.control.supervisor import Supervisor
 
 
 class Board:
-    """A board that does as it is told, unless the test says otherwise."""
+    """A board that obeys, unless the test changes that."""
 
     def __init__(self, baud: int) -> None:
         self.connected = True
@@ -44,7 +44,7 @@ def imu(tilt: float) -> Imu:
 
 
 class Rig:
-    """A supervisor, its board and what it told."""
+    """A supervisor, its board and its events."""
 
     def __init__(self, baud: int = 250_000, heartbeat: float | None = None) -> None:
         self.clock, self.board = SimulatedClock(100.0), Board(baud)
@@ -85,7 +85,7 @@ class Rig:
         self.supervisor.see_status(status)
 
     def sense(self, depth: float = 0.3, tilt: float = 0.0, *, frozen: bool = False) -> None:
-        """Let the sensors say something, as a sound board does."""
+        """Sends depth and attitude, like a working board."""
         self.sense_depth(depth, frozen=frozen)
         self.sense_attitude(tilt)
 

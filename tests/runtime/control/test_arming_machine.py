@@ -1,4 +1,4 @@
-"""Arming under whatever may come, in any order: commands, faults, silences and restarts."""
+"""Arming under commands, faults, silences and restarts in any order."""
 
 from typing import Any
 
@@ -147,7 +147,7 @@ class Arming(RuleBasedStateMachine):
 
     @rule(obeys=st.booleans())
     def will(self, obeys: bool) -> None:
-        """Whether the board follows a START."""
+        """True if the board obeys a START."""
         self.board.obeys = obeys
 
     @rule()
@@ -191,7 +191,7 @@ class Arming(RuleBasedStateMachine):
 
     @invariant()
     def never_armed_with_an_open_failsafe(self) -> None:
-        """What was not acknowledged bars everything."""
+        """A failsafe that is not acknowledged prevents arming."""
         assert self.acknowledged or not self.supervisor.armed
         assert (self.supervisor.armed_since is not None) == self.supervisor.armed
 

@@ -1,4 +1,4 @@
-"""Each limit to the millisecond, and what belongs to a fault: its words, its alarm, its events."""
+"""Each limit to the millisecond, and the text, alarm and events of each fault."""
 
 from collections.abc import Callable
 from math import radians
@@ -16,7 +16,7 @@ MS = 0.001
 
 
 def live(rig: Rig, seconds: float, sense: Callable[[], None]) -> None:
-    """Let time pass in steps of 20 ms, in each of which the board says something."""
+    """Lets time pass in steps of 20 ms, with data of the board in each."""
     for _ in range(round(seconds / 0.02)):
         rig.clock.forward(0.02)
         sense()
@@ -27,7 +27,7 @@ def wrong(rig: Rig, mode: Mode = "automatic") -> set[str]:
 
 
 def all_but(rig: Rig, missing: str) -> Callable[[], None]:
-    """What a board says, one of whose sensors is silent."""
+    """Sends the data of a board with one silent sensor."""
 
     def sense() -> None:
         rig.report()

@@ -1,4 +1,4 @@
-"""Each fault on the whole robot, the compiled firmware included: how soon it is noticed, and what is done."""
+"""Each fault on the whole robot with the compiled firmware: time to the alarm, and the action."""
 
 from collections.abc import Callable, Iterator
 from math import acos

@@ -1,4 +1,4 @@
-"""The loops: what steers when, holds while driving by hand, and what is refused."""
+"""The control loops: steering, holding while driving by hand, and refusals."""
 
 import json
 from math import isnan, pi
@@ -50,7 +50,7 @@ class Rig:
         self.bus.publish_row("imu", self.clock.now(), record.to_bytes())
 
     def push(self, **axes: float) -> None:
-        """Where the sticks are now."""
+        """Moves the sticks to this position."""
         self._sequence += 1
         sticks = [axes.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
         words = {"lease": 0, "sequence": self._sequence, "taken": self.clock.now(), "axes": sticks}
@@ -65,7 +65,7 @@ class Rig:
         return self.commands[-1] if len(self.commands) > before else None
 
     def hold(self, **sticks: float) -> None:
-        """Keep the sticks there from now on."""
+        """Holds the sticks there from now on."""
         self._sticks = sticks
 
 

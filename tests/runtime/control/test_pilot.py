@@ -1,4 +1,4 @@
-"""What of the pilot's input counts, and what is dropped and counted."""
+"""Pilot's inputs: which are accepted, and which are dropped and counted."""
 
 import json
 from typing import Any
