@@ -14,7 +14,7 @@ from pathlib import Path
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.comm_test.document import DOCUMENT_BYTES_MAX, read_document
 from robot_runtime.experiments.comm_test.lab import (
-    TROUBLE,
+    TEST_ERRORS,
     CommTestLab,
     EmulatedLab,
     EventWriter,
@@ -67,7 +67,7 @@ def main() -> int:
 def _restore(arguments: argparse.Namespace) -> int:
     try:
         upload_to(arguments.port, find_reset(arguments.reset), arguments.restore, Cancellation())
-    except TROUBLE as problem:
+    except TEST_ERRORS as problem:
         sys.exit(f"comm_test: {problem}")
     return 0
 

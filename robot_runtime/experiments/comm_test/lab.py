@@ -22,7 +22,7 @@ from robot_runtime.experiments.comm_test.upload import BOOT_BAUD, UploadError, a
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.simulation.boards.emulator_process import BoardError
 
-TROUBLE = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
+TEST_ERRORS = (SketchBuildError, UploadError, ResetError, BoardError, PortError)
 """Errors that end a test early; the texts say why."""
 
 SKETCH_TIME, BOOT_LOADER_TIME = 0.2, 2.0
@@ -46,7 +46,7 @@ class EventWriter:
 
 
 class CommTestLab(Protocol):
-    """The boards that tests run on. All methods raise the errors in TROUBLE."""
+    """The boards that tests run on. All methods raise the errors in TEST_ERRORS."""
 
     def prepare(self) -> tuple[str, dict[str, str], str]:
         """The hash of the sketch's sources, the versions of the tools by name, and the place in words."""
@@ -125,7 +125,7 @@ class RobotLab:
 
 
 def upload_to(port: str, pull: Pull, program: Path, stop: Cancellation) -> None:
-    """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TROUBLE."""
+    """Upload to the board at a port, whose reset pin `pull` pulls. Raises the errors in TEST_ERRORS."""
     # On a busy computer avrdude may take longer to its first word than the boot loader listens, 1 s.
     for left in reversed(range(ATTEMPTS)):
         pull()
@@ -155,7 +155,7 @@ def _run_test(number: int, test: CommTest, lab: CommTestLab, writer: EventWriter
             writer.tell("cell", test=number, number=cell, values=result.values)
     except StoppedError:
         state = "cancelled"
-    except TROUBLE as trouble:
+    except TEST_ERRORS as trouble:
         # A terminal interrupts the boards and tools of the lab as well, so their end is no failure then.
         state, problem = ("cancelled", "") if stop.is_set() else ("failed", str(trouble))
     writer.tell("ended", test=number, state=state, problem=problem)

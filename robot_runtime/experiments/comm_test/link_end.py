@@ -53,20 +53,20 @@ class _LinkCell:
         self._numbers = iter(range(test.from_val, test.to_val if sends else test.from_val + 1))
         self._next: int | None = next(self._numbers)
         self._next_at = 0.0
-        self._awaits = test.expected if test.direction != "to_board" else 0
+        self._awaited = test.expected if test.direction != "to_board" else 0
         self._sequence = Sequence(test.from_val, test.to_val)
         self._boot: int | None = None
-        self._asked = False
+        self._requested = False
         self._answer: TestResult | None = None
         self._read = 0
 
     def run(self) -> CellResult:
         self._line.wait(self._line.start_time)
         self._line.inject_faults(self._test.faults)
-        while self._answer is None and not self._hopeless():
-            self._give()
+        while self._answer is None and not self._given_up():
+            self._send_due()
             self._line.wait(self._pause())
-            self._take()
+            self._receive()
         return self._result()
 
     @property
@@ -74,10 +74,10 @@ class _LinkCell:
         return self._session.stage is SessionStage.ESTABLISHED
 
     @property
-    def _all_here(self) -> bool:
-        return self._sequence.right + self._sequence.out_of_sequence >= self._awaits
+    def _all_received(self) -> bool:
+        return self._sequence.right + self._sequence.out_of_sequence >= self._awaited
 
-    def _hopeless(self) -> bool:
+    def _given_up(self) -> bool:
         if self._session.board is None:
             return self._line.now > GREETING_PATIENCE
         refused = self._session.stage is SessionStage.REFUSED
@@ -88,7 +88,7 @@ class _LinkCell:
         board = self._session.board
         return board is not None and self._boot not in (None, board.epoch)
 
-    def _give(self) -> None:
+    def _send_due(self) -> None:
         now = self._line.now
         packets = self._due_packets(now) if self._established else []
         data = self._session.send(packets, now) if packets else self._session.poll(now)
@@ -101,8 +101,8 @@ class _LinkCell:
             packets.append(TestMsg(number=self._next))
             self._next = next(self._numbers, None)
             self._next_at = now + self._cell.pi_delay
-        if self._next is None and now >= self._next_at and self._all_here and not self._asked:
-            self._asked = True
+        if self._next is None and now >= self._next_at and self._all_received and not self._requested:
+            self._requested = True
             packets.append(RequestResult())
         return packets
 
@@ -110,13 +110,13 @@ class _LinkCell:
         """s until something is to be done; while something is awaited, no longer than a reaction takes."""
         now = self._line.now
         due = self._session.due()
-        if self._established and not self._asked:
+        if self._established and not self._requested:
             due = min(due, self._next_at) if self._next_at > now else due
-        awaits = self._session.urgent or self._asked or not self._all_here or not self._established
+        awaits = self._session.urgent or self._requested or not self._all_received or not self._established
         pause = due - now
         return max(min(pause, self._reaction) if awaits else pause, self._line.byte_time)
 
-    def _take(self) -> None:
+    def _receive(self) -> None:
         heard = self._line.heard
         data, self._read = heard[self._read :], len(heard)
         for message in self._session.receive(data, self._line.now):
@@ -138,7 +138,7 @@ class _LinkCell:
                 bytes_read=self._line.written - answer.bytes_lost,
             )
         host = Counts()
-        if self._awaits:
+        if self._awaited:
             host = Counts(
                 right=self._sequence.right,
                 out_of_sequence=self._sequence.out_of_sequence,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from robot_runtime.experiments.comm_test.line import Cancellation, CommTestLine, check
 from robot_runtime.experiments.comm_test.results import FaultCounts, LineErrors
-from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, obey
+from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, execute
 from robot_runtime.link.port import Port
 
 LOOK = 0.1
@@ -52,7 +52,7 @@ class PortLine(CommTestLine):
 
     def _order(self, command: str) -> None:
         assert self._faulty
-        obey(self._faulty, command)
+        execute(self._faulty, command)
 
     def _hand_over(self, data: bytes) -> None:
         self._port.write(data)

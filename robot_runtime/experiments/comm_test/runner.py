@@ -105,8 +105,8 @@ def run_cell(test: CommTest, cell: GridCell, line: CommTestLine) -> CellResult:
         line.write(message)
         line.wait(cell.pi_delay)
     sent = line.written
-    _let_the_board_finish(test, cell, line, len(messages[0]))
-    board, answer_at = _ask(framing.request, cell, line)
+    _wait_for_board(test, cell, line, len(messages[0]))
+    board, answer_at = _request_result(framing.request, cell, line)
     stream = line.heard[:answer_at]
     sends = test.direction != "to_board"
     host = framing.count(stream, test.from_val, test.to_val) if sends else Counts()
@@ -135,7 +135,7 @@ def estimate_seconds(test: CommTest, cell: GridCell) -> float:
     return max(airtime, sending, answering) + emptying
 
 
-def _let_the_board_finish(test: CommTest, cell: GridCell, line: CommTestLine, message_bytes: int) -> None:
+def _wait_for_board(test: CommTest, cell: GridCell, line: CommTestLine, message_bytes: int) -> None:
     line.drain()
     each = cell.arduino_delay + LOOP_TIME
     to_read = ceil(RING_BYTES / message_bytes)
@@ -146,7 +146,7 @@ def _let_the_board_finish(test: CommTest, cell: GridCell, line: CommTestLine, me
     line.wait((max(to_read, to_send) + 1) * each)
 
 
-def _ask(request: bytes, cell: GridCell, line: CommTestLine) -> tuple[Counts | None, int]:
+def _request_result(request: bytes, cell: GridCell, line: CommTestLine) -> tuple[Counts | None, int]:
     # On a line that is left alone, and whatever harmed bytes have made the chip answer before: so the answer
     # tells of the numbers.
     line.clear_faults()

@@ -28,7 +28,7 @@ from robot_runtime.link.link_driver import PortError
 
 _READ_BYTES = 1024
 _STALL_MAX = 3600.0  # s
-_LOOK = 0.1  # s between two looks whether the line has ended
+_CHECK_SECONDS = 0.1  # s between two looks whether the line has ended
 
 
 class PtyProxy:
@@ -143,9 +143,9 @@ class PtyProxy:
         if port in writable:
             self._pending = self._pending[os.write(port, self._pending) :]
         if port in ready:
-            self._give(os.read(port, _READ_BYTES))
+            self._pass_to_host(os.read(port, _READ_BYTES))
 
-    def _give(self, data: bytes) -> None:
+    def _pass_to_host(self, data: bytes) -> None:
         if not data:
             raise OSError("it has nothing more to say")
         channel = self.channels["from_board"]
@@ -157,7 +157,7 @@ class PtyProxy:
         channel.counts["lost"] += len(arriving) - given
 
 
-def obey(line: PtyProxy, command: str) -> str:
+def execute(line: PtyProxy, command: str) -> str:
     """Executes a command and returns the answer. Raises ValueError for an invalid one."""
     match command.split():
         case ["stats"]:
@@ -165,13 +165,13 @@ def obey(line: PtyProxy, command: str) -> str:
         case ["seed", seed]:
             line.seed(int(seed))
         case ["line", ("to_board" | "from_board") as direction, *words]:
-            _disturb(line, direction, words)
+            _set_fault(line, direction, words)
         case _:
             raise ValueError("the commands are line, seed and stats")
     return "ok"
 
 
-def _disturb(line: PtyProxy, direction: Direction, words: list[str]) -> None:
+def _set_fault(line: PtyProxy, direction: Direction, words: list[str]) -> None:
     channel = line.channels[direction]
     match words:
         case [("bit_errors" | "drop" | "double" | "insert") as kind, rate]:
@@ -206,10 +206,10 @@ def main() -> None:
 
 
 def _serve(line: PtyProxy) -> None:
-    _say("ready")
+    _print_line("ready")
     sources, rest = [sys.stdin.fileno()], b""
     while line.running():
-        if not select.select(sources, [], [], _LOOK)[0]:
+        if not select.select(sources, [], [], _CHECK_SECONDS)[0]:
             continue
         data = os.read(sources[0], _READ_BYTES)
         if not data:
@@ -217,12 +217,12 @@ def _serve(line: PtyProxy) -> None:
         *commands, rest = (rest + data).split(b"\n")
         for command in commands:
             try:
-                _say(obey(line, command.decode(errors="replace")))
+                _print_line(execute(line, command.decode(errors="replace")))
             except ValueError as problem:
-                _say(f"error {problem}")
+                _print_line(f"error {problem}")
 
 
-def _say(text: str) -> None:
+def _print_line(text: str) -> None:
     sys.stdout.write(f"{text}\n")
     sys.stdout.flush()
 

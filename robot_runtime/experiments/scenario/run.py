@@ -102,9 +102,9 @@ class _RunLoop:
         self._changes = changes(rig.simulator)
         self._remarks: list[str] = []
         self._arming: tuple[Arming, TimedEvent] | None = None
-        self._ask_again = 0.0
-        self._heard = b""
-        self._look_at = now = rig.clock.now()
+        self._next_attempt = 0.0
+        self._received = b""
+        self._next_poll = now = rig.clock.now()
         self._tasks = [
             _PeriodicTask(now, 1 / rig.scenario.control.rate, rig.robot.control_tick),
             _PeriodicTask(now, PUBLISH_EVERY, rig.robot.publish_tick),
@@ -117,7 +117,7 @@ class _RunLoop:
         robot = self._rig.robot
         robot.outbox.flush()
         robot.announce()
-        self._tasks.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._tell_progress))
+        self._tasks.append(_PeriodicTask(0.0, PROGRESS_EVERY, self._report_progress))
 
     def play(self) -> None:
         """Runs all events, until the end or until it is stopped."""
@@ -126,7 +126,7 @@ class _RunLoop:
             self._until(event.at)
             if self._stopped():
                 return
-            self._happen(event)
+            self._run_event(event)
         self._until(scenario.duration)
 
     def finish(self, *, cancelled: bool) -> None:
@@ -136,7 +136,7 @@ class _RunLoop:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
         self._stopped = lambda: False
         self._until(clock.now() + AFTERWARDS)
-        self._take_in()
+        self._receive_bytes()
         robot.publish_tick()
         self._listener.event(
             "ended",
@@ -149,34 +149,34 @@ class _RunLoop:
         """Advances the time to `end` (s), or until it is stopped."""
         rig = self._rig
         while (now := rig.clock.now()) < end - _SAME_TIME and not self._stopped():
-            self._converse(now)
+            self._poll_link(now)
             for task in self._tasks:
                 task.run_if_due(now)
-            due = [end, self._look_at, rig.robot.pilot_tick(), *(task.due for task in self._tasks)]
+            due = [end, self._next_poll, rig.robot.pilot_tick(), *(task.due for task in self._tasks)]
             if self._arming is not None:
                 self._continue_arming(now)
-                due.append(self._ask_again)
+                due.append(self._next_attempt)
             if self._has_camera and now > -_SAME_TIME:
                 due.append(now + rig.robot.vision.tick())
             periods = max(round((min(due) - now) / PERIOD), 1)
-            self._heard += rig.run(periods)
+            self._received += rig.run(periods)
 
-    def _converse(self, now: float) -> None:
+    def _poll_link(self, now: float) -> None:
         """Does the work of the link's thread: collects bytes, handles them, sends what is due."""
         line = self._rig.robot.link
-        if now < self._look_at - _SAME_TIME and (line.gathering or not self._heard):
+        if now < self._next_poll - _SAME_TIME and (line.gathering or not self._received):
             return
-        self._take_in()
+        self._receive_bytes()
         line.poll()
         # Where bytes may come at any time, they are looked for in every step.
-        self._look_at = now + (GATHERING if line.gathering else min(line.wait(), PERIOD))
+        self._next_poll = now + (GATHERING if line.gathering else min(line.wait(), PERIOD))
 
-    def _take_in(self) -> None:
-        if self._heard:
-            heard, self._heard = self._heard, b""
+    def _receive_bytes(self) -> None:
+        if self._received:
+            heard, self._received = self._received, b""
             self._rig.robot.link.receive(heard)
 
-    def _happen(self, event: TimedEvent) -> None:
+    def _run_event(self, event: TimedEvent) -> None:
         now = self._rig.clock.now()
         try:
             self._do(event, now)
@@ -184,14 +184,14 @@ class _RunLoop:
             self._refuse(event, str(problem))
         else:
             if not _arms(event):
-                self._mark(event.words)
+                self._add_bookmark(event.words)
 
     def _do(self, event: TimedEvent, now: float) -> None:
         rig = self._rig
         if isinstance(event, CommandEvent) and isinstance(command := event.command, ArmCommand):
             arming = rig.robot.supervisor.begin_arming(command.mode, command.alone)
             self._arming = arming, event
-            self._ask_again = now + ARM_WAIT
+            self._next_attempt = now + ARM_WAIT
         elif isinstance(event, CommandEvent):
             self._commands.perform(event.command)
         elif isinstance(event, LineFaultChange):
@@ -205,26 +205,26 @@ class _RunLoop:
         assert self._arming is not None
         arming, event = self._arming
         supervisor = self._rig.robot.supervisor
-        if not arming.over and (supervisor.board_armed or now >= self._ask_again - _SAME_TIME):
-            self._ask_again = now + ARM_WAIT
+        if not arming.over and (supervisor.board_armed or now >= self._next_attempt - _SAME_TIME):
+            self._next_attempt = now + ARM_WAIT
             supervisor.continue_arming()
         if arming.over:
             self._arming = None
             if arming.refusal:
                 self._refuse(event, arming.refusal)
             else:
-                self._mark(event.words)
+                self._add_bookmark(event.words)
 
     def _refuse(self, event: TimedEvent, problem: str) -> None:
         # As with an operator, whom the robot may refuse something: the experiment goes on.
         words = f"{event.words}: refused. {problem}"
         self._remarks.append(f"At {event.at:g} s: {words}")
-        self._mark(words)
+        self._add_bookmark(words)
 
-    def _mark(self, words: str) -> None:
+    def _add_bookmark(self, words: str) -> None:
         self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=words)
 
-    def _tell_progress(self) -> None:
+    def _report_progress(self) -> None:
         self._listener.event("progress", time=_round_time(self._rig.clock.now()))
 
 

@@ -23,7 +23,7 @@ from robot_runtime.experiments.line_faults.faults import (
     Kind,
     Recurrence,
 )
-from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, obey
+from robot_runtime.experiments.line_faults.pty_proxy import PtyProxy, execute
 from robot_runtime.link.link_driver import PortError
 from tests.runtime.board_end import DEADLINE, BoardEnd
 
@@ -278,17 +278,17 @@ def test_a_port_that_is_none_is_refused(tmp_path: Path) -> None:
 
 
 def test_commands_do_as_the_boards(ends: Ends) -> None:
-    assert obey(ends.line, "seed 4") == "ok"
-    assert obey(ends.line, "line to_board drop 1.0") == "ok"
+    assert execute(ends.line, "seed 4") == "ok"
+    assert execute(ends.line, "line to_board drop 1.0") == "ok"
     ends.send("to_board", b"gone")
-    wait_for(lambda: "to_board_drops=4" in obey(ends.line, "stats"), "the bytes to be dropped")
-    assert obey(ends.line, "line to_board clean") == "ok"
-    assert obey(ends.line, "line from_board burst 0.1 8") == "ok"
-    assert obey(ends.line, "line from_board stall 60") == "ok"
-    assert obey(ends.line, "line from_board clean") == "ok"
-    assert obey(ends.line, "line from_board cut on") == "ok"
+    wait_for(lambda: "to_board_drops=4" in execute(ends.line, "stats"), "the bytes to be dropped")
+    assert execute(ends.line, "line to_board clean") == "ok"
+    assert execute(ends.line, "line from_board burst 0.1 8") == "ok"
+    assert execute(ends.line, "line from_board stall 60") == "ok"
+    assert execute(ends.line, "line from_board clean") == "ok"
+    assert execute(ends.line, "line from_board cut on") == "ok"
     ends.send("from_board", b"lost")
-    wait_for(lambda: "from_board_cuts=4" in obey(ends.line, "stats"), "the bytes to be lost")
+    wait_for(lambda: "from_board_cuts=4" in execute(ends.line, "stats"), "the bytes to be lost")
 
 
 @pytest.mark.parametrize(
@@ -308,7 +308,7 @@ def test_commands_do_as_the_boards(ends: Ends) -> None:
 )
 def test_commands_that_make_no_sense_are_refused(ends: Ends, command: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
-        obey(ends.line, command)
+        execute(ends.line, command)
 
 
 @contextmanager
