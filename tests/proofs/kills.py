@@ -32,7 +32,7 @@ PATIENCE = 60.0
 PARTS = ("board", "runtime", "simulator")
 
 
-class Hole(NamedTuple):
+class StateSilence(NamedTuple):
     """Samples of a topic that are not there, and for how long."""
 
     topic: str
@@ -51,7 +51,7 @@ class Report:
     """Samples that the server had told of as stored, and that were not there after its next start."""
     away: list[float] = field(default_factory=list)
     """s from each kill until the next server answered."""
-    holes: list[Hole] = field(default_factory=list)
+    holes: list[StateSilence] = field(default_factory=list)
     doubles: int = 0
     gaps: list[tuple[str, str, int]] = field(default_factory=list)
     replaced: list[str] = field(default_factory=list)
@@ -167,7 +167,7 @@ def _examine(database: Path, report: Report) -> None:
         for topic, first, count, first_time, last_time, data in chunks:
             number, time_before = ends.get(topic, (first, first_time))
             if first > number:
-                report.holes.append(Hole(topic, first - number, first_time - time_before))
+                report.holes.append(StateSilence(topic, first - number, first_time - time_before))
             report.doubles += max(number - first, 0)
             ends[topic] = (first + count, last_time)
             report.rows += count

@@ -1,1 +1,1 @@
-"""Sessions laid over each other: signals on one time axis, figures, and what was different."""
+"""Comparison of sessions: signals on one time axis, figures, differences."""

@@ -1,4 +1,4 @@
-"""Where sessions are laid over each other: the moment of each that becomes 0 s."""
+"""Alignment of sessions: the moment of each that becomes 0 s."""
 
 from typing import Annotated, Literal
 
@@ -19,13 +19,13 @@ class Align(BaseModel):
 
 
 class NoMomentError(Exception):
-    """A session lacks the moment; the text says so to a person."""
+    """The session lacks the moment; the text says why."""
 
 
 def find_moment(
     align: Align, history: ControlHistory, steps: list[tuple[float, float]], markers: list[Moment]
 ) -> float:
-    """The moment, s since the session's start. Raises NoMomentError where the session has none."""
+    """The moment, s since the session's start. Raises NoMomentError if the session lacks it."""
     if align.by == "armed":
         if not history.armed:
             raise NoMomentError("The robot was never armed in this session.")
@@ -41,7 +41,7 @@ def find_moment(
         for marker in markers:
             if marker.text.strip().casefold() == sought:
                 return marker.time
-        raise NoMomentError(f"This session has no marker “{align.marker}”.")
+        raise NoMomentError(f"This session has no bookmark “{align.marker}”.")
     return 0.0
 
 

@@ -1,4 +1,4 @@
-"""Lays sessions over each other."""
+"""Compares sessions on one time axis."""
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -30,9 +30,9 @@ from server.features.comparison.schemas import (
     Compared,
     Comparison,
     ComparisonQuery,
-    Drawn,
     Lines,
     LinesQuery,
+    SessionLines,
     SignalLine,
     TimeRange,
 )
@@ -47,12 +47,12 @@ from server.platform.store import Reader
 
 EVENTS_MAX = 500
 THREADS = 2
-"""Decompression and SQLite let others run, Python itself does not: more are of no use."""
+"""Only decompression and SQLite run in parallel: more threads do not help."""
 
 
 @dataclass(frozen=True, slots=True)
 class _AlignedSession:
-    """A session, and where it lies on the common time axis."""
+    """A session and its place on the common time axis."""
 
     recording: Recording
     history: ControlHistory
@@ -67,7 +67,7 @@ class _AlignedSession:
 
 
 class Comparer:
-    """Answers comparisons, from several threads; what it found out about complete sessions is kept a while.
+    """Compares sessions, called from several threads; results about complete sessions are cached.
 
     Methods raise UnknownSessionError, StoreError and RecordingError.
     """
@@ -99,7 +99,9 @@ class Comparer:
         """The lines alone, for a part of the time."""
         aligned = self._align(query)
         drawn = [
-            Drawn(id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, query))
+            SessionLines(
+                id=one.row.id or 0, offset=one.offset, problem=one.problem, series=self._draw(one, query)
+            )
             for one in aligned
         ]
         return Lines(sessions=drawn)
@@ -112,7 +114,7 @@ class Comparer:
         return list(self._threads.map(lambda one: self._align_one(one, query), recordings))
 
     def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
-        # At once, since what is wanted of one topic is read together.
+        # All at once, since the columns of a topic are read together.
         found = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
         history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
         set_point = found.get(SET_POINT)

@@ -1,4 +1,4 @@
-"""The comparer of a server, made when it is first asked for: it loads NumPy."""
+"""The comparer of a server, made at its first use, since it loads NumPy."""
 
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ class Comparisons:
 
     @cached_property
     def comparer(self) -> "Comparer":
-        """Compares sessions, and remembers what it measured of complete ones."""
+        """The comparer, which caches results about complete sessions."""
         from server.features.comparison.comparer import Comparer
 
         return Comparer(self._store)

@@ -1,8 +1,8 @@
-"""Fewer points that look the same: the least and the most of each column of the picture.
+"""Decimation of signals for display: minimum and maximum of each pixel column.
 
-A picture that is n columns wide shows the same line whether all samples are drawn or, in each column, its
-least and its most (Jugel et al., M4: A Visualization-Oriented Time Series Data Aggregation, VLDB 2014). No
-spike is lost that way.
+A chart of n columns shows the same line whether all samples are drawn or only the minimum and maximum of each
+column (Jugel et al., M4: A Visualization-Oriented Time Series Data Aggregation, VLDB 2014). No spike is
+lost.
 """
 
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from server.features.metrics.series import Floats, Series
 
 GAP_PERIODS = 5.0
 GAP_LEAST = 1.0
-"""s without samples, at least, and so many usual periods: then the line is broken."""
+"""s without samples, at least, and number of usual periods, that break the line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """Least and most of each column, shape (columns,); NaN in both breaks the line."""
+    """Minimum and maximum of each column, shape (columns,); NaN in both breaks the line."""
 
     time: Floats
     low: Floats
@@ -28,8 +28,8 @@ class Envelope:
 def decimate(series: Series, start: float, end: float, points: int) -> Envelope:
     """The samples between these times (s) in at most about `points` columns of equal width.
 
-    Fewer samples than that are passed on as they are. Neighbours outside the range come along, so that the
-    line runs to the picture's edges.
+    Fewer samples are returned unchanged. The neighbours outside the range are included, so that the line
+    reaches the chart's edges.
     """
     first = max(int(np.searchsorted(series.times, start, "left")) - 1, 0)
     last = int(np.searchsorted(series.times, end, "right")) + 1
@@ -50,7 +50,7 @@ def _pause(times: Floats) -> float:
 
 
 def _broken(times: Floats, low: Floats, high: Floats, pause: float) -> Envelope:
-    """With NaN where nothing came for longer than `pause` (s)."""
+    """The envelope with NaN in pauses longer than `pause` (s)."""
     after = np.flatnonzero(np.diff(times) > pause)
     if not after.size:
         return Envelope(times, low, high)

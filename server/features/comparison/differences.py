@@ -33,15 +33,15 @@ CHANGED = "changed while armed: "
 
 
 class Difference(BaseModel):
-    """Something that is not the same in all sessions."""
+    """A property that differs between sessions."""
 
     group: str = Field(description="In force, Parameters, Session, robot.toml or Scenario")
     name: str
-    values: list[str] = Field(description="one for each session; empty where it has no such thing")
+    values: list[str] = Field(description="one for each session; empty if it lacks the property")
 
 
 def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> list[Difference]:
-    """The rows in which sessions differ; for a single session every row but its files."""
+    """The properties in which sessions differ; for a single session all except its files."""
     alone = len(sessions) == 1
     groups = [
         ("In force", [dict(_in_force(history)) for _, history in sessions]),
@@ -63,7 +63,7 @@ def find_differences(sessions: Sequence[tuple[SessionRow, ControlHistory]]) -> l
 
 
 def flatten(text: str) -> Iterator[tuple[str, str]]:
-    """The entries of a TOML text, with dotted names; all of it as one where it cannot be read."""
+    """The entries of a TOML text, with dotted names; one entry with the problem if it is not valid."""
     try:
         yield from _entries("", tomllib.loads(text))
     except tomllib.TOMLDecodeError as problem:
@@ -99,7 +99,7 @@ def _in_force(history: ControlHistory) -> Iterator[tuple[str, str]]:
 
 
 def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
-    """Every parameter with the values that it had while armed, in the order of time."""
+    """Every parameter with its values while armed, in order of time."""
     times = [one.time for one in history.parameters]
     values: dict[str, list[str]] = {}
     for one in history.parameters:
@@ -111,7 +111,7 @@ def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
 
 
 def _rules(time: float, times: Sequence[float], armed: Sequence[Span]) -> bool:
-    """True where the choice made at `time`, one of `times`, is in force at any time while armed."""
+    """True if the choice made at `time`, one of `times`, is in force at any time while armed."""
     if not armed:
         return time == times[0]
     in_force = Span(time, min((one for one in times if one > time), default=float("inf")))

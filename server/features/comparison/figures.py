@@ -19,9 +19,9 @@ from server.platform.store import Reader
 
 MEASURED, SET_POINT, OUTPUT = "depth.depth", "control.set_point", "control.output"
 HEIGHT_LEAST = 0.05
-"""m; less is no step to be judged by."""
+"""m; smallest step that is evaluated."""
 LATE_MOST = 0.5
-"""s by which a recording may begin after the step that it is judged by, as one that begins at arming does."""
+"""s by which a recording may begin after the evaluated step, as one that begins at arming does."""
 _FINS = tuple(f"angle_{fin}" for fin in range(4))
 _LINK = {
     "frames_lost": "frames_missed",
@@ -34,16 +34,16 @@ NEVER_ARMED = "The robot was never armed in this session."
 
 @dataclass(frozen=True, slots=True)
 class EvaluationRange:
-    """The time over which figures are taken.
+    """The time range of figures.
 
-    `anchor` is the moment (s) of the step that is meant; the first one in the range without.
+    `anchor` is the moment (s) of the evaluated step; without it the first one in the range.
     """
 
     spans: tuple[Span, ...]
     anchor: float | None = None
 
     def mask(self, times: np.ndarray) -> np.ndarray:
-        """Which of these times (s) lie in it."""
+        """A mask of the times (s) in the range."""
         inside = np.zeros(times.size, bool)
         for span in self.spans:
             first, last = np.searchsorted(times, [span.start, span.end], "left")
@@ -58,7 +58,7 @@ def measure(
     evaluated: EvaluationRange,
     band: float | None = None,
 ) -> dict[str, Figure]:
-    """Those of FIGURES that follow from depth, set point and command; `band` is that of the settling time, m.
+    """The FIGURES of depth, set point and command; `band` is that of the settling time, m.
 
     Raises StoreError, RecordingError.
     """
@@ -74,7 +74,7 @@ def measure(
 
 
 def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
-    """Those of FIGURES that are counted: strokes, losses, gaps; over the whole session without `spans`.
+    """The FIGURES that are counted: strokes, losses, gaps; over the whole session without `spans`.
 
     Raises StoreError, RecordingError.
     """
@@ -84,7 +84,7 @@ def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[st
 
 
 def complete(found: Mapping[str, Figure], why: str) -> dict[str, Figure]:
-    """All of FIGURES in their order; `why` says why those that were not found are missing."""
+    """All FIGURES in their order; `why` is the reason for missing ones."""
     missing = Figure(value=None, words=why)
     return {meaning.name: found.get(meaning.name, missing) for meaning in FIGURES}
 
@@ -99,7 +99,7 @@ def _depth_figures(
         if response is not None
         else evaluated.spans[0]
     )
-    # At its very end the next set point may be in force.
+    # The next set point may be in force at the end itself.
     part = depth.within(steady.start, float(np.nextafter(steady.end, steady.start)))
     if part.times.size:
         errors = _held(set_point, part.times) - part.values
@@ -122,7 +122,7 @@ def _depth_figures(
 def _step(
     depth: Series, set_point: Series, history: ControlHistory, evaluated: EvaluationRange, band: float | None
 ) -> StepResponse | None:
-    """The response to the first step in the range that is high enough, or to the one that is meant."""
+    """The response to the first step in the range that is high enough, or to the step at the anchor."""
     changes = [time for time, _ in set_point_steps(set_point, history.armed)]
     armings = [span.start for span in history.armed]
     for span in evaluated.spans:
@@ -143,7 +143,7 @@ def _ends(history: ControlHistory) -> Iterable[float]:
 
 
 def _value_at(set_point: Series, time: float) -> float:
-    """The set point from `time` on: of the first tick at or after it."""
+    """The set point of the first tick at or after `time`."""
     at = min(int(np.searchsorted(set_point.times, time, "left")), set_point.times.size - 1)
     return float(set_point.values[at])
 
@@ -184,7 +184,7 @@ def _step_figures(response: StepResponse | None) -> dict[str, Figure]:
 
 def _cycle_figures(cycle: LimitCycle | None, steady: Span, part: Series) -> dict[str, Figure]:
     if cycle is None:
-        none = Figure(value=None, words="The depth does not oscillate lastingly.")
+        none = Figure(value=None, words="The depth has no lasting oscillation.")
         return {"cycle_amplitude": none, "cycle_period": none}
     middle = float(np.median([part.values.min(), part.values.max()]))
     low, high = middle - cycle.amplitude / 2, middle + cycle.amplitude / 2
@@ -227,7 +227,7 @@ def _link(recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
         series = columns[column]
         counted = 0.0
         for span in spans:
-            # The count just before the range is what it begins with; a port opened anew counts from 0.
+            # The count before the range is the first value; a reopened port counts from 0.
             first = max(int(np.searchsorted(series.times, span.start, "right")) - 1, 0)
             last = int(np.searchsorted(series.times, span.end, "right"))
             steps = np.diff(series.values[first:last])
@@ -247,4 +247,4 @@ def _gaps(store: Reader, recording: Recording, spans: Sequence[Span]) -> Figure:
     for gap in gaps:
         missed[gap.topic] = missed.get(gap.topic, 0) + gap.missed
     words = ", ".join(f"{count} of {topic}" for topic, count in missed.items())
-    return Figure(value=len(gaps), words=f"Samples that are missing: {words}." if gaps else "")
+    return Figure(value=len(gaps), words=f"Missing samples: {words}." if gaps else "")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from sqlmodel import col, select
 
-from server.features.comparison.moments import ControlHistory, ControlPeriod, Span, Tuned
+from server.features.comparison.moments import ControlHistory, ControlPeriod, ParameterValues, Span
 from server.features.comparison.samples import Samples
 from server.features.metrics.series import Series
 from server.features.sessions.recording import Recording, depth_loop
@@ -15,13 +15,13 @@ from server.platform.models import BookmarkRow, Gap
 from server.platform.store import Reader
 
 ARMED_FLAG = 1
-"""In status.flags, see robot_runtime.contract.packets.StatusFlag."""
+"""The bit of status.flags, see robot_runtime.contract.packets.StatusFlag."""
 STEP_LEAST = 0.001
-"""m by which a set point changes; less is rounding."""
+"""m; smaller changes of a set point are rounding."""
 
 
 def read_history(recording: Recording, samples: Samples) -> ControlHistory:
-    """The history, from the state documents; armed spans else from the board's flags.
+    """The history from the state documents; without these the armed spans from the board's flags.
 
     Raises StoreError, RecordingError.
     """
@@ -38,7 +38,7 @@ def read_history(recording: Recording, samples: Samples) -> ControlHistory:
         armed_at_start=bool(changes[0].get("armed")) and changes[0].get("armed_since") is None,
         controls=tuple(_controls(changes, origin)),
         state=(before or changes[:1])[-1],
-        parameters=tuple(_tuned(recording, origin)),
+        parameters=tuple(_parameter_values(recording, origin)),
     )
 
 
@@ -54,7 +54,7 @@ def set_point_steps(set_point: Series, armed: tuple[Span, ...]) -> list[tuple[fl
 
 
 def read_markers(store: Reader, recording: Recording) -> list[Moment]:
-    """The session's markers in the order of time. Raises StoreError."""
+    """The session's bookmarks in order of time. Raises StoreError."""
     row = recording.row
     query = select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))
     with store.read() as database:
@@ -64,7 +64,7 @@ def read_markers(store: Reader, recording: Recording) -> list[Moment]:
 
 
 def read_gaps(store: Reader, recording: Recording) -> list[Gap]:
-    """The gaps that the recorder noted. Raises StoreError."""
+    """The gaps of the recording. Raises StoreError."""
     query = select(Gap).where(Gap.session_id == recording.row.id).order_by(col(Gap.time))
     with store.read() as database:
         return list(database.exec(query))
@@ -98,11 +98,11 @@ def _began_armed(armed: tuple[Span, ...], flags: Series | None) -> bool:
     return flags is not None and armed[0].start == flags.times[0]
 
 
-def _tuned(recording: Recording, origin: float) -> Iterator[Tuned]:
+def _parameter_values(recording: Recording, origin: float) -> Iterator[ParameterValues]:
     if "parameters" in recording.topics:
         for document in recording.changes("parameters"):
             values = {one["name"]: one["value"] for one in document["parameters"]}
-            yield Tuned(document["time"] - origin, values)
+            yield ParameterValues(document["time"] - origin, values)
 
 
 def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[ControlPeriod]:

@@ -6,7 +6,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """From one moment to another, s since the session's start."""
+    """A time span, s since the session's start."""
 
     start: float
     end: float
@@ -22,8 +22,8 @@ class ControlPeriod:
 
 
 @dataclass(frozen=True, slots=True)
-class Tuned:
-    """Every parameter's value from `time` on, by name."""
+class ParameterValues:
+    """The value of every parameter from `time` on, by name."""
 
     time: float
     values: dict[str, Any]
@@ -31,14 +31,14 @@ class Tuned:
 
 @dataclass(frozen=True, slots=True)
 class ControlHistory:
-    """When the robot was armed, and how it was controlled; times in s since the session's start."""
+    """The armed spans, controllers and parameters of a session; times in s since its start."""
 
     armed: tuple[Span, ...]
-    """The first may begin before the recording did, which is known where the state documents say so."""
+    """The first may begin before the recording, if the state documents say so."""
     armed_at_start: bool
-    """It was armed before the recording began, and nothing says when."""
+    """The robot was armed before the recording, at an unknown time."""
     controls: tuple[ControlPeriod, ...]
     state: dict[str, Any]
-    """The newest state document at the first arming, or the first of all; empty where there is none."""
-    parameters: tuple[Tuned, ...] = ()
-    """Empty in recordings from before there were any."""
+    """The newest state document at the first arming, or the first one; empty without any."""
+    parameters: tuple[ParameterValues, ...] = ()
+    """Empty in recordings of versions without parameters."""

@@ -1,6 +1,6 @@
-"""A comparison as one HTML file that needs nothing else: charts (Plotly), figures, differences, markers.
+"""A comparison as one self-contained HTML file: charts (Plotly), figures, differences, bookmarks.
 
-Dark on white, for printing. The file carries Plotly itself, about 5 MB.
+Dark on white, for printing. The file includes Plotly, about 5 MB.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,7 @@ DEPTHS = frozenset(
     )
 )
 SHOWN_KINDS = frozenset({"armed", "disarmed", "fin_check", "controller"})
-"""Kinds of events that have a sign above the charts, as what is no mere information has."""
+"""Kinds of events that are shown above the charts, besides cautions and alarms."""
 HIGH_FIRST, HIGH, GAP, EDGE, ROW = 300, 180, 46, 60, 22
 FONT = "Inter, Helvetica, Arial, sans-serif"
 ALIGNED = {"start": "the start of the recording", "armed": "arming"}
@@ -39,7 +39,7 @@ SET_POINTS = ("set_point", "wanted")
 
 
 def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
-    """The report as HTML; `view` is the part of the time (s) that its charts show at first."""
+    """The report as HTML; `view` is the time range (s) that its charts show first."""
     names = ", ".join(one.name for one in comparison.sessions)
     parts = [
         f"<h1>{escape(names)}</h1>",
@@ -48,7 +48,7 @@ def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
         _charts(comparison, view),
         "<h2>Figures</h2>",
         _figure_table(comparison),
-        "<h2>What differs</h2>" if len(comparison.sessions) > 1 else "<h2>What it ran with</h2>",
+        "<h2>Differences</h2>" if len(comparison.sessions) > 1 else "<h2>Settings</h2>",
         _difference_table(comparison),
         _marker_table(comparison),
     ]
@@ -59,14 +59,14 @@ def _moment(comparison: Comparison) -> str:
     align = comparison.align
     if align.by == "set_point":
         return f"step {align.number} of the set point"
-    return ALIGNED.get(align.by) or f"the marker “{align.marker}”"
+    return ALIGNED.get(align.by) or f"the bookmark “{align.marker}”"
 
 
 def _charts(comparison: Comparison, view: TimeRange | None) -> str:
     charts = _group(comparison.signals)
     laid = [(place, one) for place, one in enumerate(comparison.sessions) if one.offset is not None]
     if not charts or not laid:
-        return "<p>There is nothing to draw: no signal, or no session that has this moment.</p>"
+        return "<p>There is nothing to draw: no signal, or no session with this moment.</p>"
     heights = [HIGH_FIRST, *[HIGH] * (len(charts) - 1)]
     signs = ROW * len(laid)
     inside = signs + sum(heights) + GAP * len(heights)
@@ -130,7 +130,7 @@ def _charts(comparison: Comparison, view: TimeRange | None) -> str:
 
 
 def _group(signals: Sequence[Signal]) -> list[tuple[str, list[Signal]]]:
-    """The charts, by their titles: depths together, a fin's wanted angle with its measured one."""
+    """The charts by title: depths together, a fin's set angle with its measured one."""
     charts: dict[str, list[Signal]] = {}
     for signal in signals:
         if signal.name in DEPTHS:
@@ -193,7 +193,7 @@ def _signs(session: Compared, row: int, colour: str, axis: int) -> go.Scatter:
 
 
 def _points(line: SignalLine, offset: float) -> tuple[list[float], list[float | None]]:
-    """Each column's least and most one after the other."""
+    """The minimum and maximum of each column in turn."""
     pairs = [
         (round(time - offset, 4), value)
         for time, low, high in zip(line.time, line.low, line.high, strict=True)
@@ -221,7 +221,7 @@ def _session_table(comparison: Comparison) -> str:
 
 
 def _figure_table(comparison: Comparison) -> str:
-    head = ("Figure", *(escape(one.name) for one in comparison.sessions), "What it is")
+    head = ("Figure", *(escape(one.name) for one in comparison.sessions), "Meaning")
     rows = (
         (
             escape(f"{meaning.title}, {meaning.unit}" if meaning.unit else meaning.title),
@@ -241,9 +241,7 @@ def _value(session: Compared, meaning: FigureMeaning) -> str:
 
 def _difference_table(comparison: Comparison) -> str:
     if not comparison.differences:
-        return (
-            "<p>Configuration, gains, versions, scenario and seed are the same in all of these sessions.</p>"
-        )
+        return "<p>Configuration, gains, versions, scenario and seed are the same in all sessions.</p>"
     rows = (
         (escape(f"{one.group}: {one.name}"), *(escape(value) or "–" for value in one.values))
         for one in comparison.differences
@@ -257,7 +255,7 @@ def _marker_table(comparison: Comparison) -> str:
         for session in comparison.sessions
         for marker in session.markers
     ]
-    return "<h2>Markers</h2>" + _table(("Time", "Session", "Marker"), rows) if rows else ""
+    return "<h2>Bookmarks</h2>" + _table(("Time", "Session", "Bookmark"), rows) if rows else ""
 
 
 def _table(head: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:

@@ -1,4 +1,4 @@
-"""Sessions laid over each other."""
+"""Comparison of sessions."""
 
 from typing import Annotated
 

@@ -14,15 +14,15 @@ CACHE_BYTES = 32_000_000
 
 
 class Samples:
-    """The signals of sessions; may be asked from several threads."""
+    """The signals of sessions, cached; several threads may read them."""
 
     def __init__(self) -> None:
         self._cache: ResultCache[Series] = ResultCache(CACHE_BYTES, lambda series: series.bytes)
 
     def read(self, recording: Recording, names: Iterable[str]) -> dict[str, Series]:
-        """These signals, as far as the session has them.
+        """The signals of these names that the session has.
 
-        Raises ValueError on what is no signal's name, StoreError, RecordingError.
+        Raises ValueError for an invalid name, StoreError, RecordingError.
         """
         chosen = {name: split(name) for name in names}
         row = recording.row
@@ -39,7 +39,7 @@ class Samples:
 
 
 def read_topic(recording: Recording, topic: str, columns: Iterable[str]) -> dict[str, Series]:
-    """These columns of a topic, as far as the session has them. Raises StoreError, RecordingError."""
+    """The columns of these names that the topic has. Raises StoreError, RecordingError."""
     described = recording.topics.get(topic)
     if described is None:
         return {}
@@ -67,7 +67,7 @@ def _read_documents(recording: Recording, topic: str, columns: Iterable[str]) ->
         try:
             row = {column: read(document) for column, read in chosen.items()}
         except (KeyError, TypeError, ValueError):
-            continue  # of a version that had no such number
+            continue  # of a version without this number
         times.append(document["time"])
         for column, value in row.items():
             values[column].append(value)
@@ -77,7 +77,7 @@ def _read_documents(recording: Recording, topic: str, columns: Iterable[str]) ->
 
 
 def _ordered(recording: Recording, times: Floats, values: Floats) -> Series:
-    """Samples in order of time; those refetched after a gap may be stored behind newer ones."""
+    """The samples in order of time; those fetched after a gap may be stored behind newer ones."""
     since = times - recording.row.started_steady
     if np.all(since[1:] >= since[:-1]):
         return Series(since, values)

@@ -16,14 +16,14 @@ SIGNALS_MAX = 24
 REPORT_POINTS = 2000
 """Columns of a report's charts; each has its least and its most value."""
 DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
-"""What the thesis's Figures 14 to 16 show."""
+"""The signals of the thesis's Figures 14 to 16."""
 
 Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 
 
 class TimeRange(BaseModel):
-    """From one moment to another, s on the common time axis, where the aligned moment is 0."""
+    """A time range, s on the common time axis, where the aligned moment is 0."""
 
     model_config = ConfigDict(extra="forbid")
     start: Annotated[float, Field(allow_inf_nan=False)]
@@ -31,20 +31,20 @@ class TimeRange(BaseModel):
 
 
 class LinesQuery(BaseModel):
-    """Sessions, signals of them, and how they are laid over each other."""
+    """Sessions, their signals, and their alignment."""
 
     model_config = ConfigDict(extra="forbid")
     sessions: Annotated[list[Identifier], Field(min_length=1, max_length=SESSIONS_MAX)]
     signals: Annotated[list[SignalName], Field(max_length=SIGNALS_MAX)]
     align: Align = Align()
     points: Annotated[int, Field(ge=10, le=10_000, description="columns of each line")] = 1000
-    view: TimeRange | None = Field(default=None, description="what is drawn; everything without")
+    view: TimeRange | None = Field(default=None, description="the drawn time range; all of it if null")
 
 
 class ComparisonQuery(LinesQuery):
-    """The same, with what the figures are taken over."""
+    """A comparison: lines, and the range of the figures."""
 
-    range: TimeRange | None = Field(default=None, description="for the figures; the time armed without")
+    range: TimeRange | None = Field(default=None, description="for the figures; the armed time if null")
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
 
 
@@ -85,48 +85,50 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
 
 
 class SignalLine(BaseModel):
-    """A signal over time, thinned out to least and most of each column; null breaks the line."""
+    """A signal over time, decimated to minimum and maximum of each column; null breaks the line."""
 
     time: list[float] = Field(description="s since the session's start")
     low: list[float | None]
     high: list[float | None]
 
 
-class Drawn(BaseModel):
+class SessionLines(BaseModel):
     """One session's lines."""
 
     id: int
-    offset: float | None = Field(description="s since its start of what is 0 s; null where it lacks that")
-    problem: str = Field(description="why it cannot be laid over the others; empty where it can")
-    series: dict[str, SignalLine] = Field(description="by signal; without those that it does not have")
+    offset: float | None = Field(
+        description="the moment that is 0 s, s since its start; null if it lacks that"
+    )
+    problem: str = Field(description="why it cannot be aligned; empty if it can")
+    series: dict[str, SignalLine] = Field(description="by signal; missing signals are left out")
 
 
-class Compared(Drawn):
-    """One session, with all that is compared."""
+class Compared(SessionLines):
+    """One session of a comparison."""
 
     name: str
     started: float = Field(description="UTC, s since 1970")
     duration: float = Field(description="s")
     state: str
     armed: list[tuple[float, float]] = Field(description="from and to, s since its start")
-    set_point_steps: int = Field(description="how often the set point changed while armed")
+    set_point_steps: int = Field(description="number of changes of the set point while armed")
     events: list[Moment]
     markers: list[Moment]
-    range: list[tuple[float, float]] = Field(description="what the figures are taken over")
+    range: list[tuple[float, float]] = Field(description="range of the figures")
     figures: dict[str, Figure]
 
 
 class Lines(BaseModel):
-    """The lines of a part of the time."""
+    """The lines of a time range."""
 
-    sessions: list[Drawn]
+    sessions: list[SessionLines]
 
 
 class Comparison(BaseModel):
-    """Sessions laid over each other, in the order that was asked for."""
+    """A comparison of sessions, in the requested order."""
 
     align: Align
-    signals: list[Signal] = Field(description="the wanted ones that at least one session has")
+    signals: list[Signal] = Field(description="the requested ones that at least one session has")
     sessions: list[Compared]
     figures: list[FigureMeaning]
     differences: list[Difference]

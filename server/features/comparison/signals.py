@@ -11,7 +11,7 @@ from server.features.sessions.recording import Recording, depth_loop
 
 
 class Signal(BaseModel):
-    """One number that a session holds over time; `name` is topic and column with a dot between them."""
+    """One number over time; `name` is topic and column, joined by a dot."""
 
     name: str
     topic: str
@@ -35,25 +35,29 @@ def _number(key: str) -> Callable[[Mapping[str, Any]], float]:
 
 DOCUMENT_COLUMNS: Mapping[str, Mapping[str, DocumentColumn]] = {
     "state": {
-        "set_point": DocumentColumn("m", "wanted depth", lambda one: float(depth_loop(one)["set_point"])),
-        "set_point_default": DocumentColumn("m", "wanted depth by default", _number("set_point_default")),
+        "set_point": DocumentColumn(
+            "m", "set point of the depth", lambda one: float(depth_loop(one)["set_point"])
+        ),
+        "set_point_default": DocumentColumn(
+            "m", "set point of the depth by default", _number("set_point_default")
+        ),
         "set_point_detected": DocumentColumn(
-            "m", "wanted depth while the colour is seen", _number("set_point_detected")
+            "m", "set point of the depth while the colour is seen", _number("set_point_detected")
         ),
         "armed": DocumentColumn("", "1 while the robot is armed", _number("armed")),
     },
     "detection": {
         "area": DocumentColumn("", "share of the picture that has the colour", _number("area")),
         "seen": DocumentColumn(
-            "", "1 where a colour was found in the picture", lambda one: float(one["colour"] is not None)
+            "", "1 if a colour was found in the picture", lambda one: float(one["colour"] is not None)
         ),
-        "processing": DocumentColumn("s", "time that looking at the picture took", _number("processing")),
+        "processing": DocumentColumn("s", "processing time of the picture", _number("processing")),
     },
 }
 
 
 def list_signals(recording: Recording, topics: Container[str] | None = None) -> list[Signal]:
-    """The signals of these topics, as far as they have samples; of all without. Raises StoreError."""
+    """The signals of these topics, or of all, that have samples. Raises StoreError."""
     found: list[Signal] = []
     for topic, described in recording.topics.items():
         if (topics is not None and topic not in topics) or not recording.has(topic):
@@ -67,7 +71,7 @@ def list_signals(recording: Recording, topics: Container[str] | None = None) -> 
 
 
 def split(name: str) -> tuple[str, str]:
-    """Topic and column of a signal's name. Raises ValueError where it is none."""
+    """The topic and column in a signal's name. Raises ValueError for an invalid name."""
     topic, dot, column = name.partition(".")
     if not (topic and dot and column):
         raise ValueError(f"“{name}” is not a signal's name; one looks like depth.depth")

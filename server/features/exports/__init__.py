@@ -1,1 +1,1 @@
-"""Sessions taken home as files of many formats, and brought back from archives."""
+"""Export of sessions to files of several formats, and import of archives."""

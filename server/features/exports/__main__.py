@@ -40,11 +40,11 @@ def main() -> int:
                 _write(Path(database), int(session), choice, Path(path))
             case ["examine", path]:
                 examine(Path(path), _Progress().tell)
-                _tell({"examined": True})
+                _report({"examined": True})
             case _:
                 sys.exit(__doc__)
     except ApiError as problem:
-        _tell({"problem": problem.detail})
+        _report({"problem": problem.detail})
         return 1
     return 0
 
@@ -53,7 +53,7 @@ def _write(database: Path, session: int, options: ExportOptions, path: Path) -> 
     store = Reader(database)
     source = ExportSelection(store, find_row(store, session), options, _Progress().tell)
     written = write_part(path, lambda output: check(options).write(store, source, output))
-    _tell(written._asdict())
+    _report(written._asdict())
 
 
 class _Progress:
@@ -66,10 +66,10 @@ class _Progress:
         now = time.monotonic()
         if now - self._reported >= REPORT_SECONDS:
             self._reported = now
-            _tell({"progress": share})
+            _report({"progress": share})
 
 
-def _tell(message: dict[str, Any]) -> None:
+def _report(message: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(message) + "\n")
     sys.stdout.flush()
 

@@ -1,7 +1,7 @@
 """The archive: a session without loss, for µ-CAT on another machine.
 
 A zip file whose members are stored as they are: `session.json`; for each topic `chunks/<topic>`, its chunks
-one after the other as they lie in the database, each behind HEAD; and last `checksums.json`, the SHA-256 of
+one after the other as stored in the database, each after its HEAD; and last `checksums.json`, the SHA-256 of
 every other member. Times stay on the session's own steady clock.
 """
 
@@ -27,12 +27,12 @@ SESSION, CHECKSUMS, CHUNKS = "session.json", "checksums.json", "chunks/"
 
 
 def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """The archive of a whole session. Raises ExportRequestError while it is being recorded, StoreError."""
+    """Write the archive of a whole session. Raises ExportRequestError while it records, StoreError."""
     if source.row.state == "recording":
         raise ExportRequestError(
             "The session is still being recorded. Stop the recording, then make the archive."
         )
-    members = _Members(output)
+    members = _SummedMembers(output)
     with members.member(SESSION) as write:
         write(json.dumps(_describe(store, source), indent=1, ensure_ascii=False).encode())
     for name in source.names:
@@ -54,7 +54,7 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     members.close()
 
 
-class _Members:
+class _SummedMembers:
     """Members of the zip file, and their checksums."""
 
     def __init__(self, output: BinaryIO) -> None:

@@ -1,8 +1,7 @@
-"""Reads archives that may come from anywhere: damaged, foreign, cut off, or made to do harm.
+"""Reads and checks archives, which may be damaged, foreign, cut off or malicious.
 
-Nothing of an archive is believed before it has been looked at: members have the names that they may have and
-no others, none is unpacked to more than it may be, the checksums hold, and every chunk decodes to the samples
-that it says it has.
+The check covers the names of the members, their size when unpacked, the checksums, and the decoding of every
+chunk to the samples that its head announces.
 """
 
 import hashlib
@@ -47,7 +46,7 @@ Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
 class ArchiveError(InvalidError):
-    """It is no archive that can be imported"""
+    """The file is no archive that can be imported"""
 
 
 class _Strict(BaseModel):
@@ -55,7 +54,7 @@ class _Strict(BaseModel):
 
 
 class TopicField(_Strict):
-    """A field of a topic, as `chunks.describe_topics` has it; of documents only the name."""
+    """A field of a topic, as `chunks.describe_topics` writes it; of documents only the name."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,99}$")]
     code: Annotated[str, Field(min_length=1, max_length=1)] | None = None
@@ -66,7 +65,7 @@ class TopicField(_Strict):
 
 
 class ArchivedTopic(_Strict):
-    """A topic, as `chunks.describe_topics` has it."""
+    """A topic, as `chunks.describe_topics` writes it."""
 
     meaning: Words
     kind: Literal["rows", "documents", "picture"]
@@ -77,10 +76,10 @@ class ArchivedTopic(_Strict):
     def _agrees(self) -> "ArchivedTopic":
         if self.kind == "rows":
             if any(field.code is None or field.code not in CODES for field in self.fields):
-                raise ValueError("its fields have no types that are known")
+                raise ValueError("its fields have unknown types")
             codes = "<" + "".join(f"{field.count}{field.code}" for field in self.fields)
             if self.row_bytes != TIME.size + struct.calcsize(codes):
-                raise ValueError("its rows are not as long as its fields")
+                raise ValueError("the length of its rows does not match its fields")
         return self
 
 
@@ -110,7 +109,7 @@ class ArchivedSession(_Strict):
 
 
 class ArchivedMarker(_Strict):
-    """See `Marker`."""
+    """The columns of a bookmark (see `BookmarkRow`)."""
 
     time: Time
     text: Words
@@ -118,7 +117,7 @@ class ArchivedMarker(_Strict):
 
 
 class ArchivedGap(_Strict):
-    """See `Gap`."""
+    """The columns of a gap (see `Gap`)."""
 
     topic: Words
     kind: Words
@@ -136,7 +135,7 @@ class ArchivedDocument(_Strict):
 
 
 class ArchivedChunk(NamedTuple):
-    """See `Chunk`."""
+    """The columns of a chunk (see `Chunk`)."""
 
     topic: str
     number: int
@@ -149,11 +148,11 @@ class ArchivedChunk(NamedTuple):
 
 
 class Archive:
-    """An open archive, whose members have the right names and whose `session.json` is understood."""
+    """An open archive with valid names of members and a valid `session.json`."""
 
     def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
         self._zipped = zipped
-        self._names = self._look_at_members(size)
+        self._names = self._check_members(size)
         self._sums = self._read_json(CHECKSUMS)
         if not isinstance(self._sums, dict):
             raise ArchiveError(f"{CHECKSUMS} is not an object.")
@@ -165,7 +164,7 @@ class Archive:
             raise ArchiveError(f"It holds chunks of {', '.join(strange)}, which its {SESSION} does not know.")
 
     def chunks(self, topic: str) -> Iterator[ArchivedChunk]:
-        """The chunks of a topic, with plausible numbers; their data is not checked yet."""
+        """The chunks of a topic with plausible heads; their data is not checked."""
         number = -1
         with self._zipped.open(CHUNKS + topic) as file:
             while head := file.read(HEAD.size):
@@ -173,15 +172,11 @@ class Archive:
                     raise ArchiveError(f"The chunks of {topic} are cut off after number {number}.")
                 chunk_number, first_time, last_time, first, count, size, encoding = HEAD.unpack(head)
                 if size > CHUNK_BYTES_MAX or count == 0:
-                    raise ArchiveError(
-                        f"A chunk of {topic} says that it has {count} samples in {size} bytes."
-                    )
+                    raise ArchiveError(f"A chunk of {topic} announces {count} samples in {size} bytes.")
                 if chunk_number <= number:
                     raise ArchiveError(f"Chunk {chunk_number} of {topic} comes after number {number}.")
                 if not (isfinite(first_time) and isfinite(last_time)) or first < 0:
-                    raise ArchiveError(
-                        f"Chunk {chunk_number} of {topic} has a time or a number that is none."
-                    )
+                    raise ArchiveError(f"Chunk {chunk_number} of {topic} has an invalid time or number.")
                 number = chunk_number
                 data = file.read(size)
                 if len(data) < size:
@@ -189,8 +184,8 @@ class Archive:
                 name = encoding.rstrip(b"\0").decode("ascii", "replace")
                 yield ArchivedChunk(topic, number, first_time, last_time, first, count, name, data)
 
-    def verify(self, tell: Callable[[float], None]) -> None:
-        """Look at everything: checksums, and every chunk's samples. Raises ArchiveError."""
+    def verify(self, report: Callable[[float], None]) -> None:
+        """Check the checksums, and every chunk's samples. Raises ArchiveError."""
         total = sum(info.file_size for info in self._zipped.infolist())
         done = 0
         for name in self._names:
@@ -199,30 +194,28 @@ class Archive:
                 while piece := file.read(STEP_BYTES):
                     checksum.update(piece)
                     done += len(piece)
-                    tell(0.5 * done / total)
+                    report(0.5 * done / total)
             if self._sums.get(name) != checksum.hexdigest():
                 raise ArchiveError(f"{name} is damaged: its checksum is not the one in {CHECKSUMS}.")
         for place, topic in enumerate(self.topics):
             for chunk in self.chunks(topic):
                 self._decode(chunk)
-            tell(0.5 + 0.5 * (place + 1) / len(self.topics))
+            report(0.5 + 0.5 * (place + 1) / len(self.topics))
 
-    def _look_at_members(self, size: int) -> list[str]:
+    def _check_members(self, size: int) -> list[str]:
         infos = self._zipped.infolist()
         names = [info.filename for info in infos]
         strange = [name for name in names if not MEMBER.fullmatch(name)]
         if strange:
-            raise ArchiveError(f"It holds {strange[0][:100]!r}, which no archive of a session does.")
+            raise ArchiveError(f"It holds {strange[0][:100]!r}, which is no part of an archive.")
         if len(set(names)) < len(names):
             raise ArchiveError("It holds two members of the same name.")
         if SESSION not in names or CHECKSUMS not in names:
             raise ArchiveError(f"It holds no {SESSION} or no {CHECKSUMS}, so it is no archive of a session.")
         if any(info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1 for info in infos):
-            raise ArchiveError(
-                "Its members are packed or encrypted; those of an archive are stored as they are."
-            )
+            raise ArchiveError("Its members are compressed or encrypted; an archive stores them unchanged.")
         if sum(info.file_size for info in infos) > size:
-            raise ArchiveError("Its members are together larger than the file, which cannot be.")
+            raise ArchiveError("Its members are larger than the file.")
         return [name for name in names if name != CHECKSUMS]
 
     def _read_json(self, name: str) -> Any:
@@ -239,12 +232,12 @@ class Archive:
         document = self._read_json(SESSION)
         if not isinstance(document, dict) or document.get("format") != FORMAT:
             raise ArchiveError(
-                f"Its {SESSION} does not say that it is an archive; export the format archive."
+                f"Its {SESSION} is not that of an archive; export the session in the format archive."
             )
         version = document.get("version")
         if version != VERSION:
             raise ArchiveError(
-                f"It is of format {version!r}, and this version of µ-CAT reads format {VERSION}. "
+                f"It has format {version!r}; this version of µ-CAT reads format {VERSION}. "
                 "Install the version of µ-CAT that wrote it, or a newer one."
             )
         try:
@@ -261,7 +254,7 @@ class Archive:
         if chunk.encoding != expected:
             raise ArchiveError(f"{where} is encoded as {chunk.encoding!r}, which this version cannot read.")
         if topic.kind == "picture":
-            _look_at_pictures(chunk, where)
+            _check_pictures(chunk, where)
             return
         limit = CHUNK_BYTES_MAX if topic.kind == "documents" else chunk.samples * topic.row_bytes
         data = _unpack(chunk.data, limit, where)
@@ -278,28 +271,28 @@ class Archive:
             raise ArchiveError(f"{where} does not hold {chunk.samples} documents with a time.")
 
 
-def examine(path: Path, tell: Callable[[float], None] = lambda _: None) -> None:
-    """Look at a whole archive. Raises ArchiveError."""
+def examine(path: Path, report: Callable[[float], None] = lambda _: None) -> None:
+    """Check a whole archive. Raises ArchiveError."""
     with open_archive(path) as archive:
-        archive.verify(tell)
+        archive.verify(report)
 
 
 @contextmanager
 def open_archive(path: Path) -> Iterator[Archive]:
-    """An archive to read from. Raises ArchiveError, also on what shows only while it is read."""
+    """Open an archive for reading. Raises ArchiveError, also for errors while it is read."""
     try:
         file: IO[bytes]
         with path.open("rb") as file, zipfile.ZipFile(file) as zipped:
             yield Archive(zipped, path.stat().st_size)
     except zipfile.BadZipFile as problem:
         raise ArchiveError(
-            f"It is no zip file, cut off or damaged ({problem}). Fetch it again, and compare its checksum."
+            f"It is no zip file, cut off or damaged ({problem}). Copy it again, and compare its checksum."
         ) from problem
     except (NotImplementedError, EOFError, OSError, UnicodeError) as problem:
         raise ArchiveError(f"It cannot be read: {problem}") from problem
 
 
-def _look_at_pictures(chunk: ArchivedChunk, where: str) -> None:
+def _check_pictures(chunk: ArchivedChunk, where: str) -> None:
     try:
         times = [time for time, _ in decode_pictures(chunk.data)]
     except ValueError as problem:
@@ -315,5 +308,5 @@ def _unpack(data: bytes, limit: int, where: str) -> bytes:
     except zlib.error as problem:
         raise ArchiveError(f"{where} is damaged: {problem}") from problem
     if len(unpacked) > limit or not unpacker.eof or unpacker.unused_data:
-        raise ArchiveError(f"{where} does not unpack to what it says that it holds.")
+        raise ArchiveError(f"{where} does not unpack to the announced size.")
     return unpacked

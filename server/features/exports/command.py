@@ -1,4 +1,4 @@
-"""`mucat export` and `mucat import`: sessions taken home and brought back from a shell."""
+"""`mucat export` and `mucat import`: export and import of sessions from a shell."""
 
 import asyncio
 import sys
@@ -93,7 +93,7 @@ def _words(error: Any) -> str:
 
 
 class _Progress:
-    """Writes percents to a terminal."""
+    """Prints the progress in percent to a terminal."""
 
     def __init__(self) -> None:
         self._reported = -1

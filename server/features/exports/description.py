@@ -1,4 +1,4 @@
-"""`session.json`: everything about a session but its samples, and the name of its files."""
+"""`session.json`: everything about a session except its samples; and the names of exported files."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from server.platform.store import Reader
 
 
 def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
-    """As a JSON object; times of markers and gaps in s since the session's start. Raises StoreError."""
+    """The session as a JSON object; times of bookmarks and gaps in s since its start. Raises StoreError."""
     row = recording.row
     with store.read() as database:
         gaps = database.exec(select(Gap).where(Gap.session_id == row.id).order_by(col(Gap.id))).all()
@@ -47,13 +47,13 @@ def describe_session(store: Reader, recording: Recording) -> dict[str, Any]:
     }
 
 
-def as_text(described: dict[str, Any]) -> str:
-    """Such an object as JSON for people."""
+def dump_readable(described: dict[str, Any]) -> str:
+    """The object as indented JSON."""
     return json.dumps(described, indent=2, ensure_ascii=False) + "\n"
 
 
 def file_name(recording: Recording, ending: str) -> str:
-    """When it began and what it is called, in characters that every file system takes."""
+    """The name of a session's file: its start and name, in characters that every file system allows."""
     started = datetime.fromtimestamp(recording.row.started, UTC)
     words = re.sub(r"[^A-Za-z0-9]+", "-", recording.row.name).strip("-")[:50].strip("-")
     return f"{started:%Y-%m-%d_%H-%M-%S}_{words or recording.row.id}{ending}"

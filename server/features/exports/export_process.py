@@ -8,16 +8,16 @@ from typing import Any
 
 from server.processes.process import PipedProcess, describe_status
 
-WORDS_BYTES = 2_000
-"""Of what is no JSON the end is kept: the last words of a process that fails."""
+ERROR_BYTES = 2_000
+"""Length of the stored end of the output that is no JSON, which explains a failure."""
 
 
 class ExportProcessError(Exception):
-    """The work could not be done; the text says why."""
+    """The process failed; the text says why."""
 
 
 class ExportProcess:
-    """One such process; call `run` once."""
+    """One process; call `run` once."""
 
     def __init__(self, arguments: list[str], progress: Callable[[float], None]) -> None:
         self._arguments = arguments
@@ -25,14 +25,14 @@ class ExportProcess:
         self._process: PipedProcess | None = None
         self._cancelled = False
         self._partial = b""
-        self._words = b""
+        self._errors = b""
         self._last: dict[str, Any] = {}
 
     async def run(self) -> dict[str, Any]:
-        """Run to the end; the last message of the process. Raises ExportProcessError with the reason."""
+        """Run the process and return its last message. Raises ExportProcessError with the reason."""
         try:
             self._process = PipedProcess(
-                [sys.executable, "-m", "server.features.exports", *self._arguments], self._hear
+                [sys.executable, "-m", "server.features.exports", *self._arguments], self._read_output
             )
         except OSError as problem:
             raise ExportProcessError(f"A process for it cannot be started: {problem.strerror}.") from problem
@@ -45,18 +45,18 @@ class ExportProcess:
         if "problem" in self._last:
             raise ExportProcessError(str(self._last["problem"]))
         if status != 0:
-            words = self._words.decode(errors="replace").strip()
-            said = f" Its last words: {words.splitlines()[-1]}" if words else ""
-            raise ExportProcessError(f"The process for it {describe_status(status)}.{said}")
+            errors = self._errors.decode(errors="replace").strip()
+            end = f" Its last output: {errors.splitlines()[-1]}" if errors else ""
+            raise ExportProcessError(f"The process for it {describe_status(status)}.{end}")
         return self._last
 
     def cancel(self) -> None:
-        """End it soon."""
+        """Terminate the process."""
         self._cancelled = True
         if self._process is not None:
             self._process.signal(SIGTERM)
 
-    def _hear(self, data: bytes) -> None:
+    def _read_output(self, data: bytes) -> None:
         *lines, self._partial = (self._partial + data).split(b"\n")
         for line in lines:
             try:
@@ -64,7 +64,7 @@ class ExportProcess:
             except ValueError:
                 document = None
             if not isinstance(document, dict):
-                self._words = (self._words + line + b"\n")[-WORDS_BYTES:]
+                self._errors = (self._errors + line + b"\n")[-ERROR_BYTES:]
             elif "progress" in document:
                 self._progress(document["progress"])
             else:

@@ -1,4 +1,4 @@
-"""A file that is there whole or not at all, and its checksum."""
+"""Writes a file whole or not at all, with its checksum."""
 
 import errno
 import hashlib
@@ -25,9 +25,9 @@ class FileWriteError(InsufficientStorageError):
 
 
 def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
-    """Write a file and have it on the disk. Where anything fails it is gone again.
+    """Write a file to the disk; it is removed again if anything fails.
 
-    Raises FileWriteError, and whatever `write` does.
+    Raises FileWriteError, and the errors of `write`.
     """
     try:
         with path.open("wb", buffering=BUFFER_BYTES) as file:
@@ -45,7 +45,7 @@ def write_part(path: Path, write: Callable[[BinaryIO], object]) -> WrittenFile:
 
 
 def put_in_place(part: Path, path: Path) -> None:
-    """Give a finished file its name, for good. Raises FileWriteError."""
+    """Rename a finished file durably. Raises FileWriteError."""
     try:
         durable_files.put_in_place(part, path)
     except OSError as problem:
@@ -53,14 +53,14 @@ def put_in_place(part: Path, path: Path) -> None:
 
 
 def explain(problem: OSError, path: Path) -> str:
-    """A sentence for a person about a failed write to `path`."""
+    """The cause of a failed write to `path`, and the remedy."""
     if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         return f"The disk that holds {path.parent} is full. Free some space, and try again."
     return f"{path.parent} cannot be written: {problem.strerror or problem}."
 
 
 class _ChecksumWriter:
-    """A file that counts and sums what is written to it."""
+    """A file that counts the written bytes and computes their checksum."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file

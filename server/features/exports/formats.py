@@ -1,4 +1,4 @@
-"""The formats by name: how each is written, and what its files are called."""
+"""The export formats by name, with their writers and the endings of file names."""
 
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple
@@ -18,13 +18,13 @@ Write = Callable[[Reader, ExportSelection, BinaryIO], None]
 
 
 class ExportFormat(NamedTuple):
-    """A format: how it is written, the ending of its files' names, and their media type."""
+    """A format: its writer, the ending of its files' names, and their media type."""
 
     write: Write
     ending: str
     media_type: str
     check: Callable[[], None] = lambda: None
-    """Raises ExportRequestError where it cannot be written here."""
+    """Raises ExportRequestError if a package for it is missing."""
 
 
 def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
@@ -53,7 +53,7 @@ WHOLE_ONLY = ("archive", "report")
 
 
 def check(options: ExportOptions) -> ExportFormat:
-    """The format of what is wanted. Raises ExportRequestError where choices do not go together."""
+    """The chosen format. Raises ExportRequestError for options that do not go together."""
     if options.columns is not None and options.format != "csv-grid":
         raise ExportRequestError("Columns are chosen for csv-grid alone; the other formats take topics.")
     if options.topics is not None and options.format in ("csv-grid", *WHOLE_ONLY):

@@ -5,7 +5,7 @@ from itertools import pairwise
 from math import floor
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from server.features.exports.description import as_text, describe_session
+from server.features.exports.description import describe_session, dump_readable
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import csv_text
 from server.features.exports.zip_stream import ZipWriter
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 WINDOW_LINES = 20_000
-"""Lines made at once: what is in memory."""
+"""Lines made at once, which bounds the memory."""
 LINES_MAX = 10_000_000
 GAPS = 2.0
-"""How many of its topic's usual gaps old a value may be."""
+"""Largest age of a value, in usual intervals of its topic."""
 
 README = """grid.csv: {name}
 One line every {period:g} s, from {first:g} s to {last:g} s after the session's start.
@@ -35,9 +35,9 @@ session.json holds everything else about the session.
 
 
 def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """A zip file of `grid.csv`, `README.txt` and `session.json`.
+    """Write a zip file of `grid.csv`, `README.txt` and `session.json`.
 
-    Raises ExportRequestError on columns that are not there or too many lines, StoreError, RecordingError.
+    Raises ExportRequestError for missing columns or too many lines, StoreError, RecordingError.
     """
     chosen = _choose(source)
     period = source.options.period
@@ -54,7 +54,7 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
         name=source.row.name, period=period, first=first, last=last, gaps=GAPS, limits=document
     )
     packing.text("README.txt", readme)
-    packing.text("session.json", as_text(describe_session(store, source)))
+    packing.text("session.json", dump_readable(describe_session(store, source)))
     with packing.member("grid.csv") as file:
         titles = [title for columns in chosen.values() for title in columns.values()]
         file.write(csv_text([["time [s]", "utc", *titles]]).encode())
@@ -65,7 +65,7 @@ def write_grid(store: Reader, source: ExportSelection, output: BinaryIO) -> None
 
 
 def _choose(source: ExportSelection) -> dict[str, dict[str, str]]:
-    """By topic, in the order wanted: the column's name and its title, such as "depth.depth [m]"."""
+    """By topic, in the chosen order: the column's name and its title, such as "depth.depth [m]"."""
     there = {
         name: {plain: f"{name}.{column}" for plain, column in zip(layout.names, layout.columns, strict=True)}
         for name, topic in source.topics.items()
@@ -109,7 +109,7 @@ def _usual_gap(source: ExportSelection, topic: str) -> float:
 def _window(
     source: ExportSelection, chosen: dict[str, dict[str, str]], limits: dict[str, float], times: list[float]
 ) -> str:
-    import numpy as np  # only where somebody exports: it costs a small computer memory
+    import numpy as np  # only for exports: it costs a small computer memory
 
     grid = np.array(times) + source.row.started_steady
     parts: list[list[str]] = []

@@ -1,7 +1,7 @@
-"""Sessions brought from other machines: an archive is received, examined, and stored under a new number.
+"""Imports sessions of other machines: an archive is received, checked, and stored under a new number.
 
-It is stored piece by piece, so that what is being recorded meanwhile is not held up, and is seen by nobody
-before its last piece is there. The retention worker removes what does not become whole.
+It is stored piece by piece, so that a recording is not delayed, and stays hidden until its last piece is
+stored. The retention worker removes what does not become whole.
 """
 
 import asyncio
@@ -31,13 +31,13 @@ BATCH_BYTES = 500_000
 ROWS_AT_ONCE = 2_000
 PIECE_BYTES = 1 << 20
 SPARE_BYTES = 50_000_000
-"""Of the disk, left free for what is recorded."""
+"""Disk space that is left free for recordings."""
 COPIES = 2
-"""While it is imported, a session lies on the disk as the archive and in the database."""
+"""During an import a session is on the disk twice: as the archive and in the database."""
 
 
 class Imports:
-    """Imports of a server, one at a time."""
+    """The imports of a server, one at a time."""
 
     def __init__(self, folder: DataFolder, store: Store) -> None:
         self._folder = folder.imports
@@ -54,9 +54,9 @@ class Imports:
         await self._store.execute(update(SessionRow).where(unfinished).values(state=REMOVING))
 
     async def receive(self, pieces: AsyncIterable[bytes], size: int | None) -> int:
-        """Import the archive that comes in pieces, of `size` bytes where that is known: its new number.
+        """Import the archive that arrives in pieces, of `size` bytes if known, and return its new number.
 
-        Raises RefusedError where that cannot be now, ArchiveError, FileWriteError where the disk fails,
+        Raises RefusedError if it cannot be imported now, ArchiveError, FileWriteError if the disk fails,
         StoreError.
         """
         if self._busy.locked():
@@ -71,7 +71,7 @@ class Imports:
                 await asyncio.to_thread(path.unlink, missing_ok=True)
 
     async def take(self, path: Path) -> int:
-        """Import an archive that lies there. Raises as `receive`."""
+        """Import the archive in a file. Raises as `receive`."""
         async with self._busy:
             self._check_room(path.stat().st_size)
             return await self._take(path)

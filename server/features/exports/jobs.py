@@ -1,8 +1,8 @@
-"""Files that are made one after the other, each in a process of its own, and kept for some days.
+"""Export jobs: they run one after the other, each in its own process; their files are stored for some days.
 
-In the folder lie, for each file, `<id>` and `<id>.json`, its description. The description is written first,
-and the file gets its name last: a server that is killed leaves no half file under that name, and what it
-leaves is cleared away at the next start.
+The folder holds `<id>` and its description `<id>.json` for each file. The description is written first, and
+the file gets its name last: a killed server leaves no half file under that name, and the next start removes
+the rest.
 """
 
 import asyncio
@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 
 RETENTION_DAYS = 7
 JOBS_MAX = 200
-"""Waiting, running and kept."""
+"""Waiting, running and stored."""
 CLEAN_SECONDS = 3600.0
 DESCRIBED = ".json"
 
@@ -40,7 +40,7 @@ class UnknownExportError(NotFoundError):
 
 
 class Jobs:
-    """All exports of a server. Methods that touch the disk block for moments only."""
+    """All exports of a server. Methods that use the disk block only briefly."""
 
     def __init__(self, folder: DataFolder, store: Reader) -> None:
         self._folder = folder.exports
@@ -51,7 +51,7 @@ class Jobs:
         self._running: tuple[str, ExportProcess] | None = None
 
     def open(self) -> None:
-        """Find what earlier servers have made, and clear away what they did not finish."""
+        """Find the files of earlier servers, and remove unfinished ones."""
         try:
             make_folder(self._folder)
             for path in self._folder.iterdir():
@@ -64,7 +64,7 @@ class Jobs:
             log.warning("the exports in %s cannot be read: %s", self._folder, problem)
 
     def list(self) -> list[Job]:
-        """All, newest first."""
+        """All jobs, newest first."""
         return sorted(self._jobs.values(), key=lambda job: job.made, reverse=True)
 
     def find(self, job: str) -> Job:
@@ -76,16 +76,16 @@ class Jobs:
         return self._jobs[job]
 
     def path(self, job: Job) -> Path:
-        """Where the file of a job is, or will be."""
+        """The path of a job's file."""
         return self._folder / job.id
 
     def add(self, row: SessionRow, options: NewExport) -> Job:
-        """Have a file made.
+        """Queue an export.
 
-        Raises ExportRequestError where it cannot be, RefusedError where too many are kept.
+        Raises ExportRequestError for options that do not fit, RefusedError if there are too many jobs.
         """
         if len(self._jobs) >= JOBS_MAX:
-            raise RefusedError(f"{JOBS_MAX} exports are kept or wait already. Delete some first.")
+            raise RefusedError(f"There are {JOBS_MAX} exports already. Delete some first.")
         plain = ExportOptions.model_validate(options.model_dump(exclude={"session"}))
         kind = check(plain)
         source = ExportSelection(self._store, row, plain)
@@ -104,17 +104,19 @@ class Jobs:
         return job
 
     def remove(self, job: Job) -> None:
-        """Cancel a job, or delete its file. Raises RefusedError where that fails."""
+        """Cancel a job, or delete its file. Raises RefusedError if that fails."""
         if self._running is not None and self._running[0] == job.id:
             self._running[1].cancel()
         try:
             self._unlink(job)
         except OSError as problem:
-            raise RefusedError(f"It cannot be deleted. {explain(problem, self.path(job))}") from problem
+            raise RefusedError(
+                f"The export cannot be deleted. {explain(problem, self.path(job))}"
+            ) from problem
         del self._jobs[job.id]
 
     async def run(self) -> None:
-        """Make what is wanted, one after the other, for ever; delete what is too old."""
+        """Run the jobs one after the other; delete expired files."""
         while True:
             self._delete_old()
             waiting = [job for job in self._jobs.values() if job.state == "waiting"]

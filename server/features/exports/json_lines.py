@@ -13,11 +13,9 @@ from server.platform.store import Reader
 
 
 def write_lines(_store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Each object has `topic`, `time` (s since the session's start), `utc` and the sample's fields.
+    """Write an object per sample: `topic`, `time` (s since the session's start), `utc` and its fields.
 
-    Of a picture that is `jpeg`, in Base64.
-
-    Raises StoreError, RecordingError.
+    The field of a picture is `jpeg`, in Base64. Raises StoreError, RecordingError.
     """
     topics = [_lines(source, name, place) for place, name in enumerate(source.names)]
     for _time, _place, line in heapq.merge(*topics):

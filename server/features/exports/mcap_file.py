@@ -1,6 +1,6 @@
-"""MCAP for Foxglove and Lichtblick: our topics in JSON, and beside them what their panels know by name.
+"""MCAP for Foxglove and Lichtblick: our topics as JSON, and the well-known topics of their panels.
 
-Without compression, which needs packages that a Raspberry Pi Zero has none of. Message times are UTC.
+Not compressed, since a Raspberry Pi Zero lacks the packages for it. Message times are UTC.
 """
 
 import base64
@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 from sqlmodel import col, select
 
 from robot_runtime.contract.topics import LINES
-from server.features.exports.description import as_text, describe_session
+from server.features.exports.description import describe_session, dump_readable
 from server.features.exports.mcap_schemas import WELL_KNOWN, topic_schema
 from server.features.exports.pose import Pose, dump, level, stamp
 from server.features.exports.selection import ExportRequestError, ExportSelection
@@ -32,12 +32,12 @@ DEBUG_LEVEL_OFFSET = 1
 
 
 _Sample = tuple[int, int, bytes, dict[str, Any] | None]
-"""Time (ns, UTC); the topic's place, so that equal times stay in one order; the message; and what is to be
-said in the log, None where nothing is."""
+"""Time (ns, UTC); the topic's place, so that equal times stay in one order; the message; and its entry in the
+log, if any."""
 
 
 def check_mcap() -> None:
-    """Raises ExportRequestError where MCAP cannot be written here."""
+    """Raises ExportRequestError if the package mcap is missing."""
     try:
         import mcap.writer  # noqa: F401
     except ImportError as problem:
@@ -48,7 +48,7 @@ def check_mcap() -> None:
 
 
 def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """A channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
+    """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
 
     Raises ExportRequestError, StoreError, RecordingError.
     """
@@ -118,11 +118,11 @@ def _write_about(store: Reader, source: ExportSelection, writer: Any) -> None:
     writer.add_metadata("configuration", {"robot.toml": row.configuration, "scenario": row.scenario})
     writer.add_metadata("gains", _gains(described["robot_state"]))
     first = source.utc_ns(row.started_steady)
-    writer.add_attachment(first, first, "session.json", "application/json", as_text(described).encode())
+    writer.add_attachment(first, first, "session.json", "application/json", dump_readable(described).encode())
 
 
 def _gains(state: dict[str, Any] | None) -> dict[str, str]:
-    """In force when the session began: "pid.kp" and so on, and which controller was chosen."""
+    """The gains at the start of the session, such as "pid.kp", and the chosen controller."""
     loop = depth_loop(state or {})
     gains = {
         f"{controller['name']}.{gain['name']}": str(gain["value"])

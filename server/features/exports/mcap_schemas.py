@@ -1,4 +1,4 @@
-"""JSON Schemas of what an MCAP file holds: our own topics, and the well-known ones of Foxglove's panels.
+"""JSON Schemas for MCAP files: of our own topics, and of the well-known ones of Foxglove's panels.
 
 Foxglove and Lichtblick read only a part of JSON Schema: every property needs one type of number, integer,
 boolean, string, array or object (with its properties), and nothing else.
@@ -64,10 +64,10 @@ WELL_KNOWN = {
 
 
 def topic_schema(name: str, topic: dict[str, Any]) -> Schema:
-    """The schema of a recorded topic, from what `describe_topics` wrote of it.
+    """The schema of a recorded topic, from its description by `describe_topics`.
 
-    Documents tell no types, so of those only the fields that this version still knows are listed; the others
-    are in the messages nevertheless.
+    Descriptions of documents have no types, so the schema lists only the fields known to this version; the
+    messages hold the others too.
     """
     members: dict[str, Schema] = {"time": {**NUMBER, "description": "s since the session's start"}}
     if topic["kind"] == "rows":

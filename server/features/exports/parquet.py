@@ -1,10 +1,10 @@
-"""Parquet: a file for each topic, with the types of the numbers as they were recorded."""
+"""Parquet: a file for each topic, with the recorded types of the numbers."""
 
 import json
 from collections.abc import Iterator
 from typing import Any, BinaryIO
 
-from server.features.exports.description import as_text, describe_session
+from server.features.exports.description import describe_session, dump_readable
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.values import Rows
 from server.features.exports.zip_stream import ZipWriter
@@ -12,11 +12,11 @@ from server.platform.store import Reader
 
 INTEGERS = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int32", "I": "uint32", "q": "int64"}
 GROUP_ROWS = 50_000
-"""Rows written at once: what is in memory."""
+"""Rows written at once, which bounds the memory."""
 
 
 def check_parquet() -> None:
-    """Raises ExportRequestError where Parquet cannot be written here."""
+    """Raises ExportRequestError if the package pyarrow is missing."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError as problem:
@@ -27,14 +27,14 @@ def check_parquet() -> None:
 
 
 def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """A zip file of `session.json` and a Parquet file for each topic.
+    """Write a zip file of `session.json` and a Parquet file for each topic.
 
-    Columns are `time` (s since the session's start), `utc` and the fields in SI units; what is no number in
-    documents is text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
+    Columns are `time` (s since the session's start), `utc` and the fields in SI units; the fields of documents
+    are text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
     """
     check_parquet()
     packing = ZipWriter(output, packed=False)
-    packing.text("session.json", as_text(describe_session(store, source)))
+    packing.text("session.json", dump_readable(describe_session(store, source)))
     for name in source.names:
         with packing.member(f"{name}.parquet") as file:
             _write_topic(source, name, file)

@@ -6,13 +6,13 @@ from typing import Any
 from server.features.exports.selection import ExportSelection
 
 PERIOD_NS = 100_000_000
-"""Between two poses: 3-D panels interpolate, and more would only cost time and room."""
+"""Time between two poses; 3-D panels interpolate."""
 ENCODE = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 WORLD, LEVEL, BODY = "world", "ned", "turtle"
 
 
 class Pose:
-    """Follows a recording in the order of time.
+    """The pose of the robot, updated by the samples of a recording in order of time.
 
     The attitude is the IMU's; without one, the simulated body's. The position is the simulated body's where
     there is one; else the depth alone is known, and north and east are 0. Frames: `world` has its z axis
@@ -28,10 +28,10 @@ class Pose:
         self._last = -PERIOD_NS
         self.known = self._attitude_topic in source.names
         self.topics = {self._attitude_topic, self._position_topic} if self.known else set()
-        """Of which `see` wants to hear."""
+        """The topics that `see` needs."""
 
     def see(self, name: str, data: bytes, time: int) -> tuple[bytes, bytes] | None:
-        """Take in a sample of `time` (ns, UTC); a FrameTransform and a PoseInFrame where they are due."""
+        """Process a sample of `time` (ns, UTC); returns a FrameTransform and a PoseInFrame when they are due."""
         if name == self._position_topic:
             self._position = data
         if name != self._attitude_topic or time - self._last < PERIOD_NS:
@@ -59,7 +59,7 @@ class Pose:
 
 
 def level(time: int) -> bytes:
-    """The FrameTransform that turns north, east, down upright."""
+    """The FrameTransform from `world` to `ned`."""
     return transform(
         time, WORLD, LEVEL, {"x": 0.0, "y": 0.0, "z": 0.0}, {"x": 1.0, "y": 0.0, "z": 0.0, "w": 0.0}
     )

@@ -1,4 +1,4 @@
-"""Exports: have a file made, look how far it is, download it; imports of archives."""
+"""Exports of sessions: start, progress, download; imports of archives."""
 
 from typing import Annotated
 
@@ -69,7 +69,7 @@ async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileRespo
     """
     job = jobs.find(export)
     if job.state != "done":
-        raise ConflictError(job.problem or "The file is not finished yet. Wait until its state is done.")
+        raise ConflictError(job.problem or "The file is not finished. Wait until its state is done.")
     return FileResponse(
         jobs.path(job),
         filename=job.file,
@@ -83,7 +83,7 @@ async def download_export(jobs: Provided[Jobs], export: Identifier) -> FileRespo
     Need.OPERATOR,
     ArchiveError,
     FileWriteError,
-    {409: "It is here already, another is being imported, or the robot is armed"},
+    {409: "The session exists, another import is running, or the robot is armed"},
     status_code=201,
     openapi_extra={
         "requestBody": {"required": True, "content": {"application/zip": {"schema": {"type": "string"}}}}
@@ -93,7 +93,7 @@ async def import_session(
     request: Request, monitor: Provided[HealthMonitor], imports: Provided[Imports], store: Provided[Store]
 ) -> Session:
     """Import a session from an archive, the request's body; it is stored whole or not at all."""
-    monitor.require_disarmed("An upload takes time and disk from what is recorded.")
+    monitor.require_disarmed("An upload slows the recording.")
     length = request.headers.get("content-length")
     number = await imports.receive(request.stream(), int(length) if length else None)
     return from_row(await run_in_threadpool(find_row, store, number))

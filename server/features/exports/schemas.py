@@ -1,4 +1,4 @@
-"""Exports as the interface shows them."""
+"""Schemas of exports in the interface."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -38,13 +38,13 @@ class ExportOptions(BaseModel):
 
 
 class NewExport(ExportOptions):
-    """A file that is wanted."""
+    """A new export."""
 
     session: Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 
 
 class Job(BaseModel):
-    """One file, made or to be made. It is kept for some days."""
+    """An export job; its file is stored for some days."""
 
     id: str
     session: int
@@ -52,10 +52,10 @@ class Job(BaseModel):
     wanted: ExportOptions
     state: State
     progress: float = Field(description="0 to 1")
-    made: datetime = Field(description="UTC, when it was asked for")
-    bytes: int | None = Field(default=None, description="the file's size; null until it is there")
+    made: datetime = Field(description="UTC, time of the request")
+    bytes: int | None = Field(default=None, description="the file's size; null until it is done")
     file: str = Field(description="the file's name")
     sha256: str | None = Field(
-        default=None, description="the file's checksum, hexadecimal; null until it is there"
+        default=None, description="the file's checksum, hexadecimal; null until it is done"
     )
-    problem: str = Field(default="", description="why it failed")
+    problem: str = Field(default="", description="cause of a failure")

@@ -12,24 +12,24 @@ from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
 
 BATCH_BYTES = 64_000
-"""Rows are handed on in pieces of about this size: larger ones are no faster, and cost memory."""
+"""Approximate size of a batch of rows: larger ones are no faster, and cost memory."""
 
-Tell = Callable[[float], None]
-"""Called with the share that is done, from 0 to 1."""
+ReportProgress = Callable[[float], None]
+"""Called with the share done, 0 to 1."""
 
 
 class ExportRequestError(InvalidError):
-    """It cannot be made"""
+    """The export cannot be made"""
 
 
 class ExportSelection(Recording):
     """The chosen part of a session. `start` and `end` are on the session's steady clock (s).
 
-    Raises ExportRequestError on a topic that the session does not have, or a range that is none.
+    Raises ExportRequestError for a topic that the session lacks, or an empty range.
     """
 
     def __init__(
-        self, store: Reader, row: SessionRow, options: ExportOptions, tell: Tell = lambda _: None
+        self, store: Reader, row: SessionRow, options: ExportOptions, report: ReportProgress = lambda _: None
     ) -> None:
         super().__init__(store, row)
         self.options = options
@@ -50,7 +50,7 @@ class ExportSelection(Recording):
         # Reading a column of a row costs more than the sums below, which are made for every sample.
         self._steady, self._started = row.started_steady, row.started
         self._started_ns = round(row.started * 1e9)
-        self._tell = tell
+        self._report = report
         self._total = sum(there[name] for name in self.names)
         self._seen = 0
 
@@ -60,11 +60,11 @@ class ExportSelection(Recording):
         return self.start == -inf and self.end == inf
 
     def chunks(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[Chunk]:
-        """The chunks of a topic; reading them is the progress."""
+        """The chunks of a topic; reading them reports progress."""
         for chunk in super().chunks(topic, start, end):
             yield chunk
             self._seen += chunk.count
-            self._tell(min(1.0, self._seen / max(1, self._total)))
+            self._report(min(1.0, self._seen / max(1, self._total)))
 
     def batches(self, topic: str) -> Iterator[bytes]:
         """The topic's rows in the range, some hundreds at once."""

@@ -1,6 +1,6 @@
 """Samples as objects in SI units, for JSON Lines, MCAP and Parquet.
 
-A field named `time` is called `board_time` there, since `time` is the sample's; what is told in µs becomes s.
+A field named `time` becomes `board_time`, since `time` is the sample's; µs become s.
 """
 
 import re
@@ -41,7 +41,7 @@ class Field:
 
 
 def fields_of(topic: dict[str, Any]) -> list[Field]:
-    """The fields of a topic of rows, from what `describe_topics` wrote."""
+    """The fields of a topic of rows, from its description by `describe_topics`."""
     return [
         Field(
             name="board_time" if field["name"] == "time" else field["name"],

@@ -1,4 +1,4 @@
-"""A zip file that is written while it is read: it is never in memory as a whole. Same input, same bytes."""
+"""A zip file that is written in one pass, never in memory as a whole. Same input, same bytes."""
 
 import io
 import zipfile
@@ -15,7 +15,7 @@ class ZipWriter:
 
     def __init__(self, output: BinaryIO, *, packed: bool = True) -> None:
         kind = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
-        self._archive = zipfile.ZipFile(_Forwards(output), "w", kind, compresslevel=LEVEL)
+        self._archive = zipfile.ZipFile(_ForwardOnly(output), "w", kind, compresslevel=LEVEL)
 
     def text(self, name: str, text: str) -> None:
         """A member of this text."""
@@ -33,8 +33,8 @@ class ZipWriter:
         self._archive.close()
 
 
-class _Forwards(io.RawIOBase):
-    """A file that only goes forwards, which is what a download is."""
+class _ForwardOnly(io.RawIOBase):
+    """A file without seeking, as a download is."""
 
     def __init__(self, output: BinaryIO) -> None:
         self._output = output

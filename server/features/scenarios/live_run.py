@@ -21,7 +21,7 @@ from server.platform.store import Store
 from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
-LOOK_SECONDS = 0.1
+POLL_SECONDS = 0.1
 SETTLE_SECONDS = 0.5
 """After the water was changed at once, so that the sensors show it before the recording begins."""
 NEEDED = ("board", "runtime", "simulator")
@@ -59,7 +59,7 @@ class LiveExecutor:
 
     def check(self, scenario: Scenario) -> None:
         """Raises RefusedError with all reasons why it cannot be performed now."""
-        if reasons := [*self._occupied(), *self._unlike(scenario)]:
+        if reasons := [*self._find_obstacles(), *self._find_differences(scenario)]:
             raise RefusedError(" ".join(reasons))
 
     async def perform(self, run: RunRecord) -> None:
@@ -75,7 +75,7 @@ class LiveExecutor:
                 await self._record(run, send)
             finally:
                 run.phase = "ending"
-                await _whole(self._put_back(before, send))
+                await _finish_step(self._put_back(before, send))
 
     async def recover(self) -> None:
         """End what a killed server has left running: disarm, close the recording, put everything back."""
@@ -87,7 +87,7 @@ class LiveExecutor:
         self._recovering = True
         try:
             while (state := self._monitor.state()) is None:
-                await asyncio.sleep(LOOK_SECONDS)
+                await asyncio.sleep(POLL_SECONDS)
             if session is not None:
                 words = "The server was killed, and the scenario ends here."
                 await mark(self._store, session, self._clock.now(), words)
@@ -113,7 +113,7 @@ class LiveExecutor:
             raise
         finally:
             run.phase = "ending"
-            await _whole(self._finish(session))
+            await _finish_step(self._finish(session))
 
     async def _play(self, run: RunRecord, began: float, send: Send) -> None:
         processes = self._process_ids()
@@ -123,13 +123,13 @@ class LiveExecutor:
             self._check_processes(run, processes)
             while coming and coming[0].at <= run.elapsed:
                 run.check()
-                await self._happen(run, coming.pop(0), began, send)
+                await self._apply_event(run, coming.pop(0), began, send)
             if run.elapsed >= run.scenario.duration:
                 return
             until = min([run.scenario.duration, *(event.at for event in coming[:1])])
-            await run.sleep(min(until - run.elapsed, LOOK_SECONDS))
+            await run.sleep(min(until - run.elapsed, POLL_SECONDS))
 
-    async def _happen(self, run: RunRecord, event: TimedEvent, began: float, send: Send) -> None:
+    async def _apply_event(self, run: RunRecord, event: TimedEvent, began: float, send: Send) -> None:
         assert run.session is not None
         words = event.words
         try:
@@ -169,7 +169,7 @@ class LiveExecutor:
             self._notify("scenario", "caution", f"Not everything is as before the scenario. {text}")
         await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
 
-    def _occupied(self) -> list[str]:
+    def _find_obstacles(self) -> list[str]:
         recording = self._recorder.session
         if self._recovering:
             return ["What a scenario has changed before the server ended is being put back. Wait a moment."]
@@ -194,7 +194,7 @@ class LiveExecutor:
         reasons += [f"The {name} does not run." for name, pid in self._process_ids().items() if pid is None]
         return reasons
 
-    def _unlike(self, scenario: Scenario) -> list[str]:
+    def _find_differences(self, scenario: Scenario) -> list[str]:
         """Why the running robot is not the scenario's."""
         reasons = []
         if not self._settings.emulated_board and any(
@@ -225,6 +225,6 @@ class LiveExecutor:
         return {name: part.pid for name, part in processes.items() if part is not None}
 
 
-async def _whole(step: Any) -> None:
+async def _finish_step(step: Any) -> None:
     """Finish a step even while the server is ending."""
     await asyncio.shield(asyncio.create_task(step))

@@ -29,9 +29,9 @@ from robot_runtime.simulation.water.surroundings import Trim
 from server.features.parameters.changes import Send
 from server.stream.bridge import Bridge, RuntimeSilentError
 
-Question = Mapping[str, Any]
-STILL = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
-TURNING: tuple[LoopName, ...] = tuple(loop for loop in SET_POINTS if loop != "depth")
+Request = Mapping[str, Any]
+STILL_WATER = {"amplitude": 0.0, "period": 2.0, "direction": 0.0}
+ATTITUDE_LOOPS: tuple[LoopName, ...] = tuple(loop for loop in SET_POINTS if loop != "depth")
 DIRECTIONS = ("to_board", "from_board")
 
 
@@ -42,9 +42,9 @@ class SavedState:
     `sight` is None where no scene is rendered.
     """
 
-    robot: Question
-    water: Question
-    sight: Question | None
+    robot: Request
+    water: Request
+    sight: Request | None
 
     def write(self, path: Path) -> None:
         """Write it to the disk, where it survives a power cut. Raises OSError."""
@@ -70,7 +70,7 @@ class LiveSetup:
         self._bridge = bridge
         self._board_socket = board_socket
 
-    async def read(self, robot: Question) -> SavedState:
+    async def read(self, robot: Request) -> SavedState:
         """The present state; `robot` is the newest `state`."""
         water = await self._bridge.ask_simulator("surroundings", {})
         try:
@@ -91,7 +91,7 @@ class LiveSetup:
         control, vision = scenario.control, scenario.vision
         await send(ControllerCommand(name=control.controller))
         await send(SetPointsCommand(default=control.set_point, detected=control.set_point_detected))
-        for loop in TURNING:
+        for loop in ATTITUDE_LOOPS:
             await send(_at_rest(loop))
         await send(SteeringCommand(by=control.steering))
         await send(VisionCommand(rate=vision.rate, colour=vision.colour))
@@ -129,18 +129,18 @@ class LiveSetup:
                 problems.append(str(problem))
         return list(dict.fromkeys(problems))
 
-    async def _set_water(self, target: Question, present: Question | None) -> None:
+    async def _set_water(self, target: Request, present: Request | None) -> None:
         ask = self._bridge.ask_simulator
         for fault in target["faults"] if present is None else present["faults"]:
             await ask("fault", fault if present is None else {"sensor": fault["sensor"], "kind": "none"})
         # The old waves might break in the new basin.
-        await ask("waves", STILL)
+        await ask("waves", STILL_WATER)
         await ask("world", target["world"])
         for name in ("beacons", "current", "waves", "trim"):
             await ask(name, target[name])
         await ask("reset", {})
 
-    async def _set_sight(self, target: Question | None) -> None:
+    async def _set_sight(self, target: Request | None) -> None:
         if target is not None:
             for name in ("world", "targets"):
                 await self._bridge.scene(name, target[name])
@@ -166,7 +166,7 @@ def _order(socket: Path, command: str) -> None:
         board.command(command)
 
 
-def _water_of(scenario: Scenario) -> Question:
+def _water_of(scenario: Scenario) -> Request:
     """The scenario's water as the questions that make it."""
     basin, robot = scenario.scene.basin, scenario.robot
     trim = scenario.trim or Trim(robot.buoyancy, 0.0, 0.0, robot.buoyancy_height)
@@ -180,7 +180,7 @@ def _water_of(scenario: Scenario) -> Question:
     }
 
 
-def _sight_of(scenario: Scenario) -> Question:
+def _sight_of(scenario: Scenario) -> Request:
     """The scenario's scene as the questions that make it."""
     scene = scenario.scene
     return {
@@ -202,7 +202,7 @@ def _at_rest(loop: LoopName) -> LoopCommand:
     return LoopCommand(name=loop, on=False, set_point=0.0, controller=first.name, gains=_defaults(first))
 
 
-def _commands_of(robot: Question) -> list[RobotCommand]:
+def _commands_of(robot: Request) -> list[RobotCommand]:
     """The commands that make control and vision as this state of the robot says."""
     depth = next(loop for loop in robot["loops"] if loop["name"] == "depth")
     return [
@@ -215,11 +215,11 @@ def _commands_of(robot: Question) -> list[RobotCommand]:
     ]
 
 
-def _loops_of(robot: Question) -> list[LoopCommand]:
+def _loops_of(robot: Request) -> list[LoopCommand]:
     """The commands that make heading, pitch and roll as they were."""
     commands: list[LoopCommand] = []
     for loop in robot["loops"]:
-        if loop["name"] not in TURNING:
+        if loop["name"] not in ATTITUDE_LOOPS:
             continue
         name = loop["name"]
         commands += [
@@ -241,7 +241,7 @@ async def _put_card_back(colour: str | None, send: Send) -> None:
             raise
 
 
-def _values(gains: Sequence[Question]) -> dict[str, float]:
+def _values(gains: Sequence[Request]) -> dict[str, float]:
     return {gain["name"]: gain["value"] for gain in gains}
 
 

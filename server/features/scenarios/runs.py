@@ -18,7 +18,7 @@ from server.stream.bridge import RuntimeSilentError
 log = logging.getLogger(__name__)
 
 QUEUE_MAX = 20
-TELL_SECONDS = 0.25
+NOTIFY_SECONDS = 0.25
 
 
 class ScenarioExecutor(Protocol):
@@ -40,7 +40,7 @@ class ScenarioRunner:
     def __init__(
         self, live: ScenarioExecutor, simulated: ScenarioExecutor, notify: Callable[[dict[str, Any]], None]
     ) -> None:
-        self._stages: dict[Place, ScenarioExecutor] = {"live": live, "simulated": simulated}
+        self._executors: dict[Place, ScenarioExecutor] = {"live": live, "simulated": simulated}
         self._notify = notify
         self._number = 0
         self._active: RunRecord | None = None
@@ -73,7 +73,7 @@ class ScenarioRunner:
             )
         if len(self._queue) >= QUEUE_MAX:
             raise RefusedError(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
-        self._stages[place].check(scenario)
+        self._executors[place].check(scenario)
         self._number += 1
         run = RunRecord(self._number, scenario, text, place, board, who)
         self._queue.append(run)
@@ -127,7 +127,7 @@ class ScenarioRunner:
         problem = ""
         try:
             run.check()
-            await self._stages[run.place].perform(run)
+            await self._executors[run.place].perform(run)
         except RunCancelledError as why:
             state, problem = "cancelled", str(why)
         except (
@@ -147,4 +147,4 @@ class ScenarioRunner:
     async def _announce_regularly(self) -> None:
         while True:
             self.announce()
-            await asyncio.sleep(TELL_SECONDS)
+            await asyncio.sleep(NOTIFY_SECONDS)

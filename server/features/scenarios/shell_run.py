@@ -21,7 +21,7 @@ from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.shell_store import open_writer
 from server.platform.store import Store
 
-LOOK_SECONDS = 0.25
+POLL_SECONDS = 0.25
 
 
 def run_scenario(start: ScenarioStart, settings: Settings) -> int:
@@ -83,7 +83,7 @@ def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedR
             progress.notify(state)
             if state.last is not None and state.last.run >= number:
                 return state.last
-            sleep(LOOK_SECONDS)
+            sleep(POLL_SECONDS)
     except KeyboardInterrupt:
         ask(folder, "POST", "/scenarios/cancel")
         raise SetupError("The run was cancelled; what was recorded is kept.") from None

@@ -33,7 +33,7 @@ HEADER = Struct("<IB")
 EVENTS, BLOCKS = 0, 1
 MESSAGE_BYTES_MAX = 16_000_000
 FLUSH_BYTES = 2_000_000
-WORDS_MOST = 5
+ERROR_LINES = 5
 NICENESS = "10"
 END_SECONDS = 10.0
 """After which a process that was asked to end is killed."""
@@ -67,12 +67,12 @@ class SimulatedExecutor:
         recorder = Recorder(self._store, clock, self._notices, lambda: None)
         run.phase = "preparing"
         try:
-            async with _process(run, self._settings) as (process, words):
+            async with _process(run, self._settings) as (process, errors):
                 await _Playback(run, self._settings, self._store, recorder, clock).take(process)
                 status = await process.wait()
                 run.check()
                 if status != 0:
-                    said = " / ".join(words)
+                    said = " / ".join(errors)
                     raise RunFailedError(f"The simulation {describe_status(status)}. {said}".strip())
         finally:
             run.phase = "ending"
@@ -140,7 +140,7 @@ class _Playback:
 
 @asynccontextmanager
 async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
-    """The process, which has the scenario's text; `words` are the last lines of its complaints."""
+    """The process, which has the scenario's text; `errors` are the last lines of its complaints."""
     command = [
         "nice",
         "-n",
@@ -160,14 +160,14 @@ async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Pr
         limit=MESSAGE_BYTES_MAX,
         env={**os.environ, "MUCAT_BUILD": str(settings.build)},
     )
-    words: deque[str] = deque(maxlen=WORDS_MOST)
+    errors: deque[str] = deque(maxlen=ERROR_LINES)
     tasks = [
-        asyncio.create_task(_give(process, run.text)),
-        asyncio.create_task(_listen(process, words)),
+        asyncio.create_task(_write_input(process, run.text)),
+        asyncio.create_task(_collect_errors(process, errors)),
         asyncio.create_task(_end_when_cancelled(process, run)),
     ]
     try:
-        yield process, words
+        yield process, errors
     finally:
         for task in tasks:
             task.cancel()
@@ -177,7 +177,7 @@ async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Pr
             await process.wait()
 
 
-async def _give(process: Process, text: str) -> None:
+async def _write_input(process: Process, text: str) -> None:
     assert process.stdin is not None
     with contextlib.suppress(ConnectionError):
         process.stdin.write(text.encode())
@@ -185,10 +185,10 @@ async def _give(process: Process, text: str) -> None:
     process.stdin.close()
 
 
-async def _listen(process: Process, words: deque[str]) -> None:
+async def _collect_errors(process: Process, errors: deque[str]) -> None:
     assert process.stderr is not None
     async for line in process.stderr:
-        words.append(line.decode(errors="replace").strip())
+        errors.append(line.decode(errors="replace").strip())
 
 
 async def _end_when_cancelled(process: Process, run: RunRecord) -> None:

@@ -1,1 +1,1 @@
-"""Sessions: recorded, kept, found again and replayed."""
+"""Sessions: recording, search, annotation, replay and retention."""

@@ -1,4 +1,4 @@
-"""Records by itself while the robot is armed."""
+"""Automatic recording while the robot is armed."""
 
 import asyncio
 import json
@@ -16,14 +16,14 @@ from server.platform.store import StoreError
 log = logging.getLogger(__name__)
 
 REST_SECONDS = 5.0
-"""How long it records on after the robot was disarmed: until the fins rest and it has begun to rise."""
+"""Time that it records after the robot is disarmed, until the fins rest and the robot begins to rise."""
 
 
 class AutoRecorder:
-    """Begins a session when the robot becomes armed while none records, and ends it after it was disarmed.
+    """Starts a session when the robot is armed and none records, and stops it after the robot is disarmed.
 
-    `make_row` makes the session of a name and the robot's state. A session of this origin that is there
-    already, since an earlier server began it, is ended in the same way.
+    `make_row` makes the session from a name and the robot's state. A session that arming started under an
+    earlier server is stopped in the same way.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class AutoRecorder:
         self._task: asyncio.Task[None] | None = None
 
     def see(self, block: Block) -> None:
-        """Take note of a block of the topic `state`."""
+        """Process a block of the topic `state`."""
         try:
             state = json.loads(block.payload)[-1]
             armed = state["armed"] is True
@@ -57,7 +57,7 @@ class AutoRecorder:
         self._armed = armed
 
     def tick(self) -> None:
-        """To be called every second or so: end the session when its time has come."""
+        """Stop the session when it is due; called about every second."""
         session = self._recorder.session
         if session is None or session.origin != "arming" or self._disarmed_at is None:
             return
@@ -65,7 +65,7 @@ class AutoRecorder:
             self._act(self._end(session.id))
 
     async def close(self) -> None:
-        """Wait for what is under way."""
+        """Wait for a start or stop in progress."""
         if self._task is not None:
             await self._task
 
@@ -81,7 +81,7 @@ class AutoRecorder:
                 await self._make_row(f"Armed {datetime.now(UTC):%Y-%m-%d %H:%M} UTC", state)
             )
         except RecordingRefusedError as problem:
-            log.info("not recorded at arming: %s", problem)
+            log.info("arming starts no session: %s", problem)
         except (StoreError, OSError) as problem:
             self._notices.notify("recording", "caution", f"Armed, but not recorded: {problem}.")
 
@@ -89,4 +89,4 @@ class AutoRecorder:
         try:
             await self._recorder.stop(session)
         except (RecordingRefusedError, StoreError) as problem:
-            log.info("the session begun at arming does not end yet: %s", problem)
+            log.info("the session started at arming cannot be stopped yet: %s", problem)

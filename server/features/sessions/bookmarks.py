@@ -1,4 +1,4 @@
-"""Moments of a session that people point out, while it records or later."""
+"""Bookmarks: moments of a session with a text, made while it records or later."""
 
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -17,14 +17,14 @@ from server.platform.store import Store, insert_row
 
 
 class UnknownBookmarkError(NotFoundError):
-    """The session has no such mark"""
+    """The session has no such bookmark"""
 
 
 class Bookmarks:
-    """The marks of all sessions. Times are in s since the session's start.
+    """The bookmarks of all sessions. Times are in s since the session's start.
 
-    Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError where
-    the session does not reach so far.
+    Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError for a
+    time beyond the session's end.
     """
 
     def __init__(self, store: Store, clock: Clock, recorder: Recorder) -> None:
@@ -33,7 +33,7 @@ class Bookmarks:
         self._recorder = recorder
 
     async def add(self, session: int, moment: float | None, text: str) -> Bookmark:
-        """Mark a moment; None is now, in a session that records."""
+        """Add a bookmark; the moment None is now, in a session that records."""
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
@@ -41,12 +41,12 @@ class Bookmarks:
             steady = _place(moment, start, duration, now)
             row = BookmarkRow(session_id=session, time=steady, text=text, made=time())
             row.id = insert_row(connection, BookmarkRow, row.model_dump(exclude={"id"}))
-            return show_marks([row], start)[0]
+            return describe_bookmarks([row], start)[0]
 
         return await self._store.write(write)
 
     async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Bookmark:
-        """Move a mark, or say something else of it; None leaves it as it is."""
+        """Change time or text of a bookmark; None leaves it unchanged."""
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
@@ -59,12 +59,12 @@ class Bookmarks:
             connection.execute(
                 update(BookmarkRow).where(col(BookmarkRow.id) == mark).values(time=row.time, text=row.text)
             )
-            return show_marks([row], start)[0]
+            return describe_bookmarks([row], start)[0]
 
         return await self._store.write(write)
 
     async def remove(self, session: int, mark: int) -> None:
-        """Take a mark away."""
+        """Remove a bookmark."""
 
         def write(connection: Connection) -> None:
             require(connection, session)
@@ -74,13 +74,13 @@ class Bookmarks:
         await self._store.write(write)
 
     def _now(self, session: int) -> float | None:
-        """The steady time up to which a session that records reaches; None for any other."""
+        """The present steady time for the session that records; None for any other."""
         active = self._recorder.session
         return self._clock.now() if active is not None and active.id == session else None
 
 
-def show_marks(markers: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
-    """Marks in the order of their times, of a session that began at `start` (s, steady clock)."""
+def describe_bookmarks(markers: Iterable[BookmarkRow], start: float) -> list[Bookmark]:
+    """The bookmarks by time, of a session that began at `start` (s, steady clock)."""
     return [
         Bookmark(
             id=one.id or 0,
@@ -98,7 +98,7 @@ def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     )
     found = connection.execute(query).first()
     if found is None:
-        raise UnknownBookmarkError(f"Session {session} has no mark {mark}.")
+        raise UnknownBookmarkError(f"Session {session} has no bookmark {mark}.")
     return BookmarkRow(id=mark, session_id=session, time=found.time, text=found.text, made=found.made)
 
 
@@ -113,11 +113,9 @@ def _span(connection: Connection, session: int) -> tuple[float, float]:
 def _place(moment: float | None, start: float, duration: float, now: float | None) -> float:
     if moment is None:
         if now is None:
-            raise SessionStateError(
-                "This session does not record any more. Say at what time of it the mark is to be."
-            )
+            raise SessionStateError("This session no longer records. Give the time of the bookmark.")
         return now
     end = duration if now is None else now - start
     if moment > end:
-        raise SessionStateError(f"The session has {end:.1f} s; {moment:.1f} s is beyond its end.")
+        raise SessionStateError(f"{moment:.1f} s is beyond the end of the session, which lasts {end:.1f} s.")
     return start + moment

@@ -1,4 +1,4 @@
-"""The sessions that are kept: found, described, marked, deleted and taken back."""
+"""The stored sessions: search, description, annotation, deletion and restoration."""
 
 import json
 from collections import defaultdict
@@ -10,7 +10,7 @@ from sqlalchemy import Connection, delete, insert, update
 from sqlalchemy.orm import defer
 from sqlmodel import col, desc, func, select
 
-from server.features.sessions.bookmarks import show_marks
+from server.features.sessions.bookmarks import describe_bookmarks
 from server.features.sessions.chunks import row_layout
 from server.features.sessions.recorder import Recorder
 from server.features.sessions.schemas import RecordedColumn, RecordedTopic, Session, SessionDetail, SessionGap
@@ -29,7 +29,7 @@ from server.platform.store import Reader, Store
 class Listing:
     """Read access to every session of a database.
 
-    Every method raises StoreError, and UnknownSessionError where a session or a marker is not there.
+    Every method raises StoreError, and UnknownSessionError for a missing session.
     """
 
     def __init__(self, store: Reader) -> None:
@@ -43,9 +43,9 @@ class Listing:
         *,
         deleted: bool = False,
     ) -> list[Session]:
-        """Those with each word of `search` in name, note, tags or scenario, and with each tag; newest first.
+        """Sessions with every word of `search` in name, note, tags or scenario, and every tag; newest first.
 
-        `deleted` chooses those in the bin instead of all others.
+        With `deleted` those in the bin instead.
         """
         texts = (SessionRow.configuration, SessionRow.robot_state, SessionRow.topics, SessionRow.scenario)
         query = (
@@ -64,7 +64,7 @@ class Listing:
             marked = dict(database.exec(counts).all())
             rows = database.exec(query).all()
             sessions = [from_row(row, tagged[row.id or 0], marked.get(row.id or 0, 0)) for row in rows]
-        # SQLite's LIKE knows no letters but English ones.
+        # SQLite's LIKE ignores case only for ASCII letters.
         words = search.casefold().split()
         chosen = {tag.casefold() for tag in tags}
         return [one for one in sessions if _holds(one, words) and chosen <= {t.casefold() for t in one.tags}]
@@ -78,7 +78,7 @@ class Listing:
             return from_row(row, tags, database.exec(markers).one())
 
     def detail(self, session: int) -> SessionDetail:
-        """One session with all that is known of it."""
+        """One session with everything that is known of it except its samples."""
         found = self.find(session)
         with self._reader.read() as database:
             row = database.get_one(SessionRow, session)
@@ -97,7 +97,7 @@ class Listing:
                 scenario=row.scenario,
                 configuration=row.configuration,
                 robot_state=json.loads(row.robot_state or "null"),
-                marks=show_marks(
+                marks=describe_bookmarks(
                     database.exec(select(BookmarkRow).where(BookmarkRow.session_id == session)).all(), start
                 ),
                 gaps=[
@@ -109,7 +109,7 @@ class Listing:
 
 
 class Catalogue(Listing):
-    """The same, to be changed. What is changed of the one that records, `recorder` is told."""
+    """Write access to the sessions; `recorder` learns of changes to the one that records."""
 
     def __init__(self, store: Store, recorder: Recorder | None = None) -> None:
         super().__init__(store)
@@ -125,7 +125,7 @@ class Catalogue(Listing):
         tags: Sequence[str] | None = None,
         kept: bool | None = None,
     ) -> Session:
-        """Write down what people say about a session; None leaves it as it is."""
+        """Change name, note, tags or protection of a session; None leaves a field unchanged."""
         changes = {"name": name, "note": note, "kept": kept}
         values = {field: value for field, value in changes.items() if value is not None}
 
@@ -143,11 +143,11 @@ class Catalogue(Listing):
         return self.notify(session)
 
     async def delete(self, session: int) -> Session:
-        """Put a session into the bin. Raises SessionStateError for one that records."""
+        """Move a session to the bin. Raises SessionStateError for one that records."""
 
         def write(connection: Connection) -> None:
             if require(connection, session) == "recording":
-                raise SessionStateError("This session records. Stop it first, then delete it.")
+                raise SessionStateError("This session is recording. Stop it first, then delete it.")
             unset = col(SessionRow.deleted).is_(None)
             query = update(SessionRow).where(col(SessionRow.id) == session, unset)
             connection.execute(query.values(deleted=time()))
@@ -162,7 +162,7 @@ class Catalogue(Listing):
         return self.find(session)
 
     async def purge(self, session: int) -> None:
-        """Have a session removed for good; to everybody it is gone at once.
+        """Mark a session of the bin for removal; it disappears at once.
 
         Raises SessionStateError outside the bin.
         """

@@ -5,8 +5,8 @@ says), with all first bytes of the rows first, then all second bytes, and so on;
 numbers have nearly equal high bytes, which lie side by side that way.
 "lines-zlib": a JSON object a line; then zlib.
 "pictures": of each picture its size (u32, little-endian), its time (f64), and the JPEG file, of that size.
-What the fields of a row are is stored with each session (`describe_topics`), so that a recording stays
-readable when the definitions have changed.
+Each session stores the description of its fields (`describe_topics`), so that a recording stays readable
+when the definitions change.
 """
 
 import json
@@ -28,7 +28,7 @@ LEVEL = 1
 """zlib's fastest: on a Raspberry Pi Zero the rest gains little and costs much."""
 
 DIGITS = {"f": "%.9g", "d": "%.17g"}
-"""Enough decimal digits that the very same number is read back."""
+"""Enough decimal digits to read back the same number."""
 SCALED_DIGITS = "%.12g"
 
 
@@ -64,7 +64,7 @@ def unshuffle(shuffled: bytes, size: int) -> bytes:
 def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:
     """The encoding of these payloads of a topic, their chunk, and its first and last sample's times.
 
-    Raises ValueError, RecursionError or zlib.error where they are not what the topic says.
+    Raises ValueError, RecursionError or zlib.error for payloads that do not fit the topic.
     """
     if topic.kind is Kind.ROWS:
         return ROWS_ENCODING, *encode_rows(payloads, topic.row_bytes)
@@ -76,7 +76,7 @@ def encode(topic: Topic, payloads: Sequence[bytes], count: int) -> tuple[str, by
 def encode_rows(payloads: Sequence[bytes], size: int) -> tuple[bytes, float, float]:
     """The chunk of these rows, and the times of the first and the last of them.
 
-    Raises ValueError where these are no numbers.
+    Raises ValueError for times that are not finite.
     """
     rows = b"".join(payloads)
     first, last = TIME.unpack_from(rows)[0], TIME.unpack_from(rows, len(rows) - size)[0]
@@ -93,7 +93,7 @@ def decode_rows(data: bytes, size: int) -> bytes:
 def encode_documents(payloads: Sequence[bytes], count: int) -> tuple[bytes, float, float]:
     """The chunk of these JSON arrays of together `count` objects, and the times of the first and the last.
 
-    Raises ValueError where they are no such thing.
+    Raises ValueError for anything else.
     """
     documents = [document for payload in payloads for document in json.loads(payload)]
     if len(documents) != count:
@@ -117,7 +117,7 @@ def decode_documents(data: bytes) -> Iterator[dict[str, Any]]:
 def encode_pictures(payloads: Sequence[bytes]) -> tuple[bytes, float, float]:
     """The chunk of these pictures, each with its time first, and the times of the first and the last.
 
-    Raises ValueError where they have none.
+    Raises ValueError for a picture without a time.
     """
     if any(len(payload) <= TIME.size for payload in payloads):
         raise ValueError("a picture without a time or without bytes")
@@ -143,7 +143,7 @@ def decode_pictures(data: bytes) -> Iterator[tuple[float, bytes]]:
 
 
 def describe_topics() -> dict[str, Any]:
-    """A description of the recorded topics' samples, for a reader who has only the database."""
+    """A description of the recorded topics, for a reader that has only the database."""
     return {topic.name: _describe(topic) for topic in RECORDED}
 
 

@@ -1,7 +1,7 @@
 """`mucat sessions` and `mucat record`: sessions from a shell.
 
-Changes go through the server that runs on the data folder, since nothing else may write its database; where
-none runs, they are made here.
+Changes go through the server that uses the data folder, since nothing else may write its database. Without
+a server the command makes them itself.
 """
 
 import asyncio
@@ -157,7 +157,7 @@ def _perform(folder: DataFolder, action: str, session: int, outcome: str, **chan
 
 def _tabulate(found: "list[Session]") -> str:
     if not found:
-        return "No session is like that."
+        return "No matching session."
     return "\n".join(
         f"{one.id:5}  {one.started:%Y-%m-%d %H:%M}  {one.duration:8.1f} s  {one.state:11}  {one.name}"
         + (f"  [{', '.join(one.tags)}]" if one.tags else "")

@@ -1,10 +1,9 @@
 """Records everything that arrives while a session runs, in chunks of about a second a topic.
 
 Samples are gathered in memory, encoded in the writer's thread and committed every `PERIOD`, so that a power
-cut costs at most the last second. While the database cannot be written, up to `BACKLOG_BYTES` wait; what does
-not fit is counted as not stored. A hole in a topic's numbering ends a chunk and is noted as a gap. A session
-that a killed server has left goes on where what was missed is still to be had
-(`server.features.sessions.resume`).
+cut costs at most the last second. While the database cannot be written, up to `BACKLOG_BYTES` wait; the rest
+is counted as not stored. A jump in a topic's numbering ends a chunk and is stored as a gap. A session of a
+killed server continues if the missed samples are still available (`server.features.sessions.resume`).
 """
 
 import asyncio
@@ -25,7 +24,7 @@ from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import BY_NAME, RECORDED, Topic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.features.sessions.chunks import encode
-from server.features.sessions.resume import InterruptedSession, Missing, find_interrupted
+from server.features.sessions.resume import InterruptedSession, MissingSamples, find_interrupted
 from server.features.sessions.schemas import Session
 from server.features.sessions.session import from_row
 from server.platform.errors import ConflictError
@@ -90,7 +89,7 @@ class _Batch:
 
 
 class Recorder:
-    """Starts, feeds and stops the one session that records; `changed` is called whenever it is different."""
+    """Starts, feeds and stops the one session that records; `changed` is called at every change of it."""
 
     def __init__(self, store: Store, clock: Clock, notices: Notices, changed: Callable[[], None]) -> None:
         self.session: Session | None = None
@@ -105,7 +104,7 @@ class Recorder:
         self._reset()
 
     async def recover(self) -> InterruptedSession | None:
-        """Mark what a crash has left recording as interrupted, but for a session that may perhaps go on.
+        """Mark sessions that a crash left recording as interrupted, except one that may continue.
 
         Raises StoreError.
         """
@@ -120,11 +119,11 @@ class Recorder:
             )
         return interrupted
 
-    async def resume(self, interrupted: InterruptedSession, missing: Mapping[str, Missing]) -> None:
-        """Go on with a session, or mark it as interrupted where the runtime cannot fill the hole.
+    async def resume(self, interrupted: InterruptedSession, missing: Mapping[str, MissingSamples]) -> None:
+        """Continue a session, or mark it as interrupted if the runtime cannot supply the missing samples.
 
-        `missing` is what each sender has that is not stored, by its name. To be called before any of that is
-        added, and `caught_up` afterwards. Raises StoreError.
+        `missing` describes the samples of each sender that are not stored, by its name. Call it before these
+        are added, and `caught_up` afterwards. Raises StoreError.
         """
         runtime = missing.get("runtime")
         row = interrupted.row
@@ -170,7 +169,7 @@ class Recorder:
 
     async def start(self, row: SessionRow) -> Session:
         """Store a new session and record into it from now on. Raises RecordingRefusedError, StoreError."""
-        return await _whole(self._start(row))
+        return await _finish(self._start(row))
 
     async def _start(self, row: SessionRow) -> Session:
         async with self._busy:
@@ -183,24 +182,24 @@ class Recorder:
             self._reset()
             self._accepts = True
             if self._standing is not None:
-                # They are told at each change and else rarely: the session begins with what is in force.
+                # They are sent at each change and rarely otherwise: the session begins with the values in force.
                 self.add(_as_of(self._standing, self._clock.now()))
         self._notices.notify("recording", "info", f"Recording of “{row.name}” has begun.")
         self._changed()
         return self.session
 
     async def stop(self, session: int) -> Session:
-        """Store what is left and complete the session.
+        """Store the remaining samples and complete the session.
 
-        Raises RecordingRefusedError where it does not record, StoreError where its end cannot be stored; it
-        then goes on.
+        Raises RecordingRefusedError if it does not record, StoreError if its end cannot be stored; it then
+        continues.
         """
-        return await _whole(self._stop(session))
+        return await _finish(self._stop(session))
 
     async def _stop(self, session: int) -> Session:
         async with self._busy:
             if self.session is None or self.session.id != session:
-                raise RecordingRefusedError("This session does not record; there is nothing to stop.")
+                raise RecordingRefusedError("This session is not recording; there is nothing to stop.")
             self._accepts = False
             try:
                 done = await self._commit(final=True)
@@ -213,14 +212,14 @@ class Recorder:
         return done
 
     def amend(self, session: Session) -> None:
-        """Take over what people have written about the session, if it is the one that records."""
+        """Take over new texts of the session, if it is the one that records."""
         if self.session is not None and self.session.id == session.id:
             written = session.model_dump(include={"name", "note", "tags", "markers", "kept"})
             self.session = self.session.model_copy(update=written)
             self._changed()
 
     def add(self, block: Block) -> None:
-        """Take in a block; without a session it is passed over."""
+        """Record a block; without a session it is ignored."""
         topic = block.topic
         if topic is _PARAMETERS:
             self._standing = block
@@ -241,12 +240,12 @@ class Recorder:
         self._expected[topic.id] = block.following
 
     def _is_stored(self, block: Block) -> bool:
-        """True where an earlier server has stored the block, or it is older than the session."""
+        """True if an earlier server has stored the block, or it is older than the session."""
         first = self._skip.get(block.topic.id)
         return first is not None and not block.after(first)
 
     async def run(self) -> None:
-        """Commit every period, for ever; report failures, and recovery."""
+        """Commit every period; report failures and recovery."""
         idle = 0
         while True:
             await asyncio.sleep(PERIOD)
@@ -266,8 +265,8 @@ class Recorder:
                 self._notices.notify("database", "info", "Storing works again.")
 
     async def flush(self) -> None:
-        """Commit what has been gathered. Raises StoreError; then it is kept for the next time."""
-        await _whole(self._flush())
+        """Commit the gathered samples. Raises StoreError; they then wait for the next commit."""
+        await _finish(self._flush())
 
     async def _flush(self) -> None:
         async with self._busy:
@@ -307,7 +306,7 @@ class Recorder:
         self._waiting = _Batch()
         if final:
             changes["ended"] = datetime.fromtimestamp(changes["ended"], UTC)
-        # Somebody may have written about it meanwhile.
+        # Its texts may have changed meanwhile.
         self.session = self.session.model_copy(update=changes)
         self._changed()
         return self.session
@@ -340,26 +339,26 @@ class Recorder:
 
 
 def _as_of(block: Block, now: float) -> Block:
-    """The last document of a block once more, as of now (s, steady clock)."""
+    """The last document of a block again, as of now (s, steady clock)."""
     try:
         document = json.loads(block.payload)[-1] | {"time": now}
     except (ValueError, LookupError, TypeError, RecursionError):
-        # A damaged one is noted as such when it is stored.
+        # Storing it reports the damage.
         return block
     payload = json.dumps([document], separators=(",", ":")).encode()
     return Block.of(block.topic, 1, (block.following - 1) % NUMBERS, payload, block.run)
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:
-    interrupted = batch.bytes
-    while interrupted > BACKLOG_BYTES:
+    size = batch.bytes
+    while size > BACKLOG_BYTES:
         chunk = batch.chunks.pop(0)
-        interrupted -= len(chunk["data"])
+        size -= len(chunk["data"])
         batch.note(chunk["topic"], "not stored", chunk["count"], now)
 
 
-async def _whole(step: Coroutine[Any, Any, T]) -> T:
-    """Finish a step even where its caller is cancelled, so that memory and database agree."""
+async def _finish(step: Coroutine[Any, Any, T]) -> T:
+    """Finish a step even if its caller is cancelled, so that memory and database agree."""
     return await asyncio.shield(asyncio.create_task(step))
 
 

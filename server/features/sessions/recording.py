@@ -1,4 +1,4 @@
-"""Reads what a session recorded: chunk by chunk, so that it is never in memory as a whole."""
+"""Reads the samples of a session chunk by chunk, so that it is never in memory as a whole."""
 
 import json
 import zlib
@@ -38,12 +38,12 @@ class RecordingError(ApiError):
 
     @property
     def detail(self) -> str:
-        """Says that other sessions are not affected."""
+        """The text of the answer, which says that other sessions are not affected."""
         return f"This recording cannot be read whole: {self}. Other sessions are not affected."
 
 
 class Recording:
-    """One session's samples. What is committed while they are read may or may not be among them.
+    """One session's samples; those committed while it is read may be missing.
 
     Times are the session's own steady ones (s); `row.started_steady` is its start. Every reading method
     raises StoreError, and RecordingError where a chunk cannot be read.
@@ -52,17 +52,17 @@ class Recording:
     def __init__(self, store: Reader, row: SessionRow) -> None:
         self.row = row
         self.topics: Mapping[str, dict[str, Any]] = json.loads(row.topics)
-        """What `chunks.describe_topics` said when it was recorded, by name."""
+        """Descriptions by topic, as `chunks.describe_topics` wrote them at the recording."""
         self._store = store
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """The database, for a query of one's own; as `Store.read`."""
+        """The database for another query, as `Store.read`."""
         with self._store.read() as database:
             yield database
 
     def counts(self, start: float = -inf, end: float = inf) -> dict[str, int]:
-        """Samples by topic, of the chunks that may have some between `start` and `end`; no topics without."""
+        """Samples by topic in the chunks that may overlap this range; topics without samples are left out."""
         query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
         if start > -inf:
             query = query.where(Chunk.last_time >= start)
@@ -139,7 +139,7 @@ class Recording:
         Names are without units, such as "depth" or "position_2"; arrays have the shape (samples,). Raises
         KeyError on a name that is not there.
         """
-        import numpy as np  # only where somebody compares or exports: it costs a small computer memory
+        import numpy as np  # only for comparisons and exports: it costs a small computer memory
 
         described = self.topics[topic]
         layout = row_layout(described)
@@ -151,7 +151,7 @@ class Recording:
             if name not in layout.names:
                 raise KeyError(f"{topic} has no column {name}; it has {', '.join(layout.names)}")
         places = [layout.names.index(name) for name in names]
-        # A chunk holds the first bytes of all its rows, then the second ones; only wanted ones are joined.
+        # A chunk holds the first bytes of all its rows, then the second ones; only the chosen ones are joined.
         offsets = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
         pieces = [
             table[:, offsets].transpose(1, 0, 2).reshape(len(offsets), -1)
@@ -173,7 +173,7 @@ class Recording:
         return times[inside], values
 
     def changes(self, topic: str) -> Iterator[dict[str, Any]]:
-        """The documents that say something else than the one before, but for their time."""
+        """The documents that differ from the previous one in more than their time."""
         before = b""
         for chunk in self._data(topic, -inf, inf):
             with _reading(chunk, topic, DOCUMENTS_ENCODING):

@@ -1,7 +1,7 @@
-"""Samples of a stretch of a session, in the format of the live socket.
+"""Samples of a range of a session, in the format of the live socket.
 
-A seek takes one answer: before the stretch itself lies what was in force at its start, and what the page's
-charts and lists show of the time before.
+A seek takes one answer: the range is preceded by the values in force at its start, and by the earlier samples
+that the page's charts and lists show.
 """
 
 import json
@@ -46,18 +46,20 @@ log = logging.getLogger(__name__)
 
 
 @dataclass(slots=True)
-class Stretch:
-    """Blocks one after the other, in order of the times of their first samples, and how many samples were
-    left out since they are damaged or have no counterpart in this version's definitions. Thumbnails come as
-    the camera's pictures."""
+class ReplayBlocks:
+    """Blocks in order of the times of their first samples, and the number of samples left out.
+
+    Left out are damaged ones, and those without a counterpart in this version's definitions. Thumbnails come
+    as the camera's pictures.
+    """
 
     data: bytes
     left_out: int
 
 
 @dataclass(frozen=True, slots=True)
-class _Piece:
-    """Fields of a chunk that a replay needs."""
+class _StoredChunk:
+    """The fields of a chunk that a replay needs."""
 
     first_time: float
     last_time: float
@@ -77,7 +79,9 @@ class _Range:
     newest: bool
 
 
-def read_stretch(recording: Recording, start: float, end: float, history: float | None = None) -> Stretch:
+def read_blocks_between(
+    recording: Recording, start: float, end: float, history: float | None = None
+) -> ReplayBlocks:
     """The samples of a session from `start` up to, but not at, `end` (s, steady clock), at most `RANGE_MAX`.
 
     With a `history` (s), also what a page needs that begins at `start`: of every topic the newest sample
@@ -91,14 +95,14 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     described = describe_topics()
     left_out, size = 0, 0
     timed: list[tuple[float, Block]] = []
-    for name, pieces in found.items():
+    for name, chunks in found.items():
         recorded, topic = recording.topics[name], BY_NAME.get(name)
         if topic is None or recorded["kind"] != topic.kind.name.lower():
-            left_out += sum(piece.count for piece in pieces if start <= piece.first_time < end)
+            left_out += sum(chunk.count for chunk in chunks if start <= chunk.first_time < end)
             continue
         same = recording.row.version == VERSION and recorded == described[name]
         reader = _Reader(topic, None if same else recorded)
-        for time, block in reader.read(pieces, ranges[name]):
+        for time, block in reader.read(chunks, ranges[name]):
             size += len(block.data)
             if size > BYTES_MAX:
                 raise InvalidError(
@@ -109,11 +113,11 @@ def read_stretch(recording: Recording, start: float, end: float, history: float 
     if history is not None and not any(block.topic is STATE and time < start for time, block in timed):
         timed += _first_state(recording)
     timed.sort(key=lambda one: one[0])
-    return Stretch(b"".join(block.data for _, block in timed), left_out)
+    return ReplayBlocks(b"".join(block.data for _, block in timed), left_out)
 
 
 def _first_state(recording: Recording) -> list[tuple[float, Block]]:
-    """The robot's state when the session began, which it tells of before its first sample."""
+    """The robot's state when the session began, for the time before its first sample."""
     try:
         state = rewrite_document(json.loads(recording.row.robot_state), STATE)
     except (ValueError, TypeError):
@@ -129,14 +133,14 @@ def _range(name: str, start: float, end: float, history: float | None) -> _Range
     return _Range(since, start, end, newest=True)
 
 
-def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Piece]]:
-    names = [field.name for field in fields(_Piece)]
-    found: dict[str, list[_Piece]] = {}
+def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_StoredChunk]]:
+    names = [field.name for field in fields(_StoredChunk)]
+    found: dict[str, list[_StoredChunk]] = {}
     with recording.read() as database:
-        for name, chosen in ranges.items():
-            since = chosen.start if chosen.since == -inf else chosen.since
-            first, last = recording.numbers(database, name, since, chosen.end)
-            if chosen.since == -inf:
+        for name, limits in ranges.items():
+            since = limits.start if limits.since == -inf else limits.since
+            first, last = recording.numbers(database, name, since, limits.end)
+            if limits.since == -inf:
                 first = max(0, first - LISTED_CHUNKS)
             query = (
                 select(*(getattr(Chunk, name) for name in names))
@@ -144,7 +148,7 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_Pi
                 .where(col(Chunk.number).between(first, last))
                 .order_by(col(Chunk.number))
             )
-            found[name] = [_Piece(*row) for row in database.exec(query)]
+            found[name] = [_StoredChunk(*row) for row in database.exec(query)]
     return found
 
 
@@ -183,7 +187,7 @@ def _pictures(pictures: list[tuple[float, bytes]]) -> _Samples:
 
 
 class _Reader:
-    """Makes blocks of one topic's chunks; `recorded` describes the topic where it was another then."""
+    """Makes blocks from one topic's chunks; `recorded` describes the topic if its definition has changed."""
 
     def __init__(self, topic: Topic, recorded: Mapping[str, Any] | None) -> None:
         self.left_out = 0
@@ -191,69 +195,69 @@ class _Reader:
         self._given_as = BY_NAME["picture"] if topic.kind is Kind.PICTURE else topic
         self._recorded = recorded
 
-    def read(self, pieces: list[_Piece], chosen: _Range) -> Iterator[tuple[float, Block]]:
+    def read(self, chunks: list[_StoredChunk], limits: _Range) -> Iterator[tuple[float, Block]]:
         """The blocks, each with the time of its first sample."""
-        earlier: tuple[_Piece, int] | None = None
-        has_earlier = not chosen.newest
-        for piece in pieces:
-            if piece.first_time >= chosen.end:
+        earlier: tuple[_StoredChunk, int] | None = None
+        has_earlier = not limits.newest
+        for chunk in chunks:
+            if chunk.first_time >= limits.end:
                 break
-            if piece.last_time < chosen.since:
-                earlier = (piece, piece.count)
+            if chunk.last_time < limits.since:
+                earlier = (chunk, chunk.count)
                 continue
-            samples = self._open(piece)
+            samples = self._open(chunk)
             if samples is None:
                 continue
-            first = _count_before(samples, piece, chosen.since)
-            last = _count_before(samples, piece, chosen.end)
+            first = _count_before(samples, chunk, limits.since)
+            last = _count_before(samples, chunk, limits.end)
             if first > 0:
-                earlier = (piece, first)
+                earlier = (chunk, first)
             if first < last:
-                has_earlier = has_earlier or samples.time(first) < chosen.start
-                yield from self._blocks(samples, piece, first, last)
+                has_earlier = has_earlier or samples.time(first) < limits.start
+                yield from self._blocks(samples, chunk, first, last)
         if not has_earlier and earlier is not None:
-            piece, count = earlier
-            samples = self._open(piece)
+            chunk, count = earlier
+            samples = self._open(chunk)
             if samples is not None:
-                yield from self._blocks(samples, piece, count - 1, count)
+                yield from self._blocks(samples, chunk, count - 1, count)
 
-    def _open(self, piece: _Piece) -> _Samples | None:
+    def _open(self, chunk: _StoredChunk) -> _Samples | None:
         try:
-            if piece.encoding == ROWS_ENCODING:
+            if chunk.encoding == ROWS_ENCODING:
                 recorded = self._recorded
                 size = self._topic.row_bytes if recorded is None else int(recorded["row_bytes"])
-                rows = decode_rows(piece.data, size)
+                rows = decode_rows(chunk.data, size)
                 if recorded is not None:
                     rows = rewrite_rows(rows, recorded, self._topic)
                 return _rows(rows, self._topic.row_bytes)
-            if piece.encoding == DOCUMENTS_ENCODING:
-                lines = zlib.decompress(piece.data).splitlines()
+            if chunk.encoding == DOCUMENTS_ENCODING:
+                lines = zlib.decompress(chunk.data).splitlines()
                 return _documents(lines, None if self._recorded is None else self._topic)
-            if piece.encoding == PICTURES_ENCODING:
-                return _pictures(list(decode_pictures(piece.data)))
+            if chunk.encoding == PICTURES_ENCODING:
+                return _pictures(list(decode_pictures(chunk.data)))
         except (ValueError, KeyError, zlib.error) as problem:
             log.warning("a chunk of %s cannot be read: %s", self._topic.name, problem)
-        self.left_out += piece.count
+        self.left_out += chunk.count
         return None
 
     def _blocks(
-        self, samples: _Samples, piece: _Piece, first: int, last: int
+        self, samples: _Samples, chunk: _StoredChunk, first: int, last: int
     ) -> Iterator[tuple[float, Block]]:
         for start in range(first, last, samples.most):
             end = min(last, start + samples.most)
             count, payload = samples.payload(start, end)
             self.left_out += end - start - count
             if count:
-                yield samples.time(start), Block.of(self._given_as, count, piece.first + start, payload)
+                yield samples.time(start), Block.of(self._given_as, count, chunk.first + start, payload)
 
 
-def _count_before(samples: _Samples, piece: _Piece, time: float) -> int:
+def _count_before(samples: _Samples, chunk: _StoredChunk, time: float) -> int:
     """The number of the chunk's samples, from its first on, before `time`."""
-    if piece.last_time < time:
-        return piece.count
-    if piece.first_time >= time:
+    if chunk.last_time < time:
+        return chunk.count
+    if chunk.first_time >= time:
         return 0
-    return next(place for place in range(piece.count) if samples.time(place) >= time)
+    return next(place for place in range(chunk.count) if samples.time(place) >= time)
 
 
 def _rewrite_lines(lines: list[bytes], topic: Topic) -> Iterator[bytes]:

@@ -1,4 +1,4 @@
-"""A session that a killed server has left recording: if it can go on, and from where."""
+"""The session that a killed server left recording: whether and where it continues."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -20,10 +20,8 @@ RESUMED_ORIGINS = ("operator", "arming", "scenario")
 
 
 @dataclass(frozen=True, slots=True)
-class Last:
-    """Where a topic's samples end: the number that comes next, the last one's time and sender, and the chunks
-    so far.
-    """
+class TopicEnd:
+    """The end of a topic's samples: the next number, time and sender of the last one, number of chunks."""
 
     following: int
     time: float
@@ -33,19 +31,18 @@ class Last:
 
 @dataclass(frozen=True, slots=True)
 class InterruptedSession:
-    """A session that was left recording, and where its topics (by name) end."""
+    """A session that was left recording, and the ends of its topics by name."""
 
     row: SessionRow
-    last: Mapping[str, Last]
+    last: Mapping[str, TopicEnd]
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingSamples:
     """Samples of a sender that are not stored: the first number of each topic, by the topics' numbers.
 
-    `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all that
-    is missing. `sent`: how many samples of each topic (by name) it has sent since what is stored; empty if it
-    may be another run.
+    `same_run`: the session is a recording of this run of the sender. `whole`: the sender still has all of
+    them. `sent`: the number of samples by topic since the last stored one; empty if it may be another run.
     """
 
     first: Mapping[int, int]
@@ -72,15 +69,17 @@ def find_interrupted(store: Store) -> InterruptedSession | None:
         newest = select(func.max(Chunk.id)).where(Chunk.session_id == row.id).group_by(Chunk.topic)
         ends = database.exec(select(Chunk).where(col(Chunk.id).in_(newest)))
         last = {
-            end.topic: Last((end.first + end.count) % NUMBERS, end.last_time, end.run, end.number + 1)
+            end.topic: TopicEnd((end.first + end.count) % NUMBERS, end.last_time, end.run, end.number + 1)
             for end in ends
         }
         database.expunge(row)
     return InterruptedSession(row, last)
 
 
-def find_missing(interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply) -> Missing:
-    """Compare what is stored with what the sender of these topics has kept."""
+def find_missing(
+    interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply
+) -> MissingSamples:
+    """Compare the stored samples with the backlog of the sender of these topics."""
     blocks: dict[int, list[Block]] = {topic.id: [] for topic in topics}
     for block in backlog.blocks:
         blocks[block.topic.id].append(block)
@@ -93,7 +92,7 @@ def find_missing(interrupted: InterruptedSession, topics: Sequence[Topic], backl
         if last is None:
             first[topic.id] = _first_since(interrupted.row.started_steady, there, following)
             continue
-        # Of this run nothing may be stored yet, although another one is.
+        # The stored samples may be of another run.
         missing_from = last.following if last.run == backlog.run else 0
         ahead = (following - missing_from) % NUMBERS
         first[topic.id] = missing_from
@@ -103,13 +102,13 @@ def find_missing(interrupted: InterruptedSession, topics: Sequence[Topic], backl
         topic.name in interrupted.last and interrupted.last[topic.name].run == backlog.run for topic in topics
     )
     same_run = stored or _new(interrupted, topics, backlog)
-    return Missing(first, same_run, whole, sent if same_run else {})
+    return MissingSamples(first, same_run, whole, sent if same_run else {})
 
 
 def _new(interrupted: InterruptedSession, topics: Sequence[Topic], backlog: BacklogReply) -> bool:
     """True if nothing of this sender is stored yet, and it is the one with which the session began.
 
-    That is known of the runtime, whose `state` is stored at the start. A session takes any simulator.
+    The `state` stored at the start tells it for the runtime. Any simulator is accepted.
     """
     if any(topic.name in interrupted.last for topic in topics):
         return False

@@ -1,8 +1,8 @@
 """Deletes removed and expired sessions in small transactions, while recording goes on.
 
-A session goes into the bin first. Out of it, it is marked, and to everybody gone; then its chunks go, a few
-in each transaction of the one writer, between which a recorder's commits pass. At last the pages that have
-become free are given back to the disk, a few at a time as well (the database's auto_vacuum is incremental).
+A session moves to the bin first. When it leaves the bin it is marked and hidden; then its chunks are deleted, a
+few in each transaction, so that the recorder can commit in between. Finally the free pages are returned to the
+disk, a few at a time as well (the database's auto_vacuum is incremental).
 """
 
 import asyncio
@@ -31,18 +31,18 @@ PERIOD = 60.0
 CHUNKS_AT_ONCE = 32
 PAGES_AT_ONCE = 64
 PAUSE = 0.02
-"""s between two such steps, in which the disk belongs to the recorder."""
+"""s between two such steps, which leave the disk to the recorder."""
 BIN_SECONDS = 3600.0
-"""What the retention rule takes stays in the bin for at least so long, even while room is short."""
+"""Shortest time in the bin for sessions that a rule deletes, even while space is short."""
 DAY = 86_400.0
 JUMP_SECONDS = 60.0
-"""By which the wall clock may move on beside the steady clock; a robot without a battery for its clock knows
-the time only after somebody has set it."""
+"""Difference between wall clock and steady clock that counts as a jump: a robot without a battery-backed
+clock has no correct time before it is set."""
 NAMES_SHOWN = 3
 
 
 class _Candidate(NamedTuple):
-    """A session that may have to go."""
+    """A session that a rule may delete."""
 
     id: int
     name: str
@@ -52,9 +52,9 @@ class _Candidate(NamedTuple):
 
 
 class RetentionWorker:
-    """The only remover of sessions. `wake` makes it run at once.
+    """The only task that removes sessions; `wake` starts it at once.
 
-    For a day after the wall clock has jumped nothing goes by its age, which nobody knows.
+    For a day after a jump of the wall clock no session is deleted for its age, since that is unknown.
     """
 
     def __init__(self, store: Store, settings: Settings, notices: Notices, clock: Clock) -> None:
@@ -63,7 +63,7 @@ class RetentionWorker:
         self._notices = notices
         self._clock = clock
         self._ahead: float | None = None
-        """By how much the wall clock is ahead of the steady clock."""
+        """s by which the wall clock is ahead of the steady clock."""
         self._ages_known_from = 0.0
         self._requested = asyncio.Event()
         self._out_of_candidates = False
@@ -73,13 +73,13 @@ class RetentionWorker:
         self._requested.set()
 
     async def run(self) -> None:
-        """Apply the rules every minute, for ever."""
+        """Apply the rules every minute."""
         while True:
             self._requested.clear()
             try:
                 await self.apply(time())
             except StoreError as problem:
-                log.warning("nothing can be tidied up: %s", problem)
+                log.warning("the rules of retention cannot be applied: %s", problem)
             try:
                 await asyncio.wait_for(self._requested.wait(), PERIOD)
             except TimeoutError:
@@ -95,9 +95,9 @@ class RetentionWorker:
             await self._expire_old(now, now - rules.keep_days * DAY)
         if rules.keep_free > 0:
             await self._make_room(now, now - BIN_SECONDS if ages_known else -inf)
-        for session in await self._doomed():
+        for session in await self._find_removed():
             await self._remove(session)
-        await self._give_back()
+        await self._free_pages()
 
     async def _ages_known(self, now: float) -> bool:
         steady = self._clock.now()
@@ -110,7 +110,7 @@ class RetentionWorker:
         return steady >= self._ages_known_from
 
     def _find_ahead(self) -> float | None:
-        """As it was at the newest session of this start of the computer; None where there is none."""
+        """The difference at the newest session since the computer started; None without one."""
         row = SessionRow
         query = select(row.started, row.started_steady).where(row.boot == boot())
         with self._store.read() as database:
@@ -138,7 +138,7 @@ class RetentionWorker:
         settled = [one for one in binned if one.deleted is not None and one.deleted <= settled_before]
         going = _first(sorted(settled, key=lambda one: one.deleted or now), needed)
         await self._change(going, state=REMOVING)
-        # What is not in the bin for long will go by the same rule, and then there is room.
+        # Sessions that are new in the bin will be removed by the same rule, and free their space.
         needed -= sum(one.bytes for one in binned if one in going or one not in settled)
         if needed <= 0:
             return
@@ -162,7 +162,7 @@ class RetentionWorker:
         self._notices.notify("storage", "caution", text)
 
     async def _unprotected(self) -> list[_Candidate]:
-        """Sessions that a rule may take, oldest first."""
+        """Sessions that a rule may delete, oldest first."""
         tagged = select(SessionTag.session_id)
         return await self._find(
             col(SessionRow.state) != "recording",
@@ -186,7 +186,7 @@ class RetentionWorker:
         chosen = col(SessionRow.id).in_([one.id for one in sessions]), col(SessionRow.state) != "recording"
         await self._store.execute(update(SessionRow).where(*chosen).values(values))
 
-    async def _doomed(self) -> Sequence[int | None]:
+    async def _find_removed(self) -> Sequence[int | None]:
         def read() -> Sequence[int | None]:
             with self._store.read() as database:
                 return database.exec(select(SessionRow.id).where(SessionRow.state == REMOVING)).all()
@@ -205,24 +205,24 @@ class RetentionWorker:
 
         await self._store.write(remove_rest)
 
-    async def _give_back(self) -> None:
-        def give_back_some(connection: Connection) -> int:
+    async def _free_pages(self) -> None:
+        def free_some(connection: Connection) -> int:
             if connection.exec_driver_sql("PRAGMA auto_vacuum").scalar_one() != INCREMENTAL:
                 return 0
-            # The driver takes one step of such a statement only, and each step is one page.
+            # The driver runs one step of such a statement only, and each step frees one page.
             for _ in range(PAGES_AT_ONCE):
                 connection.exec_driver_sql("PRAGMA incremental_vacuum(1)")
             free_pages: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
             return free_pages
 
-        before, free_pages = None, await self._store.write(give_back_some)
+        before, free_pages = None, await self._store.write(free_some)
         while free_pages > 0 and free_pages != before:
             await asyncio.sleep(PAUSE)
-            before, free_pages = free_pages, await self._store.write(give_back_some)
+            before, free_pages = free_pages, await self._store.write(free_some)
 
 
 def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:
-    """The first ones that together have so many bytes."""
+    """The first sessions that together have this many bytes."""
     taken: list[_Candidate] = []
     for one in sessions:
         if needed <= 0:

@@ -12,7 +12,7 @@ from server.features.sessions.bookmarks import Bookmarks
 from server.features.sessions.catalogue import Catalogue
 from server.features.sessions.recorder import Recorder, RecordingRefusedError
 from server.features.sessions.recording import Recording
-from server.features.sessions.replay import HISTORY_MAX, read_stretch
+from server.features.sessions.replay import HISTORY_MAX, read_blocks_between
 from server.features.sessions.retention import RetentionWorker
 from server.features.sessions.schemas import (
     Bookmark,
@@ -203,9 +203,9 @@ def get_blocks(
     if end < start:
         raise InvalidError(f"The end, {end:g} s, lies before the start, {start:g} s.")
     zero = recording.row.started_steady
-    stretch = read_stretch(recording, zero + start, zero + end, history)
-    headers = {LEFT_OUT: str(stretch.left_out), "Cache-Control": "no-store"}
-    return Response(stretch.data, media_type="application/octet-stream", headers=headers)
+    found = read_blocks_between(recording, zero + start, zero + end, history)
+    headers = {LEFT_OUT: str(found.left_out), "Cache-Control": "no-store"}
+    return Response(found.data, media_type="application/octet-stream", headers=headers)
 
 
 @router.operation("GET /storage", Need.VIEWER)

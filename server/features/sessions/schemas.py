@@ -17,17 +17,16 @@ Tag = Annotated[
 
 
 class Session(BaseModel):
-    """One recording; "interrupted" where the server ended without closing it: what was stored is kept."""
+    """One recording; "interrupted" if the server ended without closing it: its stored samples remain."""
 
     id: int
     name: str
     note: str
     tags: list[str] = Field(description="in alphabetical order")
-    markers: int = Field(description="how many moments are marked")
+    markers: int = Field(description="number of bookmarks")
     state: State
     origin: Origin = Field(
-        description="who began it: an operator, arming, a scenario in real time, one in simulated time; "
-        "or it was imported"
+        description="started by an operator, arming, a scenario in real time or in simulated time; or imported"
     )
     started: datetime = Field(description="UTC")
     ended: datetime | None = Field(description="UTC; null while it records")
@@ -41,8 +40,8 @@ class Session(BaseModel):
     software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
     scenario_name: str = Field(description="empty without a scenario")
     seed: int | None
-    kept: bool = Field(description="the retention rule leaves it alone")
-    deleted: datetime | None = Field(description="UTC; since when it has been in the bin")
+    kept: bool = Field(description="protected from the rules of retention")
+    deleted: datetime | None = Field(description="UTC; time of its deletion, while it is in the bin")
 
 
 class Bookmark(BaseModel):
@@ -55,7 +54,7 @@ class Bookmark(BaseModel):
 
 
 class SessionGap(BaseModel):
-    """Samples that are not in the session: `missed` of them, noticed at `time`."""
+    """Samples that are missing in the session: `missed` of them, noticed at `time`."""
 
     topic: str
     kind: Literal["missed", "restarted", "not stored", "damaged"]
@@ -106,7 +105,7 @@ class SessionChanges(BaseModel):
 
 
 class NewSession(BaseModel):
-    """A session that is to begin; without a name it is called after its moment."""
+    """A new session; its default name is its date and time."""
 
     model_config = ConfigDict(extra="forbid")
     name: Name = ""
@@ -118,7 +117,7 @@ Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
 class NewBookmark(BaseModel):
-    """A moment to be marked: s since the session's start, or null for now."""
+    """A new bookmark; its time in s since the session's start, or null for now."""
 
     model_config = ConfigDict(extra="forbid")
     time: Moment | None = None

@@ -1,4 +1,4 @@
-"""The row of a session: made for a new one, found, and as the interface shows it."""
+"""The row of a session: creation, search, and its form in the interface."""
 
 import json
 from collections.abc import Sequence
@@ -20,11 +20,11 @@ from server.platform.settings import Settings
 from server.platform.store import Reader
 
 REMOVING = "removing"
-"""State of a row whose samples are being removed: to everybody it is gone already."""
+"""State of a row whose samples are being removed."""
 IMPORTING = "importing"
-"""State of a row whose samples are not all here yet."""
+"""State of a row whose samples are still being imported."""
 HIDDEN = (REMOVING, IMPORTING)
-"""States of rows that are no sessions to anybody but who removes or imports them."""
+"""States of rows that count as sessions only for retention and import."""
 
 
 class UnknownSessionError(NotFoundError):
@@ -47,7 +47,7 @@ def new_row(
     *,
     origin: Origin = "operator",
 ) -> SessionRow:
-    """A session that begins now; without a name it is called after its moment. Raises OSError.
+    """A session that begins now; its default name is its date and time. Raises OSError.
 
     It reads files: not for the event loop.
     """
@@ -74,7 +74,7 @@ def new_row(
 
 
 def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Session:
-    """The session that a row of the database is."""
+    """The session of a row."""
     values = row.model_dump(include=set(Session.model_fields) - {"started", "ended", "deleted"})
     return Session(
         **values,

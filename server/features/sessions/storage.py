@@ -15,26 +15,26 @@ GIGABYTE = 1_000_000_000
 
 
 class Storage(BaseModel):
-    """Bytes of the disk that holds the data folder, and the rules by which sessions go by themselves."""
+    """Use of the disk that holds the data folder, and the rules of retention."""
 
     database: int = Field(description="bytes of the database's files")
-    reusable: int = Field(description="of these, bytes that nothing is in any more")
-    exports: int = Field(description="bytes of the files that were exported")
-    free: int = Field(description="bytes that may still be written on this disk")
+    reusable: int = Field(description="of these, bytes that are free for reuse")
+    exports: int = Field(description="bytes of the exported files")
+    free: int = Field(description="free bytes of this disk")
     total: int = Field(description="bytes of this disk")
-    sessions: int = Field(description="how many are kept, without the bin")
+    sessions: int = Field(description="number of sessions, without the bin")
     sessions_bytes: int
-    bin: int = Field(description="how many are in the bin")
+    bin: int = Field(description="number of sessions in the bin")
     bin_bytes: int
     undo_days: float = Field(description="days in the bin before a session is removed")
-    keep_days: float = Field(description="days after which a session goes into the bin by itself; 0: never")
+    keep_days: float = Field(description="days after which a session is moved to the bin; 0: never")
     keep_free: float = Field(
         description="GB that are kept free by removing the oldest sessions; 0: no such rule"
     )
 
 
 def measure(store: Store, settings: Settings) -> Storage:
-    """Look at the disk and the database. Raises StoreError."""
+    """Measure the disk and the database. Raises StoreError."""
     folder, rules = settings.data, settings.sessions
     binned = col(SessionRow.deleted).is_not(None)
     query = select(binned, func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))

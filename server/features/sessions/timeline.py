@@ -10,20 +10,20 @@ from sqlmodel import col, select
 
 from robot_runtime.contract.documents import Event, Severity
 from robot_runtime.contract.topics import TOPICS
-from server.features.sessions.bookmarks import show_marks
+from server.features.sessions.bookmarks import describe_bookmarks
 from server.features.sessions.recording import Recording
 from server.features.sessions.schemas import Bookmark, State
 from server.features.sessions.session import from_row
 from server.platform.models import BookmarkRow, Chunk
 
 EVENTS_MAX = 2000
-HOLE_SECONDS = 3.0
-"""The robot's state is sent at least once a second; this long without it, nothing of the robot came."""
+SILENCE_SECONDS = 3.0
+"""The robot's state is sent at least once a second; a longer time without it counts as silence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Something that happened; `time` in s since the session's start, `kind` one word for programs."""
+    """An event; `time` in s since the session's start, `kind` one word for programs."""
 
     time: float
     kind: str
@@ -31,8 +31,8 @@ class Moment:
     text: str
 
 
-class Hole(BaseModel):
-    """A time without a sample of the robot's state; s since the session's start."""
+class StateSilence(BaseModel):
+    """A time without samples of the robot's state; s since the session's start."""
 
     start: float
     end: float
@@ -48,7 +48,7 @@ class Timeline(BaseModel):
     duration: float = Field(description="s, up to the last samples that are stored")
     events: list[Moment] = Field(description=f"in order of time, the first {EVENTS_MAX}")
     markers: list[Bookmark] = Field(description="in order of time")
-    holes: list[Hole]
+    holes: list[StateSilence]
 
 
 def read_timeline(recording: Recording) -> Timeline:
@@ -56,7 +56,7 @@ def read_timeline(recording: Recording) -> Timeline:
     row = recording.row
     with recording.read() as database:
         markers = database.exec(select(BookmarkRow).where(BookmarkRow.session_id == row.id)).all()
-        stretches = database.exec(
+        spans = database.exec(
             select(Chunk.first_time, Chunk.last_time)
             .where(Chunk.session_id == row.id, Chunk.topic == "state")
             .order_by(col(Chunk.number))
@@ -69,8 +69,8 @@ def read_timeline(recording: Recording) -> Timeline:
         started_steady=row.started_steady,
         duration=session.duration,
         events=read_events(recording, EVENTS_MAX),
-        markers=show_marks(markers, row.started_steady),
-        holes=_holes(stretches, row.started_steady, row.duration),
+        markers=describe_bookmarks(markers, row.started_steady),
+        holes=_find_silences(spans, row.started_steady, row.duration),
     )
 
 
@@ -86,13 +86,13 @@ def read_events(recording: Recording, most: int) -> list[Moment]:
     return sorted(found, key=lambda one: one.time)[:most]
 
 
-def _holes(stretches: Sequence[tuple[float, float]], start: float, duration: float) -> list[Hole]:
-    """The times between these stretches that are long enough; all in s of one clock."""
-    if not stretches:
+def _find_silences(spans: Sequence[tuple[float, float]], start: float, duration: float) -> list[StateSilence]:
+    """The long times between these spans; all in s of one clock."""
+    if not spans:
         return []
-    edges = [(start, start), *stretches, (start + duration, start + duration)]
+    edges = [(start, start), *spans, (start + duration, start + duration)]
     return [
-        Hole(start=end - start, end=begin - start)
+        StateSilence(start=end - start, end=begin - start)
         for (_, end), (begin, _) in pairwise(edges)
-        if begin - end > HOLE_SECONDS
+        if begin - end > SILENCE_SECONDS
     ]

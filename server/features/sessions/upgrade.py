@@ -1,7 +1,6 @@
-"""Samples that were recorded under other definitions, rewritten to those of this version, field by field.
+"""Rewrites samples of other definitions to those of this version, field by field.
 
-A number that nobody measured is not made up in words: a document that lacks one is left out. In rows, which
-have no place for "unknown", it is 0.
+A document that lacks a required number is left out. In rows, which cannot express "unknown", it is 0.
 """
 
 from collections.abc import Mapping
@@ -15,7 +14,7 @@ from robot_runtime.contract.topics import Topic
 
 
 class NoCounterpartError(ValueError):
-    """A document that this version has no way to say."""
+    """A document that this version cannot express."""
 
 
 def rewrite_rows(rows: bytes, recorded: Mapping[str, Any], topic: Topic) -> bytes:

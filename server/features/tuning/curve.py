@@ -56,7 +56,7 @@ class TuningCurve:
         return self.times, self.set_points, self.values, self.outputs
 
 
-class Gathering:
+class SampleBuffer:
     """Takes in, block by block, what a run on this loop needs."""
 
     def __init__(self, loop: str) -> None:

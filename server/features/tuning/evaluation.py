@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from server.features.tuning.curve import Gathering, TuningCurve
+from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figures import measure_response
-from server.features.tuning.relay import SAME, find_ultimate
+from server.features.tuning.relay import TIME_TOLERANCE, measure_limit_cycle
 from server.features.tuning.schemas import RelayStart, RunState, StepStart
 
 LEAD = 3.0
@@ -14,7 +14,7 @@ LEAD = 3.0
 
 def measure_run(
     experiment: StepStart | RelayStart,
-    gathering: Gathering,
+    samples: SampleBuffer,
     starts: Mapping[str, float],
     state: RunState,
     problem: str,
@@ -25,12 +25,12 @@ def measure_run(
     """
     began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
     if experiment.kind == "relay":
-        return _relay(experiment, gathering, starts, began, ended, problem)
+        return _relay(experiment, samples, starts, began, ended, problem)
     step = starts.get("running", began)
-    curve = gathering.curve.between(max(began, step - LEAD), ended, step)
+    curve = samples.curve.between(max(began, step - LEAD), ended, step)
     if state != "complete":
         return {}, curve, problem
-    figures = measure_response(curve, gathering, experiment.loop, step, ended)
+    figures = measure_response(curve, samples, experiment.loop, step, ended)
     if not figures:
         return {}, curve, "No ticks of the loop came during the run."
     return {"figures": {name: figure.model_dump() for name, figure in figures.items()}}, curve, problem
@@ -38,18 +38,18 @@ def measure_run(
 
 def _relay(
     experiment: RelayStart,
-    gathering: Gathering,
+    samples: SampleBuffer,
     starts: Mapping[str, float],
     began: float,
     ended: float,
     problem: str,
 ) -> tuple[dict[str, Any], TuningCurve, str]:
     # The relay ends in its last tick, a step before the tick in which the set point is the usual one again.
-    curve = gathering.curve.between(began, ended + SAME, began)
+    curve = samples.curve.between(began, ended + TIME_TOLERANCE, began)
     if problem or "running" not in starts:
         return {}, curve, problem
     try:
-        cycle = find_ultimate(curve, starts["running"] - began, experiment.hysteresis)
+        cycle = measure_limit_cycle(curve, starts["running"] - began, experiment.hysteresis)
     except ValueError as why:
         return {}, curve, f"Nothing could be measured: {why}."
     return {"cycle": cycle.model_dump()}, curve, ""

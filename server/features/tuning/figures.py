@@ -8,7 +8,7 @@ from server.features.metrics.figure import Figure
 from server.features.metrics.series import Floats, Series, effort, integral_absolute, rms, travel
 from server.features.metrics.step_response import StepResponse, measure_step
 from server.features.metrics.strokes import count_strokes
-from server.features.tuning.curve import Gathering, TuningCurve
+from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figure_definitions import is_angle, near
 
 STEADY = 0.5
@@ -16,14 +16,14 @@ STEADY = 0.5
 
 
 def measure_response(
-    curve: TuningCurve, gathering: Gathering, loop: str, began: float, ended: float
+    curve: TuningCurve, samples: SampleBuffer, loop: str, began: float, ended: float
 ) -> dict[str, Figure]:
     """All figures of a step at 0 s of the curve; fins count from `began` to `ended` (s, steady clock)."""
     series, set_points, outputs = _after_step(curve, loop)
     if series.times.size < 2:
         return {}
     final, end = float(set_points[-1]), float(series.times[-1])
-    whole = Series(np.array(curve.times), _shown(curve.values, loop))
+    whole = Series(np.array(curve.times), _in_shown_unit(curve.values, loop))
     share = measure_step(whole, 0.0, end, final)
     close = measure_step(whole, 0.0, end, final, near(loop))
     errors = set_points - series.values
@@ -36,18 +36,18 @@ def measure_response(
         "iae": Figure(value=integral_absolute(series.times, errors)),
         "effort": Figure(value=100 * effort(outputs)),
         "travel": Figure(value=travel(outputs)),
-        "fin_strokes": _strokes(gathering, began, ended),
+        "fin_strokes": _strokes(samples, began, ended),
     }
 
 
 def _after_step(curve: TuningCurve, loop: str) -> tuple[Series, Floats, Floats]:
     times = np.array(curve.times)
     after = times >= 0
-    values, set_points = _shown(curve.values, loop), _shown(curve.set_points, loop)
+    values, set_points = _in_shown_unit(curve.values, loop), _in_shown_unit(curve.set_points, loop)
     return Series(times[after], values[after]), set_points[after], np.array(curve.outputs)[after]
 
 
-def _shown(values: list[float], loop: str) -> Floats:
+def _in_shown_unit(values: list[float], loop: str) -> Floats:
     return np.array([degrees(one) for one in values] if is_angle(loop) else values)
 
 
@@ -71,9 +71,9 @@ def _step_figures(share: StepResponse | None, near: StepResponse | None) -> dict
     }
 
 
-def _strokes(gathering: Gathering, began: float, ended: float) -> Figure:
-    times = np.array(gathering.fin_times)
+def _strokes(samples: SampleBuffer, began: float, ended: float) -> Figure:
+    times = np.array(samples.fin_times)
     inside = (times >= began) & (times <= ended)
     if not inside.any():
         return Figure(value=None, words="No fin angles came during the run.")
-    return Figure(value=sum(count_strokes(np.array(angle)[inside]) for angle in gathering.fins))
+    return Figure(value=sum(count_strokes(np.array(angle)[inside]) for angle in samples.fins))

@@ -9,24 +9,24 @@ from server.features.tuning.curve import TuningCurve
 from server.features.tuning.rules import ultimate_gain
 from server.features.tuning.schemas import MeasuredLimitCycle
 
-SAME = 0.05
+TIME_TOLERANCE = 0.05
 """s by which a tick may bear another time than what it has caused; less than the time between two ticks."""
-UNLIKE = 0.2
+SPREAD_MAX = 0.2
 """Share by which cycles may differ from each other, and the halves of one, before that is remarked on."""
 
 
-def find_ultimate(curve: TuningCurve, began: float, hysteresis: float) -> MeasuredLimitCycle:
+def measure_limit_cycle(curve: TuningCurve, began: float, hysteresis: float) -> MeasuredLimitCycle:
     """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
 
     Each is the median over whole cycles, from one time that the relay turns to its greater command to the
     next. Raises ValueError where there is no whole cycle, or it does not go beyond the hysteresis.
     """
     times, values, outputs = (np.array(one) for one in (curve.times, curve.values, curve.outputs))
-    counts = outputs[times >= began - SAME]
+    counts = outputs[times >= began - TIME_TOLERANCE]
     bias = float(counts.max() + counts.min()) / 2 if counts.size else 0.0
     greater = outputs > bias
     turns = np.flatnonzero(greater[1:] & ~greater[:-1]) + 1
-    turns = turns[times[turns] >= began - SAME]
+    turns = turns[times[turns] >= began - TIME_TOLERANCE]
     if turns.size < 2:
         raise ValueError("there is no whole cycle")
     cycles = [slice(first, last) for first, last in pairwise(turns)]
@@ -50,12 +50,12 @@ def find_ultimate(curve: TuningCurve, began: float, hysteresis: float) -> Measur
 
 def _remarks(periods: Floats, swings: Floats, asymmetry: float) -> list[str]:
     remarks = []
-    if any(np.ptp(one) > UNLIKE * np.median(one) for one in (periods, swings)):
+    if any(np.ptp(one) > SPREAD_MAX * np.median(one) for one in (periods, swings)):
         remarks.append(
             "The cycles differ by more than 20 %: the water moves, or there are too few of them. "
             "Run it again."
         )
-    if abs(asymmetry) > UNLIKE:
+    if abs(asymmetry) > SPREAD_MAX:
         remarks.append(
             "One half of each cycle is much longer than the other, since the load is more than the bias can "
             "balance: the ultimate gain is too low then. Trim the robot, or choose a smaller amplitude."

@@ -15,12 +15,12 @@ from robot_runtime.contract.documents import ExperimentPhase
 from robot_runtime.errors import RefusedError
 from robot_runtime.transport.blocks import Block
 from server.features.parameters.changes import Changes
-from server.features.tuning.curve import Gathering
+from server.features.tuning.curve import SampleBuffer
 from server.features.tuning.figure_definitions import is_angle
 from server.features.tuning.runs import TuningStore
 from server.features.tuning.schemas import (
     ActiveTuning,
-    Force,
+    ControllerInForce,
     RelayStart,
     RunState,
     StepStart,
@@ -33,19 +33,19 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 
 log = logging.getLogger(__name__)
 
-SILENCE = 5.0
+SILENCE_SECONDS = 5.0
 """s without a word of the experiment, which speaks twice a second, after which it is lost."""
-LOOK_SECONDS = 1.0
+CHECK_SECONDS = 1.0
 PID = "pid"
 SERVER = "the server"
-OVER = ("complete", "stopped", "failed")
+ENDED = ("complete", "stopped", "failed")
 
 
 @dataclass(slots=True)
 class _Active:
     run: int
     experiment: StepStart | RelayStart
-    gathering: Gathering
+    samples: SampleBuffer
     began: float
     since: float
     heard: float
@@ -58,7 +58,7 @@ class _Active:
 
     @property
     def over(self) -> bool:
-        return self.phase in OVER
+        return self.phase in ENDED
 
     def describe(self) -> ActiveTuning:
         """As sent to the pages."""
@@ -97,7 +97,7 @@ class TuningRunner:
         self._occupied = occupied
         self._active: _Active | None = None
         self._starting = False
-        self._stray = False
+        self._orphaned = False
         self._last: TuningRun | None = None
         self._ending: asyncio.Task[None] | None = None
 
@@ -116,7 +116,7 @@ class TuningRunner:
             run = await self.runs.begin(experiment, _name(experiment, force), force, limits)
             now = self._clock.now()
             self._active = _Active(
-                run, experiment, Gathering(experiment.loop), began=now, since=now, heard=now
+                run, experiment, SampleBuffer(experiment.loop), began=now, since=now, heard=now
             )
             try:
                 await self._changes.command(who, experiment.command(run))
@@ -153,9 +153,9 @@ class TuningRunner:
         active = self._active
         if block.topic.name == "experiment":
             for document in json.loads(block.payload):
-                self._hear(document)
+                self._take_progress(document)
         elif active is not None and not active.over:
-            active.gathering.see(block)
+            active.samples.see(block)
 
     def announce(self) -> None:
         """Tell the state."""
@@ -164,14 +164,14 @@ class TuningRunner:
     async def run(self) -> None:
         """Look after the run that is on, for ever."""
         while True:
-            await asyncio.sleep(LOOK_SECONDS)
+            await asyncio.sleep(CHECK_SECONDS)
             active = self._active
-            if active is not None and not active.over and self._clock.now() - active.heard > SILENCE:
+            if active is not None and not active.over and self._clock.now() - active.heard > SILENCE_SECONDS:
                 active.phase = "failed"
                 active.text = "The robot's runtime said nothing of it any more."
                 self._end(active)
-            if self._stray:
-                self._stray = False
+            if self._orphaned:
+                self._orphaned = False
                 with suppress(RefusedError, RuntimeSilentError):
                     await self._changes.command(SERVER, EndExperimentCommand())
 
@@ -192,11 +192,11 @@ class TuningRunner:
         if (why := self._occupied()) is not None:
             raise RefusedError(why)
 
-    def _hear(self, document: dict[str, Any]) -> None:
+    def _take_progress(self, document: dict[str, Any]) -> None:
         active = self._active
         if active is None or document["number"] != active.run:
             # Of a server that was killed, or of a start that this one did not hear the answer to.
-            self._stray = self._stray or document["phase"] not in OVER
+            self._orphaned = self._orphaned or document["phase"] not in ENDED
             return
         if active.over:
             return
@@ -209,7 +209,7 @@ class TuningRunner:
         active.cycles, active.text = document["cycles"], document["text"]
         active.starts.setdefault(active.phase, active.since)
         active.began = min(active.starts.values())
-        if document["phase"] in OVER:
+        if document["phase"] in ENDED:
             self._end(active)
         self.announce()
 
@@ -224,7 +224,7 @@ class TuningRunner:
             from server.features.tuning.evaluation import measure_run
 
             found, curve, problem = await asyncio.to_thread(
-                measure_run, active.experiment, active.gathering, active.starts, state, problem
+                measure_run, active.experiment, active.samples, active.starts, state, problem
             )
             state = "failed" if problem and state == "complete" else state
             await self.runs.end(active.run, state, problem, found, curve)
@@ -241,18 +241,20 @@ class TuningRunner:
             self.announce()
 
 
-def _name(experiment: StepStart | RelayStart, force: Force) -> str:
+def _name(experiment: StepStart | RelayStart, force: ControllerInForce) -> str:
     if experiment.kind == "step":
-        start, target = (_place(value, experiment.loop) for value in (experiment.start, experiment.target))
+        start, target = (_format(value, experiment.loop) for value in (experiment.start, experiment.target))
         return f"{force.title}, {start} to {target}"
-    return f"Relay ±{100 * experiment.amplitude:g} % at {_place(experiment.set_point, experiment.loop)}"
+    return f"Relay ±{100 * experiment.amplitude:g} % at {_format(experiment.set_point, experiment.loop)}"
 
 
-def _place(value: float, loop: str) -> str:
+def _format(value: float, loop: str) -> str:
     return f"{degrees(value):.0f}°" if is_angle(loop) else f"{value:g} m"
 
 
-def _in_force(state: Mapping[str, Any], loop: str) -> tuple[Force, dict[str, tuple[float, float]]]:
+def _in_force(
+    state: Mapping[str, Any], loop: str
+) -> tuple[ControllerInForce, dict[str, tuple[float, float]]]:
     """The loop's controller, and what its PID's gains may be.
 
     Raises RefusedError where no run may begin on it.
@@ -264,7 +266,7 @@ def _in_force(state: Mapping[str, Any], loop: str) -> tuple[Force, dict[str, tup
         raise RefusedError(f"This robot's runtime steers no loop {loop!r}.")
     choices = {choice["name"]: choice for choice in one["controllers"]}
     chosen = choices[one["controller"]]
-    force = Force(
+    force = ControllerInForce(
         controller=chosen["name"],
         title=chosen["title"],
         gains={gain["name"]: gain["value"] for gain in chosen["gains"]},

@@ -15,7 +15,7 @@ from server.features.sessions.session import SessionStateError
 from server.features.tuning.curve import TuningCurve
 from server.features.tuning.rules import propose
 from server.features.tuning.schemas import (
-    Force,
+    ControllerInForce,
     RelayStart,
     RunState,
     StepStart,
@@ -49,7 +49,7 @@ class TuningStore:
         newest = experiment.order_by(col(TuningRunRow.id).desc()).limit(LISTED_MOST)
         with self._store.read() as database:
             rows = database.execute(newest).mappings().all()
-        return [TuningRun(**_shown(TuningRunRow(**row, curve=b""))) for row in rows]
+        return [TuningRun(**_summarize(TuningRunRow(**row, curve=b""))) for row in rows]
 
     def detail(self, run: int) -> TuningRunDetail:
         """One run with its curve."""
@@ -57,7 +57,7 @@ class TuningStore:
             row = database.exec(select_rows(TuningRunRow).where(col(TuningRunRow.id) == run)).one_or_none()
         if row is None:
             raise UnknownTuningRunError(run)
-        shown = TuningRun(**_shown(row))
+        shown = TuningRun(**_summarize(row))
         limits = json.loads(row.parameters)["limits"]
         proposals = [] if shown.cycle is None else propose(shown.loop, shown.cycle, limits)
         return TuningRunDetail(
@@ -66,7 +66,9 @@ class TuningStore:
             proposals=proposals,
         )
 
-    async def begin(self, experiment: StepStart | RelayStart, name: str, force: Force, limits: Any) -> int:
+    async def begin(
+        self, experiment: StepStart | RelayStart, name: str, force: ControllerInForce, limits: Any
+    ) -> int:
         """A run that begins now; its number. `limits` are those of the PID's gains, by name."""
         values = {
             "name": name,
@@ -126,14 +128,14 @@ class TuningStore:
         await self._store.execute(update(TuningRunRow).where(running).values(values))
 
 
-def _shown(row: TuningRunRow) -> dict[str, Any]:
+def _summarize(row: TuningRunRow) -> dict[str, Any]:
     found = json.loads(row.figures)
     force = json.loads(row.parameters)
     return {
         **row.model_dump(include={"id", "name", "kind", "loop", "state", "problem"}),
         "started": datetime.fromtimestamp(row.started, UTC),
         "settings": json.loads(row.settings),
-        "force": {name: force[name] for name in Force.model_fields},
+        "force": {name: force[name] for name in ControllerInForce.model_fields},
         "figures": found.get("figures", {}),
         "cycle": found.get("cycle"),
     }

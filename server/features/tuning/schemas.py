@@ -80,7 +80,7 @@ def _command(cls: type[ExperimentCommand], limits: Limits, run: int) -> Experime
 Start = Annotated[StepStart | RelayStart, Field(discriminator="kind")]
 
 
-class Force(BaseModel):
+class ControllerInForce(BaseModel):
     """The controller in force, with its gains."""
 
     controller: str
@@ -123,7 +123,7 @@ class TuningRun(BaseModel):
     state: RunState
     problem: str = Field(description="why it did not complete")
     settings: dict[str, Any] = Field(description="as it was started")
-    force: Force
+    force: ControllerInForce
     figures: dict[str, Figure] = Field(description="of a step response, by name")
     cycle: MeasuredLimitCycle | None = Field(description="of a relay experiment")
 

@@ -95,7 +95,7 @@ def test_losses_and_gaps_are_counted(store: Store, settings: Settings) -> None:
     (one,) = compare(store, session).sessions
     assert one.figures["frames_lost"].value == 7
     assert one.figures["gaps"].value == 1
-    assert one.figures["gaps"].words == "Samples that are missing: 30 of depth."
+    assert one.figures["gaps"].words == "Missing samples: 30 of depth."
 
 
 def test_moments_are_where_they_are(store: Store, session: int) -> None:
@@ -129,7 +129,7 @@ def test_a_session_without_the_moment_says_so(store: Store, settings: Settings, 
     problems = {
         "armed": "The robot was never armed in this session.",
         "set_point": "The set point never changed while the robot was armed.",
-        "marker": "This session has no marker “turn”.",
+        "marker": "This session has no bookmark “turn”.",
     }
     for by, words in problems.items():
         one = compare(store, never, align={"by": by, "marker": "turn"}).sessions[0]

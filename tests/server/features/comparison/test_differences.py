@@ -1,14 +1,15 @@
 """What was different about sessions: the parameters that were in force while armed."""
 
 from server.features.comparison.differences import CHANGED, find_differences
-from server.features.comparison.moments import ControlHistory, Span, Tuned
+from server.features.comparison.moments import ControlHistory, ParameterValues, Span
 from server.platform.models import SessionRow
 
 
 def history(*tuned: tuple[float, float], armed: tuple[Span, ...] = (Span(10, 20),)) -> ControlHistory:
     """With these values of one parameter from these times on."""
     parameters = tuple(
-        Tuned(time, {"depth.pid.kp": kp, "vision.colour": "red", "loud": True}) for time, kp in tuned
+        ParameterValues(time, {"depth.pid.kp": kp, "vision.colour": "red", "loud": True})
+        for time, kp in tuned
     )
     return ControlHistory(armed, armed_at_start=False, controls=(), state={}, parameters=parameters)
 

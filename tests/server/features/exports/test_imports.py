@@ -174,12 +174,12 @@ BAD = {
     "a bomb": (bomb, True, "Chunk 0 of debug does not unpack"),
     "documents that are none": (nonsense, True, "Chunk 0 of debug does not hold documents"),
     "a time that is none": (endless, True, "Chunk 0 of debug has a time"),
-    "a newer format": (tell(version=2), True, "It is of format 2, and this version of µ-CAT reads format 1"),
-    "another program's": (tell(format="x"), True, "does not say that it is an archive"),
+    "a newer format": (tell(version=2), True, "It has format 2; this version of µ-CAT reads format 1"),
+    "another program's": (tell(format="x"), True, "is not that of an archive"),
     "no JSON": (lambda members: members.update({SESSION: b"{"}), True, "session.json is not JSON"),
     "no session": (lambda members: members.pop(SESSION), True, "no archive of a session"),
-    "a path upwards": (rename("chunks/depth", "chunks/../../x"), True, "'chunks/../../x', which no archive"),
-    "an absolute path": (rename("chunks/depth", "/etc/passwd"), True, "'/etc/passwd', which no archive"),
+    "a path upwards": (rename("chunks/depth", "chunks/../../x"), True, "'chunks/../../x', which is no part"),
+    "an absolute path": (rename("chunks/depth", "/etc/passwd"), True, "'/etc/passwd', which is no part"),
     "a topic that is not told": (rename("chunks/depth", "chunks/other"), True, "chunks of other, which"),
     "an identifier that is none": (tell(identifier="../x"), True, "session.identifier"),
     "a state that is none": (tell(state="recording"), True, "session.state"),
@@ -187,7 +187,7 @@ BAD = {
     "rows of another size": (
         tell(topics={"depth": {"meaning": "", "kind": "rows", "row_bytes": 9, "fields": []}}),
         True,
-        "not as long as its fields|which its session.json does not know",
+        "does not match its fields|which its session.json does not know",
     ),
 }
 
@@ -211,7 +211,7 @@ def test_what_is_no_archive_is_refused(archive: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(archive) as old, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():
             new.writestr(name, old.read(name))
-    with pytest.raises(ArchiveError, match="packed or encrypted"):
+    with pytest.raises(ArchiveError, match="compressed or encrypted"):
         examine(packed)
     examine(archive)
 

@@ -18,9 +18,9 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, read_blocks, read_rows, row
 from server.features.sessions.chunks import encode_rows
 from server.features.sessions.recording import Recording
-from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, read_stretch
+from server.features.sessions.replay import LISTED_CHUNKS, RANGE_MAX, read_blocks_between
 from server.features.sessions.session import find_row
-from server.features.sessions.timeline import Hole, read_timeline
+from server.features.sessions.timeline import StateSilence, read_timeline
 from server.platform.errors import InvalidError
 from server.platform.models import BookmarkRow
 from server.platform.schema import prepare
@@ -91,7 +91,7 @@ def dive(store: Store, settings: Settings) -> Recording:
 
 
 def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
-    stretch = read_stretch(dive, 102.5, 104.1)
+    stretch = read_blocks_between(dive, 102.5, 104.1)
     numbers = [int(record.time) for _, record in depths(stretch.data)]
     assert numbers == list(range(125, 205))
     assert [one["text"] for one in told(stretch.data, "debug")] == [f"line {n}" for n in range(25, 41)]
@@ -100,7 +100,7 @@ def test_a_stretch_is_cut_to_its_range(dive: Recording) -> None:
 
 
 def test_blocks_say_the_numbers_and_come_in_order_of_time(dive: Recording) -> None:
-    blocks = read_blocks(read_stretch(dive, 102.5, 104.1).data)
+    blocks = read_blocks(read_blocks_between(dive, 102.5, 104.1).data)
     assert [(one.first, one.count) for one in blocks if one.topic.name == "depth"] == [
         (125, 25),
         (150, 50),
@@ -115,7 +115,7 @@ def test_blocks_say_the_numbers_and_come_in_order_of_time(dive: Recording) -> No
 
 def test_stretches_side_by_side_give_every_sample_once(dive: Recording) -> None:
     edges = [100.0, 100.02, 101.999, 102.0, 105.5, 110.0]
-    joined = b"".join(read_stretch(dive, start, end).data for start, end in pairwise(edges))
+    joined = b"".join(read_blocks_between(dive, start, end).data for start, end in pairwise(edges))
     assert [int(record.time) for _, record in depths(joined)] == list(range(500))
     assert len(told(joined, "debug")) == 100
     assert len(told(joined, "state")) == 10
@@ -125,22 +125,24 @@ def test_a_seek_brings_what_was_in_force(store: Store, settings: Settings) -> No
     batches = [[state_block(0, time=100.0, set_point_default=0.7), lines(0, 1)]]
     batches += [[depth_block(50 * n, 50)] for n in range(20)]
     recording = read(store, record(store, settings, *batches))
-    stretch = read_stretch(recording, 115.0, 116.0, history=2.0)
+    stretch = read_blocks_between(recording, 115.0, 116.0, history=2.0)
     assert [one["set_point_default"] for one in told(stretch.data, "state")] == [0.7]
     assert [one["text"] for one in told(stretch.data, "debug")] == ["line 0"]
     assert [int(record.time) for _, record in depths(stretch.data)] == list(range(650, 800))
     assert BY_NAME["depth"].charted > 0
     # Without a history, only what lies in the range.
-    assert {one.topic.name for one in read_blocks(read_stretch(recording, 115.0, 116.0).data)} == {"depth"}
+    assert {one.topic.name for one in read_blocks(read_blocks_between(recording, 115.0, 116.0).data)} == {
+        "depth"
+    }
 
 
 def test_a_seek_into_a_hole_brings_the_newest_sample_before_it(store: Store, settings: Settings) -> None:
     batches = [[depth_block(0, 50)], [depth_block(50, 50), state_block(0)], [depth_block(1500, 50)]]
     recording = read(store, record(store, settings, *batches))
-    found = depths(read_stretch(recording, 110.0, 112.0, history=1.0).data)
+    found = depths(read_blocks_between(recording, 110.0, 112.0, history=1.0).data)
     assert [int(record.time) for _, record in found] == [99]
     # At the very moment of a sample it is the one before that was in force; the sample itself comes next.
-    at = depths(read_stretch(recording, 100 + 50 * 0.02, 101.01, history=0.0).data)
+    at = depths(read_blocks_between(recording, 100 + 50 * 0.02, 101.01, history=0.0).data)
     assert [int(record.time) for _, record in at] == [49, 50]
 
 
@@ -154,32 +156,37 @@ def test_until_the_first_state_the_one_of_the_start_is_in_force(store: Store, di
     assert dive.row.id is not None
     recording = read(store, dive.row.id)
     seen = [
-        [one["set_point_default"] for one in told(read_stretch(recording, start, start, 0).data, "state")]
+        [
+            one["set_point_default"]
+            for one in told(read_blocks_between(recording, start, start, 0).data, "state")
+        ]
         for start in (99.9, 100.5)
     ]
     assert seen == [[0.3], [0.0]]
 
 
 def test_before_the_beginning_there_is_nothing(dive: Recording) -> None:
-    assert read_stretch(dive, 90.0, 99.0, history=300.0).data == b""
+    assert read_blocks_between(dive, 90.0, 99.0, history=300.0).data == b""
 
 
 def test_of_lines_the_last_ones_come(store: Store, settings: Settings) -> None:
     count = LISTED_CHUNKS + 50
     recording = read(store, record(store, settings, *[[lines(n, 1)] for n in range(count)]))
-    texts = [one["text"] for one in told(read_stretch(recording, 100 + count / 10, 140, 0).data, "debug")]
+    texts = [
+        one["text"] for one in told(read_blocks_between(recording, 100 + count / 10, 140, 0).data, "debug")
+    ]
     assert texts[-1] == f"line {count - 1}"
     assert LISTED_CHUNKS <= len(texts) < count
 
 
 def test_too_long_a_range_is_refused_with_its_limit(dive: Recording) -> None:
     with pytest.raises(InvalidError, match="at most 120 s"):
-        read_stretch(dive, 100.0, 100.1 + RANGE_MAX)
+        read_blocks_between(dive, 100.0, 100.1 + RANGE_MAX)
 
 
 def test_damaged_chunks_are_left_out_and_counted(store: Store, dive: Recording) -> None:
     change(store, "UPDATE chunk SET data = x'00' WHERE topic = 'depth' AND number = 2")
-    stretch = read_stretch(dive, 100.0, 110.0)
+    stretch = read_blocks_between(dive, 100.0, 110.0)
     assert [int(record.time) for _, record in depths(stretch.data)] == [*range(100), *range(150, 500)]
     assert stretch.left_out == 50
 
@@ -192,7 +199,7 @@ def test_rows_of_other_definitions_are_rewritten_by_name_and_scale(store: Store,
     fields[3]["unit"] = "K"
     assert dive.row.id is not None
     redefine(store, dive.row.id, "depth", fields)
-    stretch = read_stretch(read(store, dive.row.id), 100.0, 101.0)
+    stretch = read_blocks_between(read(store, dive.row.id), 100.0, 101.0)
     found = depths(stretch.data)
     assert [int(record.time) for _, record in found] == list(range(50))
     assert [record.depth for _, record in found] == pytest.approx([n / 100 for n in range(50)])
@@ -218,7 +225,7 @@ def test_rows_of_another_size_are_rewritten(store: Store, settings: Settings) ->
         connection.execute(text("UPDATE session SET topics = :topics"), {"topics": json.dumps(described)})
 
     asyncio.run(store.write(run))
-    found = depths(read_stretch(read(store, session), 100.0, 101.0).data)
+    found = depths(read_blocks_between(read(store, session), 100.0, 101.0).data)
     # What a field cannot hold becomes the nearest that it can.
     assert [record.depth for _, record in found] == pytest.approx([0.25, 32.767, -32.768])
 
@@ -236,7 +243,7 @@ def test_documents_with_missing_fields_get_stand_ins_or_are_left_out(
     stated_unsure = Block.of(BY_NAME["state"], 1, 1, json.dumps([unsure]).encode())
     session = record(store, settings, [stated, stated_unsure])
     change(store, "UPDATE session SET version = 'older'")
-    stretch = read_stretch(read(store, session), 100.0, 101.0)
+    stretch = read_blocks_between(read(store, session), 100.0, 101.0)
     (state,) = told(stretch.data, "state")
     assert (state["card"], state["connection"], state["refusals"]) == (None, "", [])
     assert "forgotten" not in state
@@ -244,10 +251,10 @@ def test_documents_with_missing_fields_get_stand_ins_or_are_left_out(
 
 
 def test_documents_of_this_version_pass_unchanged(dive: Recording, store: Store) -> None:
-    before = told(read_stretch(dive, 100.0, 110.0).data, "state")
+    before = told(read_blocks_between(dive, 100.0, 110.0).data, "state")
     change(store, "UPDATE session SET version = 'older'")
     assert dive.row.id is not None
-    assert told(read_stretch(read(store, dive.row.id), 100.0, 110.0).data, "state") == before
+    assert told(read_blocks_between(read(store, dive.row.id), 100.0, 110.0).data, "state") == before
 
 
 def thumbnails(first: int, *times: float) -> list[Block]:
@@ -261,7 +268,7 @@ def thumbnails(first: int, *times: float) -> list[Block]:
 def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
     batches = [thumbnails(0, 100.0, 100.4), thumbnails(2, 102.0, 102.4)]
     recording = read(store, record(store, settings, *batches))
-    stretch = read_stretch(recording, 102.2, 103.0, history=0.0)
+    stretch = read_blocks_between(recording, 102.2, 103.0, history=0.0)
     assert [(one.topic.name, one.count, one.payload) for one in read_blocks(stretch.data)] == [
         ("picture", 1, row(102.0, b"jpeg 2")),
         ("picture", 1, row(102.4, b"jpeg 3")),
@@ -272,7 +279,7 @@ def test_a_topic_that_is_unknown_now_is_counted(store: Store, dive: Recording) -
     change(store, """UPDATE session SET topics = replace(topics, '"depth":', '"sonar":')""")
     change(store, "UPDATE chunk SET topic = 'sonar' WHERE topic = 'depth'")
     assert dive.row.id is not None
-    stretch = read_stretch(read(store, dive.row.id), 100.0, 110.0)
+    stretch = read_blocks_between(read(store, dive.row.id), 100.0, 110.0)
     assert depths(stretch.data) == []
     assert stretch.left_out == 500
 
@@ -296,7 +303,7 @@ def test_the_timeline_has_events_markers_and_holes(store: Store, settings: Setti
     assert asdict(event) == {**asdict(one), "time": 102.0}
     assert one.time == 102.0 - STARTED_STEADY
     assert [(mark.time, mark.text) for mark in timeline.markers] == [(105.5 - STARTED_STEADY, "here")]
-    assert timeline.holes == [Hole(start=101 - STARTED_STEADY, end=111 - STARTED_STEADY)]
+    assert timeline.holes == [StateSilence(start=101 - STARTED_STEADY, end=111 - STARTED_STEADY)]
     assert timeline.started_steady == STARTED_STEADY
 
 
@@ -312,7 +319,7 @@ def test_over_http(settings: Settings) -> None:
     prepare(settings.data)
     with closing(Store(settings.data.database)) as store:
         session = record(store, settings, [depth_block(0, 500), state_block(0)])
-        wanted = read_stretch(read(store, session), 102.0, 103.0, 60.0)
+        wanted = read_blocks_between(read(store, session), 102.0, 103.0, 60.0)
 
     async def scenario(served: Served) -> None:
         start = 102.0 - STARTED_STEADY
@@ -344,4 +351,4 @@ def test_over_http(settings: Settings) -> None:
 
 def test_debug_lines_of_one_instant_stay_together(store: Store, settings: Settings) -> None:
     recording = read(store, record(store, settings, [debug_block(0, "a", "b", "c")]))
-    assert [one["text"] for one in told(read_stretch(recording, 100.5, 101.5).data, "debug")] == ["b"]
+    assert [one["text"] for one in told(read_blocks_between(recording, 100.5, 101.5).data, "debug")] == ["b"]

@@ -14,7 +14,7 @@ from robot_runtime.contract.topics import BY_NAME, SENT_BY
 from robot_runtime.transport.blocks import NUMBERS, Block, row
 from robot_runtime.transport.replay_cache import BacklogReply, ReplayCache, write_question
 from server.features.sessions.catalogue import Catalogue
-from server.features.sessions.resume import Missing, find_missing
+from server.features.sessions.resume import MissingSamples, find_missing
 from server.platform.models import Chunk, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -78,7 +78,7 @@ class Wreck:
         self.send(depth_block((first + 10) % NUMBERS, 5))
         self.send(depth_block((first + 15) % NUMBERS, 5), debug_block(1, "b"), truth_block(6, 3), heard=False)
 
-    async def resume(self) -> dict[str, Missing]:
+    async def resume(self) -> dict[str, MissingSamples]:
         """The next server starts."""
         left = await self.after.recorder.recover()
         assert left is not None

@@ -4,12 +4,12 @@ from typing import Any
 
 from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.packets import Motor
-from server.features.tuning.curve import Gathering
+from server.features.tuning.curve import SampleBuffer
 from server.features.tuning.evaluation import measure_run
 from server.features.tuning.schemas import MeasuredLimitCycle, RelayStart, StepStart
 from tests.runtime.control.flight import Flight
 
-OVER = ("complete", "stopped", "failed")
+ENDED = ("complete", "stopped", "failed")
 
 
 class Rig:
@@ -17,12 +17,12 @@ class Rig:
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
-        self._gathering = Gathering("depth")
+        self._gathering = SampleBuffer("depth")
         self._told: list[Experiment] = []
         bus = flight.robot.bus
         bus.on_row("control", self._tick)
         bus.on_row("motor", self._fins)
-        bus.on_document("experiment", self._hear)
+        bus.on_document("experiment", self._take_progress)
         flight.arm()
 
     def step(self, start: float, target: float, seconds: float) -> dict[str, float | None]:
@@ -58,10 +58,10 @@ class Rig:
         self.flight.robot.control.set_loop("depth", controller=controller, gains=gains)
 
     def _run(self, wanted: StepStart | RelayStart) -> dict[str, Any]:
-        self._gathering, self._told = Gathering("depth"), []
+        self._gathering, self._told = SampleBuffer("depth"), []
         command = wanted.command(1)
         self.flight.command(command.policy.name, **command.payload())
-        self.flight.until(lambda: bool(self._told) and self._told[-1].phase in OVER, 250.0)
+        self.flight.until(lambda: bool(self._told) and self._told[-1].phase in ENDED, 250.0)
         starts: dict[str, float] = {}
         for one in self._told:
             starts.setdefault(one.phase, one.since)
@@ -80,6 +80,6 @@ class Rig:
         for kept, angle in zip(self._gathering.fins, Motor.from_bytes(record).angle, strict=True):
             kept.append(angle)
 
-    def _hear(self, _: str, document: object) -> None:
+    def _take_progress(self, _: str, document: object) -> None:
         assert isinstance(document, Experiment)
         self._told.append(document)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from server.features.tuning.curve import Gathering, TuningCurve
+from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figure_definitions import meanings
 from server.features.tuning.figures import measure_response
-from server.features.tuning.relay import find_ultimate
+from server.features.tuning.relay import measure_limit_cycle
 from server.features.tuning.rules import RULES, propose, ultimate_gain
 
 FROM, TO, SECONDS, RATE = 0.4, 0.7, 20.0, 10.0
@@ -31,7 +31,7 @@ def second_order(damping: float, frequency: float) -> TuningCurve:
 
 
 def figures(curve: TuningCurve, loop: str = "depth") -> dict[str, float | None]:
-    measured = measure_response(curve, Gathering(loop), loop, 100.0, 100.0 + SECONDS)
+    measured = measure_response(curve, SampleBuffer(loop), loop, 100.0, 100.0 + SECONDS)
     return {name: figure.value for name, figure in measured.items()}
 
 
@@ -109,7 +109,7 @@ def test_the_ultimate_point_of_an_integrator_with_lag_and_delay(lag: float, dela
         low, high = (middle, high) if delay * middle + np.arctan(lag * middle) < pi / 2 else (low, middle)
     gain = 0.2
     known_gain = low * sqrt(1 + (lag * low) ** 2) / gain
-    found = find_ultimate(relayed(gain, lag, delay, 0.0, 0.5), 20.0, 0.0)
+    found = measure_limit_cycle(relayed(gain, lag, delay, 0.0, 0.5), 20.0, 0.0)
     assert found.period == pytest.approx(2 * pi / low, rel=0.1)
     assert found.ultimate_gain == pytest.approx(known_gain, rel=0.15)
     assert abs(found.asymmetry) < 0.05
@@ -121,7 +121,7 @@ def test_a_load_shows_as_asymmetry() -> None:
     for tick in range(400):
         side = 1.0 if (tick + 20) % 40 < 28 else -1.0
         curve.add(tick / 10, 0.6, 0.6 + 0.05 * np.sin(tick / 40 * 2 * pi), 0.1 + 0.5 * side)
-    found = find_ultimate(curve, 0.0, 0.01)
+    found = measure_limit_cycle(curve, 0.0, 0.01)
     assert found.asymmetry == pytest.approx(0.4)
     assert found.bias == pytest.approx(0.1)
     assert found.amplitude == pytest.approx(0.5)
@@ -131,7 +131,7 @@ def test_a_load_shows_as_asymmetry() -> None:
 
 def test_what_is_no_cycle_is_told() -> None:
     with pytest.raises(ValueError, match="no whole cycle"):
-        find_ultimate(TuningCurve([], [], [], []), 0.0, 0.01)
+        measure_limit_cycle(TuningCurve([], [], [], []), 0.0, 0.01)
     with pytest.raises(ValueError, match="beyond the hysteresis"):
         ultimate_gain(0.5, 0.01, 0.01)
 
@@ -147,7 +147,7 @@ def test_the_rules() -> None:
 
 
 def test_proposals_say_what_cannot_be_set() -> None:
-    cycle = find_ultimate(relayed(0.2, 1.0, 0.3, 0.0, 0.5), 20.0, 0.0)
+    cycle = measure_limit_cycle(relayed(0.2, 1.0, 0.3, 0.0, 0.5), 20.0, 0.0)
     limits = {"kp": (0.0, 50.0), "ki": (0.0, 20.0), "kd": (0.0, 0.1)}
     proposals = {one.rule: one for one in propose("depth", cycle, limits)}
     assert len(proposals) == len(RULES)

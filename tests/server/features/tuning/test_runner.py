@@ -13,7 +13,7 @@ from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, row
 from server.features.tuning.runs import TuningStore
-from server.features.tuning.schemas import Force, StepStart
+from server.features.tuning.schemas import ControllerInForce, StepStart
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.serving import Served, next_text, serve
@@ -272,7 +272,7 @@ def test_an_experiment_of_another_server_is_ended(settings: Settings) -> None:
 
 def test_a_killed_server_leaves_its_run_interrupted(store: Store) -> None:
     runs = TuningStore(store)
-    force = Force(controller="pid", title="PID", gains={})
+    force = ControllerInForce(controller="pid", title="PID", gains={})
     run = asyncio.run(runs.begin(StepStart(**STEP), "one", force, {}))
     asyncio.run(runs.mark_interrupted())
     kept = runs.detail(run)
