@@ -96,7 +96,7 @@ def test_stop_on_the_page_ends_it(page: Page) -> None:
     expect(armed).to_be_visible(timeout=STEP_MS)
     page.keyboard.press("Escape")
     ended = page.get_by_role("region", name="Last run")
-    expect(ended.get_by_text("Somebody pressed STOP.")).to_be_visible(timeout=STEP_MS)
+    expect(ended.get_by_text("STOP was pressed.")).to_be_visible(timeout=STEP_MS)
     expect(ended.get_by_text("cancelled", exact=True)).to_be_visible()
 
 

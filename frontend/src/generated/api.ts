@@ -1733,7 +1733,7 @@ export interface components {
         AcknowledgeCommand: Record<string, never>;
         /**
          * ActiveRun
-         * @description The run that is on; times in s of the scenario.
+         * @description The active run; times in s of the scenario.
          */
         ActiveRun: {
             /**
@@ -1769,7 +1769,7 @@ export interface components {
         };
         /**
          * ActiveTuning
-         * @description The run that is on.
+         * @description The active run.
          */
         ActiveTuning: {
             /**
@@ -2134,7 +2134,7 @@ export interface components {
         CommTestRunDetails: {
             /**
              * Cells
-             * @description as the document has them
+             * @description number in the document
              */
             cells: number;
             /** Cells Done */
@@ -2175,7 +2175,7 @@ export interface components {
             problem: string;
             /**
              * Rate Mean
-             * @description null as long as there is no cell
+             * @description null without cells
              */
             rate_mean: number | null;
             /** Rate Min */
@@ -2202,7 +2202,7 @@ export interface components {
         };
         /**
          * CommTestStart
-         * @description A document to run, and where.
+         * @description A document to run, and its place.
          */
         CommTestStart: {
             /**
@@ -2215,7 +2215,7 @@ export interface components {
         };
         /**
          * Compared
-         * @description One session, with all that is compared.
+         * @description One session of a comparison.
          */
         Compared: {
             /**
@@ -2245,17 +2245,17 @@ export interface components {
             name: string;
             /**
              * Offset
-             * @description s since its start of what is 0 s; null where it lacks that
+             * @description the moment that is 0 s, s since its start; null if it lacks that
              */
             offset: number | null;
             /**
              * Problem
-             * @description why it cannot be laid over the others; empty where it can
+             * @description why it cannot be aligned; empty if it can
              */
             problem: string;
             /**
              * Range
-             * @description what the figures are taken over
+             * @description range of the figures
              */
             range: [
                 number,
@@ -2263,14 +2263,14 @@ export interface components {
             ][];
             /**
              * Series
-             * @description by signal; without those that it does not have
+             * @description by signal; missing signals are left out
              */
             series: {
                 [key: string]: components["schemas"]["SignalLine"];
             };
             /**
              * Set Point Steps
-             * @description how often the set point changed while armed
+             * @description number of changes of the set point while armed
              */
             set_point_steps: number;
             /**
@@ -2283,7 +2283,7 @@ export interface components {
         };
         /**
          * Comparison
-         * @description Sessions laid over each other, in the order that was asked for.
+         * @description A comparison of sessions, in the requested order.
          */
         Comparison: {
             align: components["schemas"]["Align"];
@@ -2295,13 +2295,13 @@ export interface components {
             sessions: components["schemas"]["Compared"][];
             /**
              * Signals
-             * @description the wanted ones that at least one session has
+             * @description the requested ones that at least one session has
              */
             signals: components["schemas"]["Signal"][];
         };
         /**
          * ComparisonQuery
-         * @description The same, with what the figures are taken over.
+         * @description A comparison: lines, and the range of the figures.
          */
         ComparisonQuery: {
             /**
@@ -2320,13 +2320,13 @@ export interface components {
              * @default 1000
              */
             points: number;
-            /** @description for the figures; the time armed without */
+            /** @description for the figures; the armed time if null */
             range?: components["schemas"]["TimeRange"] | null;
             /** Sessions */
             sessions: number[];
             /** Signals */
             signals: string[];
-            /** @description what is drawn; everything without */
+            /** @description the drawn time range; all of it if null */
             view?: components["schemas"]["TimeRange"] | null;
         };
         /**
@@ -2363,6 +2363,20 @@ export interface components {
             gains: components["schemas"]["Gain"][];
             /** Name */
             name: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * ControllerInForce
+         * @description The controller in force, with its gains.
+         */
+        ControllerInForce: {
+            /** Controller */
+            controller: string;
+            /** Gains */
+            gains: {
+                [key: string]: number;
+            };
             /** Title */
             title: string;
         };
@@ -2407,7 +2421,7 @@ export interface components {
         };
         /**
          * Difference
-         * @description Something that is not the same in all sessions.
+         * @description A property that differs between sessions.
          */
         Difference: {
             /**
@@ -2419,7 +2433,7 @@ export interface components {
             name: string;
             /**
              * Values
-             * @description one for each session; empty where it has no such thing
+             * @description one for each session; empty if it lacks the property
              */
             values: string[];
         };
@@ -2455,7 +2469,7 @@ export interface components {
         };
         /**
          * DocumentText
-         * @description A test document as it was written.
+         * @description The text of a test document.
          */
         DocumentText: {
             /** Text */
@@ -2529,7 +2543,7 @@ export interface components {
         };
         /**
          * EndedRun
-         * @description The run that ended last; `session` is null where it came to no recording.
+         * @description The run that ended last; `session` is null if it recorded nothing.
          */
         EndedRun: {
             /**
@@ -2597,7 +2611,7 @@ export interface components {
         };
         /**
          * Figure
-         * @description A figure's value, or why there is none.
+         * @description A figure's value, or the reason for its lack.
          */
         Figure: {
             mark?: components["schemas"]["FigureMark"] | null;
@@ -2605,14 +2619,14 @@ export interface components {
             value: number | null;
             /**
              * Words
-             * @description why there is no value, or what else is to be known
+             * @description the reason for a missing value, or a remark
              * @default
              */
             words: string;
         };
         /**
          * FigureMark
-         * @description Where a figure is to be seen in the chart of the depth: s since the session's start, and m.
+         * @description The place of a figure in the chart of the depth: s since the session's start, and m.
          */
         FigureMark: {
             /** End */
@@ -2651,20 +2665,6 @@ export interface components {
             title: string;
             /** Unit */
             unit: string;
-        };
-        /**
-         * Force
-         * @description The controller in force, with its gains.
-         */
-        Force: {
-            /** Controller */
-            controller: string;
-            /** Gains */
-            gains: {
-                [key: string]: number;
-            };
-            /** Title */
-            title: string;
         };
         /**
          * Gain
@@ -2715,16 +2715,6 @@ export interface components {
             name: string;
         };
         /**
-         * Hole
-         * @description A time without a sample of the robot's state; s since the session's start.
-         */
-        Hole: {
-            /** End */
-            end: number;
-            /** Start */
-            start: number;
-        };
-        /**
          * Identity
          * @description A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
          */
@@ -2755,12 +2745,12 @@ export interface components {
         };
         /**
          * Job
-         * @description One file, made or to be made. It is kept for some days.
+         * @description An export job; its file is stored for some days.
          */
         Job: {
             /**
              * Bytes
-             * @description the file's size; null until it is there
+             * @description the file's size; null until it is done
              */
             bytes?: number | null;
             /**
@@ -2773,12 +2763,12 @@ export interface components {
             /**
              * Made
              * Format: date-time
-             * @description UTC, when it was asked for
+             * @description UTC, time of the request
              */
             made: string;
             /**
              * Problem
-             * @description why it failed
+             * @description cause of a failure
              * @default
              */
             problem: string;
@@ -2793,7 +2783,7 @@ export interface components {
             session_name: string;
             /**
              * Sha256
-             * @description the file's checksum, hexadecimal; null until it is there
+             * @description the file's checksum, hexadecimal; null until it is done
              */
             sha256?: string | null;
             /**
@@ -2849,15 +2839,15 @@ export interface components {
         };
         /**
          * Lines
-         * @description The lines of a part of the time.
+         * @description The lines of a time range.
          */
         Lines: {
             /** Sessions */
-            sessions: components["schemas"]["Drawn"][];
+            sessions: components["schemas"]["SessionLines"][];
         };
         /**
          * LinesQuery
-         * @description Sessions, signals of them, and how they are laid over each other.
+         * @description Sessions, their signals, and their alignment.
          */
         LinesQuery: {
             /**
@@ -2878,7 +2868,7 @@ export interface components {
             sessions: number[];
             /** Signals */
             signals: string[];
-            /** @description what is drawn; everything without */
+            /** @description the drawn time range; all of it if null */
             view?: components["schemas"]["TimeRange"] | null;
         };
         /**
@@ -3017,7 +3007,7 @@ export interface components {
             period: number;
             /**
              * Remarks
-             * @description what makes these figures doubtful
+             * @description reasons to doubt these figures
              */
             remarks: string[];
             /**
@@ -3045,7 +3035,7 @@ export interface components {
         };
         /**
          * Moment
-         * @description Something that happened; `time` in s since the session's start, `kind` one word for programs.
+         * @description An event; `time` in s since the session's start, `kind` one word for programs.
          */
         Moment: {
             /** Kind */
@@ -3062,7 +3052,7 @@ export interface components {
         };
         /**
          * NewBookmark
-         * @description A moment to be marked: s since the session's start, or null for now.
+         * @description A new bookmark; its time in s since the session's start, or null for now.
          */
         NewBookmark: {
             /**
@@ -3087,7 +3077,7 @@ export interface components {
         };
         /**
          * NewExport
-         * @description A file that is wanted.
+         * @description A new export.
          */
         NewExport: {
             /**
@@ -3148,7 +3138,7 @@ export interface components {
         };
         /**
          * NewSession
-         * @description A session that is to begin; without a name it is called after its moment.
+         * @description A new session; its default name is its date and time.
          */
         NewSession: {
             /**
@@ -3389,7 +3379,7 @@ export interface components {
             known_for: string;
             /**
              * Problem
-             * @description why these cannot be set; empty where they can
+             * @description why these cannot be set; empty if they can
              */
             problem: string;
             /** Rule */
@@ -3401,7 +3391,7 @@ export interface components {
         };
         /**
          * QueuedRun
-         * @description A run that waits for its turn.
+         * @description A queued run.
          */
         QueuedRun: {
             /** Name */
@@ -3448,7 +3438,7 @@ export interface components {
         };
         /**
          * RelayStart
-         * @description A relay in the place of a loop's controller.
+         * @description A relay in place of a loop's controller.
          */
         RelayStart: {
             /**
@@ -3458,7 +3448,7 @@ export interface components {
             amplitude: number;
             /**
              * Cycles
-             * @description that are measured
+             * @description number of measured cycles
              */
             cycles: number;
             /**
@@ -3510,12 +3500,12 @@ export interface components {
         };
         /**
          * RunSummary
-         * @description A run; `sample` names one that came with the program, and is empty for one's own.
+         * @description A run; `sample` is the name of a shipped one, and empty for others.
          */
         RunSummary: {
             /**
              * Cells
-             * @description as the document has them
+             * @description number in the document
              */
             cells: number;
             /** Cells Done */
@@ -3545,7 +3535,7 @@ export interface components {
             problem: string;
             /**
              * Rate Mean
-             * @description null as long as there is no cell
+             * @description null without cells
              */
             rate_mean: number | null;
             /** Rate Min */
@@ -3601,7 +3591,7 @@ export interface components {
         };
         /**
          * ScenarioEvent
-         * @description Something that happens in a scenario.
+         * @description An event of a scenario.
          */
         ScenarioEvent: {
             /**
@@ -3616,7 +3606,7 @@ export interface components {
         };
         /**
          * ScenarioStart
-         * @description A scenario that is to be run: on the running robot in real time, or in simulated time.
+         * @description A scenario to run: on the robot in real time, or in simulated time.
          *
          *     `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
          */
@@ -3658,12 +3648,12 @@ export interface components {
         };
         /**
          * ScenarioSummary
-         * @description A scenario in short.
+         * @description The summary of a scenario.
          */
         ScenarioSummary: {
             /**
              * Controller
-             * @description the title of what steers the depth
+             * @description title of the depth controller
              */
             controller: string;
             /** Description */
@@ -3689,14 +3679,14 @@ export interface components {
         };
         /**
          * ScenarioText
-         * @description A scenario; `shipped` ones come with the program, the others lie in the data folder.
+         * @description A scenario; `shipped` ones are part of the program, the others are in the data folder.
          */
         ScenarioText: {
             /** Name */
             name: string;
             /** Shipped */
             shipped: boolean;
-            /** @description null where there is something wrong with it */
+            /** @description null if it is not valid */
             summary: components["schemas"]["ScenarioSummary"] | null;
             /**
              * Text
@@ -3735,7 +3725,7 @@ export interface components {
         };
         /**
          * Session
-         * @description One recording; "interrupted" where the server ended without closing it: what was stored is kept.
+         * @description One recording; "interrupted" if the server ended without closing it: its stored samples remain.
          */
         Session: {
             /**
@@ -3750,7 +3740,7 @@ export interface components {
             definitions: string;
             /**
              * Deleted
-             * @description UTC; since when it has been in the bin
+             * @description UTC; time of its deletion, while it is in the bin
              */
             deleted: string | null;
             /**
@@ -3772,12 +3762,12 @@ export interface components {
             id: number;
             /**
              * Kept
-             * @description the retention rule leaves it alone
+             * @description protected from the rules of retention
              */
             kept: boolean;
             /**
              * Markers
-             * @description how many moments are marked
+             * @description number of bookmarks
              */
             markers: number;
             /** Name */
@@ -3786,7 +3776,7 @@ export interface components {
             note: string;
             /**
              * Origin
-             * @description who began it: an operator, arming, a scenario in real time, one in simulated time; or it was imported
+             * @description started by an operator, arming, a scenario in real or in simulated time; or imported
              * @enum {string}
              */
             origin: "operator" | "arming" | "scenario" | "simulated" | "import";
@@ -3867,7 +3857,7 @@ export interface components {
             definitions: string;
             /**
              * Deleted
-             * @description UTC; since when it has been in the bin
+             * @description UTC; time of its deletion, while it is in the bin
              */
             deleted: string | null;
             /**
@@ -3896,12 +3886,12 @@ export interface components {
             identifier: string;
             /**
              * Kept
-             * @description the retention rule leaves it alone
+             * @description protected from the rules of retention
              */
             kept: boolean;
             /**
              * Markers
-             * @description how many moments are marked
+             * @description number of bookmarks
              */
             markers: number;
             /**
@@ -3915,7 +3905,7 @@ export interface components {
             note: string;
             /**
              * Origin
-             * @description who began it: an operator, arming, a scenario in real time, one in simulated time; or it was imported
+             * @description started by an operator, arming, a scenario in real or in simulated time; or imported
              * @enum {string}
              */
             origin: "operator" | "arming" | "scenario" | "simulated" | "import";
@@ -3976,7 +3966,7 @@ export interface components {
         };
         /**
          * SessionGap
-         * @description Samples that are not in the session: `missed` of them, noticed at `time`.
+         * @description Samples that are missing in the session: `missed` of them, noticed at `time`.
          */
         SessionGap: {
             /**
@@ -3995,6 +3985,31 @@ export interface components {
             topic: string;
         };
         /**
+         * SessionLines
+         * @description One session's lines.
+         */
+        SessionLines: {
+            /** Id */
+            id: number;
+            /**
+             * Offset
+             * @description the moment that is 0 s, s since its start; null if it lacks that
+             */
+            offset: number | null;
+            /**
+             * Problem
+             * @description why it cannot be aligned; empty if it can
+             */
+            problem: string;
+            /**
+             * Series
+             * @description by signal; missing signals are left out
+             */
+            series: {
+                [key: string]: components["schemas"]["SignalLine"];
+            };
+        };
+        /**
          * ShownChart
          * @description A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s.
          */
@@ -4006,7 +4021,7 @@ export interface components {
         };
         /**
          * Signal
-         * @description One number that a session holds over time; `name` is topic and column with a dot between them.
+         * @description One number over time; `name` is topic and column, joined by a dot.
          */
         Signal: {
             /** Column */
@@ -4022,7 +4037,7 @@ export interface components {
         };
         /**
          * SignalLine
-         * @description A signal over time, thinned out to least and most of each column; null breaks the line.
+         * @description A signal over time, decimated to minimum and maximum of each column; null breaks the line.
          */
         SignalLine: {
             /** High */
@@ -4118,6 +4133,16 @@ export interface components {
             vision_rate: number;
         };
         /**
+         * StateSilence
+         * @description A time without samples of the robot's state; s since the session's start.
+         */
+        StateSilence: {
+            /** End */
+            end: number;
+            /** Start */
+            start: number;
+        };
+        /**
          * SteeringCommand
          * @description Chooses the course while the robot holds its depth.
          */
@@ -4162,7 +4187,7 @@ export interface components {
             low: number;
             /**
              * Settle
-             * @description s for which the start is held at most
+             * @description longest time at the start, s
              */
             settle: number;
             /**
@@ -4177,18 +4202,18 @@ export interface components {
             target: number;
             /**
              * Tolerance
-             * @description how near to the start counts as settled
+             * @description largest distance from the start that counts as settled
              */
             tolerance: number;
         };
         /**
          * Storage
-         * @description Bytes of the disk that holds the data folder, and the rules by which sessions go by themselves.
+         * @description Use of the disk that holds the data folder, and the rules of retention.
          */
         Storage: {
             /**
              * Bin
-             * @description how many are in the bin
+             * @description number of sessions in the bin
              */
             bin: number;
             /** Bin Bytes */
@@ -4200,17 +4225,17 @@ export interface components {
             database: number;
             /**
              * Exports
-             * @description bytes of the files that were exported
+             * @description bytes of the exported files
              */
             exports: number;
             /**
              * Free
-             * @description bytes that may still be written on this disk
+             * @description free bytes of this disk
              */
             free: number;
             /**
              * Keep Days
-             * @description days after which a session goes into the bin by itself; 0: never
+             * @description days after which a session is moved to the bin; 0: never
              */
             keep_days: number;
             /**
@@ -4220,12 +4245,12 @@ export interface components {
             keep_free: number;
             /**
              * Reusable
-             * @description of these, bytes that nothing is in any more
+             * @description of these, bytes that are free for reuse
              */
             reusable: number;
             /**
              * Sessions
-             * @description how many are kept, without the bin
+             * @description number of sessions, without the bin
              */
             sessions: number;
             /** Sessions Bytes */
@@ -4260,7 +4285,7 @@ export interface components {
         };
         /**
          * TestDocument
-         * @description A test document that came with the program.
+         * @description A shipped test document.
          */
         TestDocument: {
             /** Name */
@@ -4289,7 +4314,7 @@ export interface components {
         };
         /**
          * TimeRange
-         * @description From one moment to another, s on the common time axis, where the aligned moment is 0.
+         * @description A time range, s on the common time axis, where the aligned moment is 0.
          */
         TimeRange: {
             /** End */
@@ -4313,7 +4338,7 @@ export interface components {
              */
             events: components["schemas"]["Moment"][];
             /** Holes */
-            holes: components["schemas"]["Hole"][];
+            holes: components["schemas"]["StateSilence"][];
             /**
              * Markers
              * @description in order of time
@@ -4412,7 +4437,7 @@ export interface components {
             figures: {
                 [key: string]: components["schemas"]["Figure"];
             };
-            force: components["schemas"]["Force"];
+            force: components["schemas"]["ControllerInForce"];
             /** Id */
             id: number;
             /**
@@ -4434,7 +4459,7 @@ export interface components {
             problem: string;
             /**
              * Settings
-             * @description as it was started
+             * @description the request that started it
              */
             settings: {
                 [key: string]: unknown;
@@ -4452,7 +4477,7 @@ export interface components {
         };
         /**
          * TuningRunDetail
-         * @description A run with everything that is known of it.
+         * @description A run with its curve and proposals.
          */
         TuningRunDetail: {
             curve: components["schemas"]["TuningCurve"];
@@ -4465,7 +4490,7 @@ export interface components {
             figures: {
                 [key: string]: components["schemas"]["Figure"];
             };
-            force: components["schemas"]["Force"];
+            force: components["schemas"]["ControllerInForce"];
             /** Id */
             id: number;
             /**
@@ -4492,7 +4517,7 @@ export interface components {
             proposals: components["schemas"]["Proposal"][];
             /**
              * Settings
-             * @description as it was started
+             * @description the request that started it
              */
             settings: {
                 [key: string]: unknown;
@@ -4510,7 +4535,7 @@ export interface components {
         };
         /**
          * TuningRuns
-         * @description The runs on a loop, newest first, and what their figures are.
+         * @description The runs on a loop, newest first, and the meanings of their figures.
          */
         TuningRuns: {
             /** Figures */
@@ -4520,7 +4545,7 @@ export interface components {
         };
         /**
          * TuningStarted
-         * @description The run that has begun.
+         * @description The number of the started run.
          */
         TuningStarted: {
             /** Run */
@@ -5933,7 +5958,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It cannot be made */
+            /** @description The export cannot be made */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -6185,7 +6210,7 @@ export interface operations {
                     "application/json": components["schemas"]["Session"];
                 };
             };
-            /** @description It is here already, another is being imported, or the robot is armed */
+            /** @description The session exists, another import is running, or the robot is armed */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -6194,7 +6219,7 @@ export interface operations {
                     "application/json": components["schemas"]["Problem"];
                 };
             };
-            /** @description It is no archive that can be imported */
+            /** @description The file is no archive that can be imported */
             422: {
                 headers: {
                     [name: string]: unknown;

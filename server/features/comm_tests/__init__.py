@@ -1,1 +1,1 @@
-"""Runs of the communication test: kept, listed, compared and exported."""
+"""Runs of the communication test: storage, lists, comparison and export."""

@@ -1,8 +1,7 @@
 """Reserves the robot's board for a communication test, and restores the robot's firmware afterwards.
 
-While a board may hold anything but the robot's firmware, a file in the data folder says so: on the disk
-before the first upload, taken away after the firmware is back. So a server that was killed in between brings
-it back at its next start.
+While the board may hold other firmware, a file in the data folder says so: it is written before the first
+upload and removed after the robot's firmware is back. So a killed server restores it at its next start.
 """
 
 import asyncio
@@ -23,9 +22,9 @@ from server.processes.supervisor import Notify, ProcessSupervisor
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 DISARM_SECONDS = 3.0
-"""The runtime says its state at every change, and every second."""
+"""The runtime sends its state at every change, and every second."""
 PORT_SECONDS = 10.0
-"""Within which the emulated board must have its port, which it makes when it starts."""
+"""Time for the emulated board to create its port."""
 RESTORE_SECONDS = 120.0
 """An upload at 115200 baud takes 5 s, three attempts with a board that does not answer some 40 s."""
 POLL_SECONDS = 0.05
@@ -35,7 +34,7 @@ LINES_SHOWN = 2
 class RobotBoard:
     """The robot's board, whose port nobody else has open. `notify` reports the state of its firmware.
 
-    `problem` says why the firmware could not be brought back, and what to do; None where it is there.
+    `problem` says why the firmware could not be restored, and what to do; None if it is in place.
     """
 
     def __init__(self, settings: Settings, notify: Notify) -> None:
@@ -55,9 +54,9 @@ class RobotBoard:
 
     @asynccontextmanager
     async def reserve(self, name: str) -> AsyncIterator[list[str]]:
-        """While entered the board is the test's of this name; the value are the lab's arguments for it.
+        """Reserve the board for the test of this name; the value are the lab's arguments for it.
 
-        Raises RefusedError where the disk does not take the note that the firmware is away.
+        Raises RefusedError if the note that the firmware is away cannot be written.
         """
         note = self._settings.data.firmware_away
         try:
@@ -120,7 +119,7 @@ class RobotBoard:
 
 
 class BoardReservation:
-    """Hands the board from the runtime to a test; `occupied` gives the reason against it, if any."""
+    """Hands the board from the runtime to a test; `occupied` returns a reason against it, if any."""
 
     def __init__(
         self,
@@ -142,7 +141,7 @@ class BoardReservation:
     async def reserve(self, name: str) -> AsyncIterator[list[str]]:
         """As `RobotBoard.reserve`; disarms the robot and ends its runtime before, restarts it afterwards.
 
-        Raises RefusedError where that is not possible.
+        Raises RefusedError if that is not possible.
         """
         reason = self._bridge.reserved_reason or self._occupied()
         if reason:
@@ -157,7 +156,7 @@ class BoardReservation:
                 yield arguments
 
     async def start_processes(self) -> None:
-        """Start every part; where an earlier server could not bring the firmware back, that comes first."""
+        """Start every process; firmware that an earlier server left away is restored first."""
         if not self._board.away:
             self._processes.start()
             return
@@ -192,7 +191,7 @@ class BoardReservation:
             await self._bridge.command("stop", {})
         except RuntimeSilentError as problem:
             if not problem.waited:
-                return  # no runtime: a board that hears nothing disarms by itself within a second
+                return  # no runtime: a board without commands disarms itself within a second
             raise RefusedError(f"The robot could not be disarmed before the test. {problem}") from problem
         while self._may_be_armed(sent):
             if self._clock.now() - sent > DISARM_SECONDS:

@@ -1,4 +1,4 @@
-"""Communication tests: documents, runs, the thesis's tables, downloads."""
+"""Communication tests: documents, runs, downloads, the thesis's tables."""
 
 from fastapi import Request
 from fastapi.responses import Response

@@ -1,8 +1,7 @@
 """Runs communication tests, one document at a time, in a process of its own.
 
-The process (`python -m robot_runtime.experiments.comm_test`) compiles, uploads and runs, and tells what it
-does in lines
-of JSON. Here they become rows of the database and progress for the pages.
+The process (`python -m robot_runtime.experiments.comm_test`) compiles, uploads and runs, and reports in lines
+of JSON, which become rows of the database and progress for the pages.
 """
 
 import asyncio
@@ -32,21 +31,21 @@ log = logging.getLogger(__name__)
 
 LINE_BYTES_MAX = 100_000
 WORDS_MOST = 5
-"""Lines that are no JSON are the last words of a process that fails."""
+"""Stored lines that are no JSON, which explain a failure."""
 TEST_SECONDS_MAX = 86_400.0
-"""s of the tests' own time, all cells together: a reserved board is free again within a day."""
+"""s of the tests' own time, all cells together, so that a reserved board is free again within a day."""
 CANCEL_SECONDS = 45.0
-"""After which a cancelled process is killed; it may have to wait for an upload or a compiler."""
+"""Time after which a cancelled process is killed; it may wait for an upload or a compiler."""
 
 
 class CommTestError(Exception):
-    """The test cannot go on; the text says why."""
+    """The test cannot continue; the text says why."""
 
 
 Notify = Callable[[dict[str, Any]], None]
 Reserve = Callable[[str], AbstractAsyncContextManager[list[str]]]
-"""Called with the test's name; while it is entered the robot's board is the test's; its value are the
-test process's arguments. Raises RefusedError where the board is not free."""
+"""Called with the test's name; the context reserves the robot's board, its value are the arguments of the
+test process. Raises RefusedError if the board is not free."""
 
 
 @dataclass(slots=True)
@@ -64,7 +63,7 @@ class Progress:
     phases: dict[int, Phase] = field(default_factory=dict)
 
     def describe(self, now: float) -> dict[str, Any]:
-        """As sent to the pages; `remaining` is for all tests of the document, null while unknown."""
+        """The progress as sent to the pages; `remaining` is for the whole document, null while unknown."""
         elapsed = now - self.began
         remaining = sum(map(sum, self.weights)) - self.done_weight
         return {
@@ -104,7 +103,7 @@ class CommTestRunner:
     async def start(self, text: str, place: Place) -> int:
         """Run a document; returns the number of its first run as soon as that has begun.
 
-        Raises ConfigError, RefusedError where it cannot be run now, StoreError.
+        Raises ConfigError, RefusedError if it cannot be run now, StoreError.
         """
         tests = read_limited(text)
         if self.busy:
@@ -144,7 +143,7 @@ class CommTestRunner:
         except (RefusedError, StoreError, CommTestError, OSError) as problem:
             log.warning("the communication test ended: %s", problem)
             if progress.run is not None:
-                # Where even that cannot be stored, the next start marks it as interrupted.
+                # If that cannot be stored, the next start marks it as interrupted.
                 with suppress(StoreError):
                     await self.runs.end(progress.run, "failed", str(problem))
             if not began.done():
@@ -155,7 +154,7 @@ class CommTestRunner:
         finally:
             self._notify({"op": "comm_test", "active": None, "cell": None})
             if not began.done():
-                began.set_exception(RefusedError("The communication test ended before it began."))
+                began.set_exception(RefusedError("The communication test ended before its first run."))
 
     async def _perform(
         self, progress: Progress, text: str, arguments: list[str], began: asyncio.Future[int]
@@ -173,7 +172,7 @@ class CommTestRunner:
             document.write(text.encode())
             document.seek(0)
             if self._cancelled:
-                raise RefusedError("The communication test was cancelled before it began.")
+                raise RefusedError("The communication test was cancelled before its first run.")
             self._process = PipedProcess(command, output.feed, document)
         ending = asyncio.create_task(self._wait_for(self._process, output))
         try:
@@ -217,7 +216,7 @@ class CommTestRunner:
     async def _apply(
         self, progress: Progress, event: dict[str, Any], words: deque[str], began: asyncio.Future[int]
     ) -> Cell | None:
-        """Keep what has happened; the cell where one is finished."""
+        """Process an event of the test process; returns a finished cell."""
         match event.get("event"):
             case "started":
                 progress.test = int(event["test"])
@@ -263,7 +262,7 @@ def read_limited(text: str) -> list[CommTest]:
 
 
 class _Lines:
-    """Cuts what a process prints into lines; `words` are the last that are no events, for when it fails."""
+    """Splits the output of a process into lines; `words` are the last lines that are no events."""
 
     def __init__(self) -> None:
         self.words: deque[str] = deque(maxlen=WORDS_MOST)
@@ -271,7 +270,7 @@ class _Lines:
         self._partial = b""
 
     def feed(self, data: bytes) -> None:
-        """Take the bytes that the process has printed."""
+        """Process printed bytes."""
         *whole, self._partial = (self._partial + data).split(b"\n")
         self._partial = self._partial[-LINE_BYTES_MAX:]
         for line in whole:
@@ -279,7 +278,7 @@ class _Lines:
                 self._lines.put_nowait(line[-LINE_BYTES_MAX:])
 
     def end(self) -> None:
-        """It prints no more."""
+        """Mark the end of the output."""
         self.feed(b"\n")
         self._lines.put_nowait(None)
 

@@ -66,7 +66,7 @@ class CommTestRuns:
             return [RunSummary(**_summary(run, *known.get(run.id or 0, (0, None, None)))) for run in runs]
 
     def whole(self, run: CommTestRun) -> CommTestRunDetails:
-        """A run with everything that is known of it."""
+        """A run with its configuration and its cells."""
         cells = [_cell(cell) for cell in self.cells(run.id or 0)]
         rates = [cell.rate for cell in cells]
         mean, low = (sum(rates) / len(rates), min(rates)) if rates else (None, None)
@@ -81,7 +81,7 @@ class CommTestRuns:
 
 
 class CommTestStore(CommTestRuns):
-    """The same, to be added to. What is awaited is on the disk when it returns."""
+    """Write access to the runs. A change is on the disk when its method returns."""
 
     def __init__(self, store: Store) -> None:
         super().__init__(store)
@@ -90,7 +90,7 @@ class CommTestStore(CommTestRuns):
     async def start(
         self, test: CommTest, place: Place, firmware: str, tools: Mapping[str, str], host: str
     ) -> int:
-        """A run that begins now; its number."""
+        """Add a run that begins now, and return its number."""
         values = {
             "name": test.name,
             "document": json.dumps(asdict(test), ensure_ascii=False),
@@ -111,24 +111,24 @@ class CommTestStore(CommTestRuns):
         return await self._store.write(lambda connection: insert_row(connection, CommTestRun, values))
 
     async def add(self, run: int, number: int, values: Mapping[str, Any]) -> Cell:
-        """Store a cell as the test process reports it. Raises ValueError where it is none."""
+        """Store a cell as the test process reports it. Raises ValueError if it is not valid."""
         cell = CommTestCell.model_validate({**values, "run_id": run, "number": number})
         await self._store.execute(insert(CommTestCell).values(cell.model_dump(exclude={"id"})))
         return _cell(cell)
 
     async def end(self, run: int, state: End, problem: str = "") -> None:
-        """The run is over."""
+        """Store the end of a run."""
         changes = {"ended": time.time(), "state": state, "problem": problem}
         await self._store.execute(update(CommTestRun).where(col(CommTestRun.id) == run).values(changes))
 
     async def mark_interrupted(self) -> None:
-        """Runs that still say that they run were left by a program that was killed."""
+        """Mark the running runs of a killed program as interrupted."""
         changes = {"state": "interrupted", "problem": "The program ended while the test ran."}
         running = col(CommTestRun.state) == "running"
         await self._store.execute(update(CommTestRun).where(running).values(changes))
 
     async def add_sample(self, run: Mapping[str, Any], cells: Sequence[Mapping[str, Any]]) -> None:
-        """A run that comes with the program, with its cells, all or nothing; columns by name."""
+        """Add a shipped run with its cells, in one transaction; columns by name."""
 
         def change(connection: Connection) -> None:
             number = insert_row(connection, CommTestRun, run)

@@ -1,4 +1,4 @@
-"""Communication tests as the interface shows them."""
+"""Schemas of communication tests in the interface."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -14,11 +14,11 @@ Phase = Literal["compile", "upload", "run"]
 Rate = Annotated[float, Field(ge=0, le=1, description="share of the numbers that arrived right")]
 
 TEXT_MAX = 60_000
-"""Characters of a test document; the server takes no longer requests."""
+"""Largest test document in characters."""
 
 
 class TestDocument(BaseModel):
-    """A test document that came with the program."""
+    """A shipped test document."""
 
     name: str
     title: str
@@ -26,14 +26,14 @@ class TestDocument(BaseModel):
 
 
 class DocumentText(BaseModel):
-    """A test document as it was written."""
+    """The text of a test document."""
 
     model_config = ConfigDict(extra="forbid")
     text: Annotated[str, Field(max_length=TEXT_MAX)]
 
 
 class CommTestStart(DocumentText):
-    """A document to run, and where."""
+    """A document to run, and its place."""
 
     place: Place
 
@@ -66,7 +66,7 @@ class Check(BaseModel):
 
 
 class RunSummary(BaseModel):
-    """A run; `sample` names one that came with the program, and is empty for one's own."""
+    """A run; `sample` is the name of a shipped one, and empty for others."""
 
     id: int
     name: str
@@ -78,9 +78,9 @@ class RunSummary(BaseModel):
     problem: str
     started: datetime = Field(description="UTC")
     ended: datetime | None = Field(description="UTC; null while it runs")
-    cells: int = Field(description="as the document has them")
+    cells: int = Field(description="number in the document")
     cells_done: int
-    rate_mean: Rate | None = Field(description="null as long as there is no cell")
+    rate_mean: Rate | None = Field(description="null without cells")
     rate_min: Rate | None
 
 

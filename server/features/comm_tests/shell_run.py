@@ -1,4 +1,4 @@
-"""A communication test run by a shell, where no server works on the data folder."""
+"""Runs a communication test from a shell, if no server uses the data folder."""
 
 import asyncio
 import signal
@@ -21,7 +21,7 @@ from server.platform.shell_store import open_writer
 def run_tests(text: str, tests: list[CommTest], place: Place, settings: Settings) -> int:
     """Run the tests of a document in a claimed folder, and print the rates.
 
-    Exit status: 1 where a run did not come to its end. Raises SetupError where it cannot be begun.
+    Exit status: 1 if a run did not complete. Raises SetupError if it cannot start.
     """
     with open_writer(settings.data) as store:
         return asyncio.run(_perform(text, tests, place, settings, CommTestStore(store)))
@@ -46,7 +46,7 @@ def _conclude(done: Sequence[CommTestRun], expected: int, runs: CommTestStore) -
     for run in done:
         print(f"\n{tables.show_cells(runs.cells(run.id or 0))}")  # noqa: T201 - a command line speaks
         if run.state == "cancelled":
-            words = f"run {run.id} was cancelled; what it has measured is kept"
+            words = f"run {run.id} was cancelled; its finished cells are stored"
             print(f"mucat: {words}", file=sys.stderr)  # noqa: T201
         elif run.state != "complete":
             print(f"mucat: run {run.id} failed: {run.problem}", file=sys.stderr)  # noqa: T201

@@ -1,4 +1,4 @@
-"""Test documents and measured runs that come with the program."""
+"""Test documents and measured runs that ship with the program."""
 
 import json
 import logging
@@ -15,7 +15,7 @@ from server.platform.models import CommTestCell, CommTestRun
 log = logging.getLogger(__name__)
 
 THESIS = SKETCHES / "comm_test/figure10.json"
-"""Beside the sketch that it is about; an installation without the firmware's sources has neither."""
+"""Beside its sketch; missing in an installation without the firmware's sources."""
 DOCUMENTS = {
     "figure10": "The thesis's own example (Figure 10)",
     "plain": "The thesis's grid with plain numbers (Table 5)",
@@ -27,7 +27,7 @@ DOCUMENTS = {
 
 
 def shipped_documents() -> list[TestDocument]:
-    """All of them, the thesis's own example first."""
+    """The shipped documents, the thesis's own example first."""
     folder = files(__package__) / "documents"
     sources = {name: THESIS if name == "figure10" else folder / f"{name}.json" for name in DOCUMENTS}
     return [
@@ -38,7 +38,7 @@ def shipped_documents() -> list[TestDocument]:
 
 
 async def import_samples(runs: CommTestStore, folder: Traversable | None = None) -> None:
-    """Store the runs that are not there yet; one that cannot be read is left out. Raises StoreError.
+    """Store the missing sample runs; unreadable ones are left out. Raises StoreError.
 
     Each file is what `mucat commtest export --format json` writes; its name is the sample's.
     """
@@ -62,7 +62,7 @@ def _samples(folder: Traversable) -> Iterator[tuple[str, Traversable]]:
 
 
 def _read_sample(whole: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A run's columns and those of its cells. Raises ValueError, KeyError, TypeError where any is missing."""
+    """A run's columns and those of its cells. Raises ValueError, KeyError, TypeError."""
     texts = {name: json.dumps(whole[name], ensure_ascii=False) for name in ("document", "tools")}
     run = CommTestRun.model_validate({**whole, **texts, "cells": len(whole["cells"])})
     cells = [CommTestCell.model_validate({**cell, "run_id": 0}) for cell in whole["cells"]]

@@ -19,7 +19,7 @@ def places(cells: Sequence[CommTestCell]) -> dict[Place, float]:
 
 
 def show_cells(cells: Sequence[CommTestCell]) -> str:
-    """A table as in the thesis's Figure 18, with what went wrong beside it."""
+    """A table as in the thesis's Figure 18, with the causes of errors."""
     rows = [
         [*_place((cell.baud, cell.arduino_delay, cell.pi_delay)), f"{cell.rate:.2f}", cell.causes]
         for cell in cells
@@ -28,7 +28,7 @@ def show_cells(cells: Sequence[CommTestCell]) -> str:
 
 
 def show_run(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
-    """A run with its configuration, its table, and each explanation once."""
+    """A run with its configuration, its table and the explanations of errors."""
     facts = {
         "run": f"{run.id}, {run.name}",
         "state": run.state + (f": {run.problem}" if run.problem else ""),
@@ -61,7 +61,7 @@ def show_list(runs: Sequence[CommTestRun]) -> str:
 
 
 def show_comparison(columns: Mapping[str, Mapping[Place, float]]) -> str:
-    """The rates of the first column's cells, and those of the others beside them with the differences."""
+    """The rates of the first column's cells, and those of the other columns with the differences."""
     first, *others = columns
     header = ["baud", "Arduino delay (s)", "Pi delay (s)", first]
     for name in others:
@@ -88,7 +88,7 @@ def write_csv(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
 
 
 def write_json(run: CommTestRun, cells: Sequence[CommTestCell]) -> str:
-    """The run with everything that is known of it, and its cells."""
+    """The run with its configuration and its cells."""
     whole: dict[str, Any] = run.model_dump()
     whole["document"] = json.loads(run.document)
     whole["tools"] = json.loads(run.tools)

@@ -48,7 +48,7 @@ def check_mcap() -> None:
 
 
 def write_mcap(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`; metadata; `session.json`.
+    """Write a channel for each topic, `/log`, `/tf`, `/tf_static`, `/pose`, `/camera`, and metadata.
 
     Raises ExportRequestError, StoreError, RecordingError.
     """

@@ -29,8 +29,8 @@ def check_parquet() -> None:
 def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> None:
     """Write a zip file of `session.json` and a Parquet file for each topic.
 
-    Columns are `time` (s since the session's start), `utc` and the fields in SI units; the fields of documents
-    are text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
+    Columns are `time` (s since the session's start), `utc` and the fields in SI units; fields of
+    documents are text, lists and objects as JSON. Raises ExportRequestError, StoreError, RecordingError.
     """
     check_parquet()
     packing = ZipWriter(output, packed=False)

@@ -31,7 +31,7 @@ class Pose:
         """The topics that `see` needs."""
 
     def see(self, name: str, data: bytes, time: int) -> tuple[bytes, bytes] | None:
-        """Process a sample of `time` (ns, UTC); returns a FrameTransform and a PoseInFrame when they are due."""
+        """Process a sample of `time` (ns, UTC); returns a FrameTransform and a PoseInFrame when due."""
         if name == self._position_topic:
             self._position = data
         if name != self._attitude_topic or time - self._last < PERIOD_NS:

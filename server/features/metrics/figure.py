@@ -1,4 +1,4 @@
-"""Figures: a value or the reason why there is none, and what the figure means."""
+"""Figures: a value or the reason for its lack, and the meaning of a figure."""
 
 from typing import Literal
 
@@ -26,7 +26,7 @@ def describe(
 
 
 class FigureMark(BaseModel):
-    """Where a figure is to be seen in the chart of the depth: s since the session's start, and m."""
+    """The place of a figure in the chart of the depth: s since the session's start, and m."""
 
     start: float
     end: float
@@ -35,8 +35,8 @@ class FigureMark(BaseModel):
 
 
 class Figure(BaseModel):
-    """A figure's value, or why there is none."""
+    """A figure's value, or the reason for its lack."""
 
     value: float | None
-    words: str = Field(default="", description="why there is no value, or what else is to be known")
+    words: str = Field(default="", description="the reason for a missing value, or a remark")
     mark: FigureMark | None = None

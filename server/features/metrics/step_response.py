@@ -1,8 +1,8 @@
 """Figures of a step response: rise time, settling time, overshoot.
 
 Definitions as in Åström and Murray, Feedback Systems, 2nd edition, 2021 (step response), and Åström and
-Hägglund, Advanced PID Control, 2006, with the set point as the final value: what is judged is whether the
-robot gets where it was told to go. With y0 the value at the step, r the set point and h = r - y0:
+Hägglund, Advanced PID Control, 2006, with the set point as the final value, since the robot should
+reach it. With y0 the value at the step, r the set point and h = r - y0:
 
     rise time       from the first y = y0 + 0.1 h to the first y = y0 + 0.9 h
     settling time   from the step until |r - y| is at most the band for the last time, and stays so
@@ -19,12 +19,12 @@ from server.features.metrics.series import Series
 
 BAND = 0.05
 STAY = 0.2
-"""Share of the time until the next step that the value has to have stayed in the band, at the end of it."""
+"""Share of the time until the next step, at its end, for which the value must stay in the band."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepResponse:
-    """Times in s since the session's start; None where the value never came there."""
+    """Times in s since the session's start; None if the value was never reached."""
 
     begin: float
     end: float

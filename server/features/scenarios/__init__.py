@@ -1,1 +1,1 @@
-"""Scenarios: those there are, and running them, on the running robot or in simulated time."""
+"""Scenarios: their library, and runs on the robot in real time or in simulated time."""

@@ -16,7 +16,7 @@ SCENARIO = click.argument("file", metavar="SCENARIO")
 
 @click.group()
 def scenario() -> None:
-    """Run experiments that are written down.
+    """Check and run scenarios: experiments in TOML.
 
     A SCENARIO is a TOML file, or the name of one in the list.
     """
@@ -78,7 +78,7 @@ def _read(file: str, own: Path) -> "tuple[str, Scenario]":
         return text, read_scenario(text)
     except (OSError, UnicodeDecodeError) as problem:
         known = ", ".join(there)
-        raise SetupError(f"{file} cannot be read: {problem}. Scenarios that there are: {known}") from problem
+        raise SetupError(f"{file} cannot be read: {problem}. Known scenarios: {known}") from problem
     except ConfigError as problem:
         raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.problems])) from problem
 

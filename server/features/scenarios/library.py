@@ -1,4 +1,4 @@
-"""The scenarios that there are: those that come with the program, and one's own in the data folder."""
+"""The scenarios that ship with the program, and those of the data folder."""
 
 import logging
 from importlib.resources import files
@@ -13,11 +13,11 @@ from server.features.scenarios.schemas import ScenarioText, summarize
 log = logging.getLogger(__name__)
 
 SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link")
-"""The thesis's own first."""
+"""The shipped scenarios, the thesis's own first."""
 
 
 def list_scenarios(own: Path) -> list[ScenarioText]:
-    """Those that ship, then those in the folder `own`, by name; what cannot be read is left out."""
+    """The shipped scenarios, then those in the folder `own` by name; unreadable files are left out."""
     return [_describe(name, text, shipped=True) for name, text in _shipped().items()] + [
         _describe(file.stem, text, shipped=False) for file, text in _own(own)
     ]
@@ -26,11 +26,11 @@ def list_scenarios(own: Path) -> list[ScenarioText]:
 def keep_scenario(own: Path, text: str) -> Scenario:
     """Write a scenario into the folder `own`, under its own name.
 
-    Raises ConfigError where it cannot be run, RefusedError where it may not or cannot be written.
+    Raises ConfigError if it is not valid, RefusedError if it may not or cannot be written.
     """
     scenario = read_scenario(text)
     if scenario.name in SHIPPED:
-        raise RefusedError(f"{scenario.name} comes with the program. Give yours another name.")
+        raise RefusedError(f"{scenario.name} ships with the program. Choose another name.")
     try:
         make_folder(own)
         write_whole(own / f"{scenario.name}.toml", text.encode())
@@ -56,7 +56,7 @@ def _own(folder: Path) -> list[tuple[Path, str]]:
 
 
 def _describe(name: str, text: str, shipped: bool) -> ScenarioText:
-    """Its title is the file's name where there is something wrong with it; the check says what."""
+    """The scenario; the title of an invalid one is its file's name."""
     try:
         summary = summarize(read_scenario(text))
     except ConfigError:

@@ -1,4 +1,4 @@
-"""A scenario on the running robot, in real time: everything is as when an operator sits at the page."""
+"""Runs a scenario on the robot in real time, by the commands that an operator would give."""
 
 import asyncio
 import json
@@ -23,12 +23,12 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 
 POLL_SECONDS = 0.1
 SETTLE_SECONDS = 0.5
-"""After the water was changed at once, so that the sensors show it before the recording begins."""
+"""Time after a change of the water, for the sensors to follow before the recording begins."""
 NEEDED = ("board", "runtime", "simulator")
 
 
 class LiveExecutor:
-    """The robot that runs, its water and its recorder, as a stage. `stopped` is whom a STOP is told."""
+    """Performs scenarios on the running robot with its simulated water and its recorder."""
 
     def __init__(
         self,
@@ -58,12 +58,12 @@ class LiveExecutor:
         )
 
     def check(self, scenario: Scenario) -> None:
-        """Raises RefusedError with all reasons why it cannot be performed now."""
+        """Raise RefusedError with all reasons against a run now."""
         if reasons := [*self._find_obstacles(), *self._find_differences(scenario)]:
             raise RefusedError(" ".join(reasons))
 
     async def perform(self, run: RunRecord) -> None:
-        """From its beginning to its end. Raises what may go wrong on its way."""
+        """Perform a run. Raises the errors that `ScenarioExecutor.perform` names."""
         self.check(run.scenario)
         run.phase = "preparing"
         before = await self._surroundings.read(self._state())
@@ -78,7 +78,7 @@ class LiveExecutor:
                 await _finish_step(self._put_back(before, send))
 
     async def recover(self) -> None:
-        """End what a killed server has left running: disarm, close the recording, put everything back."""
+        """Clean up after a killed server: disarm, close the recording, restore the previous state."""
         before = await asyncio.to_thread(SavedState.read, self._snapshot)
         recording = self._recorder.session
         session = recording.id if recording is not None and recording.origin == "scenario" else None
@@ -89,17 +89,17 @@ class LiveExecutor:
             while (state := self._monitor.state()) is None:
                 await asyncio.sleep(POLL_SECONDS)
             if session is not None:
-                words = "The server was killed, and the scenario ends here."
+                words = "The server was killed; the scenario ends here."
                 await mark(self._store, session, self._clock.now(), words)
             await self._finish(session)
-            # A runtime that has started since is as robot.toml says.
+            # A restarted runtime already has the settings of robot.toml.
             if before is not None and state["run"] == before.robot["run"]:
                 await self._put_back(before, self._changes.put_back)
             await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
         finally:
             self._recovering = False
         words = (
-            "The server was killed in the middle of a scenario. The robot is disarmed, and as it was before."
+            "The server was killed during a scenario. The robot is disarmed and has its previous settings."
         )
         self._notify("scenario", "caution", words)
 
@@ -135,24 +135,24 @@ class LiveExecutor:
         try:
             await self._surroundings.apply(event, send)
         except (RefusedError, RuntimeSilentError) as problem:
-            # As with an operator, whom the robot may refuse something: the experiment goes on.
+            # The robot may refuse a command, as to an operator; the experiment continues.
             words = f"{words}: refused. {problem}"
             run.remarks.append(f"At {event.at:g} s: {words}")
         await mark(self._store, run.session, max(self._clock.now(), began), words)
 
     def _check_processes(self, run: RunRecord, processes: Mapping[str, int | None]) -> None:
-        """Raises RunFailedError where what the run needs is no longer there."""
+        """Raise RunCancelledError or RunFailedError if the run can no longer continue."""
         recording = self._recorder.session
         if recording is None or recording.id != run.session:
-            raise RunCancelledError("Somebody stopped the recording.")
+            raise RunCancelledError("The recording was stopped.")
         if self._bridge.reserved_reason is not None:
             raise RunFailedError(self._bridge.reserved_reason)
         for name, pid in self._process_ids().items():
             if pid != processes[name]:
-                raise RunFailedError(f"The {name} ended in the middle of it, and with it what was set.")
+                raise RunFailedError(f"The {name} ended during the run, and its settings are lost.")
 
     async def _finish(self, session: int | None) -> None:
-        """Disarm, and close the scenario's recording with that in it."""
+        """Disarm, and stop the scenario's recording afterwards."""
         try:
             await self._surroundings.disarm()
             await asyncio.sleep(SETTLE_SECONDS)
@@ -166,13 +166,15 @@ class LiveExecutor:
     async def _put_back(self, before: SavedState, send: Send) -> None:
         if problems := await self._surroundings.put_back(before, send):
             text = " ".join(problems)
-            self._notify("scenario", "caution", f"Not everything is as before the scenario. {text}")
+            self._notify(
+                "scenario", "caution", f"Some settings from before the scenario are not restored. {text}"
+            )
         await asyncio.to_thread(self._snapshot.unlink, missing_ok=True)
 
     def _find_obstacles(self) -> list[str]:
         recording = self._recorder.session
         if self._recovering:
-            return ["What a scenario has changed before the server ended is being put back. Wait a moment."]
+            return ["The state before an interrupted scenario is being restored. Wait a moment."]
         if self._settings.mode == "robot":
             return [
                 "A scenario changes the water, and this robot swims in real water: robot.mode is “robot”."
@@ -195,19 +197,19 @@ class LiveExecutor:
         return reasons
 
     def _find_differences(self, scenario: Scenario) -> list[str]:
-        """Why the running robot is not the scenario's."""
+        """The differences between the running robot and the scenario's."""
         reasons = []
         if not self._settings.emulated_board and any(
             isinstance(one, LineFaultChange) for one in scenario.events
         ):
-            reasons.append("It disturbs the serial line, which can be done with an emulated board alone.")
+            reasons.append("It disturbs the serial line, which needs an emulated board.")
         if scenario.robot != SimulationParameters():
-            reasons.append("It changes the hull's parameters, which can be done in simulated time alone.")
+            reasons.append("It changes the hull's parameters, which needs simulated time.")
         state = self._monitor.state() or {}
         rate = state.get("control_rate", scenario.control.rate)
         if rate != scenario.control.rate:
             reasons.append(
-                f"It wants control at {scenario.control.rate:g} Hz; this robot's runs at {rate:g} Hz "
+                f"It needs control at {scenario.control.rate:g} Hz; this robot's runs at {rate:g} Hz "
                 "([control] rate in robot.toml)."
             )
         return reasons
@@ -219,12 +221,12 @@ class LiveExecutor:
         return state
 
     def _process_ids(self) -> dict[str, int | None]:
-        # In the loop the simulator may be on another computer; where it is lost, the robot disarms.
+        # With hardware in the loop the simulator may be on another computer; without it the robot disarms.
         needed = [name for name in NEEDED if not (self._settings.in_the_loop and name == "simulator")]
         processes = {name: self._processes.get(name) for name in needed}
         return {name: part.pid for name, part in processes.items() if part is not None}
 
 
 async def _finish_step(step: Any) -> None:
-    """Finish a step even while the server is ending."""
+    """Finish a step even while the server shuts down."""
     await asyncio.shield(asyncio.create_task(step))

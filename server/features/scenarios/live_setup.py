@@ -1,4 +1,4 @@
-"""Sets up the running robot and its water for a scenario, and puts back what was there before."""
+"""Sets up the running robot and its water for a scenario, and restores the previous state."""
 
 import asyncio
 import json
@@ -39,7 +39,7 @@ DIRECTIONS = ("to_board", "from_board")
 class SavedState:
     """The runtime's `state`, the water's `surroundings` and the scene's `contents` before a scenario.
 
-    `sight` is None where no scene is rendered.
+    `sight` is None if no scene is rendered.
     """
 
     robot: Request
@@ -60,10 +60,9 @@ class SavedState:
 
 
 class LiveSetup:
-    """The runtime, the simulator and the board, as a scenario speaks to them.
+    """Sends a scenario's settings to the runtime, the simulator and the board.
 
-    `board_socket` is None where the board is a real one. Everything may raise RefusedError or
-    RuntimeSilentError.
+    `board_socket` is None for a real board. Every method may raise RefusedError or RuntimeSilentError.
     """
 
     def __init__(self, bridge: Bridge, board_socket: Path | None) -> None:
@@ -79,7 +78,7 @@ class LiveSetup:
             return SavedState(robot, water, None)
 
     async def prepare(self, scenario: Scenario, before: SavedState, send: Send) -> None:
-        """The scenario's beginning: its water, the hull at its start, the robot's controller and vision."""
+        """Set the scenario's water, the hull at its start, the robot's controller and vision."""
         await self._set_water(_water_of(scenario), before.water)
         start = {name: value for name, value in asdict(scenario.start).items() if value is not None}
         await self._bridge.ask_simulator("reset", {**start, "seed": scenario.seed})
@@ -112,7 +111,7 @@ class LiveSetup:
         await self._bridge.disarm()
 
     async def put_back(self, before: SavedState, send: Send) -> list[str]:
-        """Make everything as it was; what could not be, in words."""
+        """Restore the previous state; returns the problems in words."""
         robot = before.robot
         steps: list[Callable[[], Awaitable[None]]] = [
             lambda: self._clean_line(0),
@@ -133,7 +132,7 @@ class LiveSetup:
         ask = self._bridge.ask_simulator
         for fault in target["faults"] if present is None else present["faults"]:
             await ask("fault", fault if present is None else {"sensor": fault["sensor"], "kind": "none"})
-        # The old waves might break in the new basin.
+        # The old waves may be too high for the new basin.
         await ask("waves", STILL_WATER)
         await ask("world", target["world"])
         for name in ("beacons", "current", "waves", "trim"):
@@ -167,7 +166,7 @@ def _order(socket: Path, command: str) -> None:
 
 
 def _water_of(scenario: Scenario) -> Request:
-    """The scenario's water as the questions that make it."""
+    """The scenario's water as requests to the simulator."""
     basin, robot = scenario.scene.basin, scenario.robot
     trim = scenario.trim or Trim(robot.buoyancy, 0.0, 0.0, robot.buoyancy_height)
     return {
@@ -181,7 +180,7 @@ def _water_of(scenario: Scenario) -> Request:
 
 
 def _sight_of(scenario: Scenario) -> Request:
-    """The scenario's scene as the questions that make it."""
+    """The scenario's scene as requests to the simulator."""
     scene = scenario.scene
     return {
         "world": {"kind": scene.kind, "turbidity": scene.turbidity},
@@ -190,20 +189,20 @@ def _sight_of(scenario: Scenario) -> Request:
 
 
 def _gains_of(scenario: Scenario) -> dict[str, dict[str, float]]:
-    """Every gain of every controller: the default where the scenario says nothing, so that it repeats."""
+    """Every gain of every depth controller, the default unless the scenario sets it."""
     return {
         one.name: _defaults(one) | scenario.control.gains.get(one.name, {}) for one in CONTROLLERS["depth"]
     }
 
 
 def _at_rest(loop: LoopName) -> LoopCommand:
-    """The command that leaves a loop as it is at the runtime's start."""
+    """The command that sets a loop to its state at the runtime's start."""
     first = CONTROLLERS[loop][0]
     return LoopCommand(name=loop, on=False, set_point=0.0, controller=first.name, gains=_defaults(first))
 
 
 def _commands_of(robot: Request) -> list[RobotCommand]:
-    """The commands that make control and vision as this state of the robot says."""
+    """The commands that set control and vision to this state of the robot."""
     depth = next(loop for loop in robot["loops"] if loop["name"] == "depth")
     return [
         *(ControllerCommand(name=one["name"], gains=_values(one["gains"])) for one in depth["controllers"]),
@@ -216,7 +215,7 @@ def _commands_of(robot: Request) -> list[RobotCommand]:
 
 
 def _loops_of(robot: Request) -> list[LoopCommand]:
-    """The commands that make heading, pitch and roll as they were."""
+    """The commands that restore heading, pitch and roll."""
     commands: list[LoopCommand] = []
     for loop in robot["loops"]:
         if loop["name"] not in ATTITUDE_LOOPS:
@@ -236,7 +235,7 @@ async def _put_card_back(colour: str | None, send: Send) -> None:
     try:
         await send(CardCommand(colour=colour))
     except RefusedError:
-        # A camera without cards had none before, either.
+        # A camera without cards had none before.
         if colour is not None:
             raise
 

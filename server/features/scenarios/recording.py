@@ -1,4 +1,4 @@
-"""The session that a run records: what it says of the scenario, and the moments that are marked in it."""
+"""The session of a scenario run, and its bookmarks."""
 
 import asyncio
 from time import time
@@ -17,7 +17,7 @@ from server.platform.store import Store
 
 
 def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_state: str) -> SessionRow:
-    """The session of a run that begins now. Raises RefusedError where the configuration cannot be read."""
+    """The session of a run that begins now. Raises RefusedError if the configuration cannot be read."""
     scenario = run.scenario
     try:
         row = new_row(settings, clock, scenario.title, scenario.description, robot_state)
@@ -31,7 +31,7 @@ def describe_session(settings: Settings, clock: Clock, run: RunRecord, robot_sta
 
 
 async def begin(recorder: Recorder, store: Store, run: RunRecord, row: SessionRow) -> int:
-    """Record the run from now on; the session's number. Raises RecordingRefusedError, StoreError."""
+    """Start recording the run, and return the session's number. Raises RecordingRefusedError, StoreError."""
     session = await recorder.start(row)
     run.before = await asyncio.to_thread(_find_before, store, row.scenario_name, session.id)
     run.session, run.phase = session.id, "running"
@@ -46,6 +46,6 @@ def _find_before(store: Store, name: str, session: int) -> int | None:
 
 
 async def mark(store: Store, session: int, moment: float, text: str) -> None:
-    """Point out a moment (s, the session's clock). Raises StoreError."""
+    """Add a bookmark at a moment (s, the session's clock). Raises StoreError."""
     values = {"session_id": session, "time": moment, "text": text, "made": time()}
     await store.execute(insert(BookmarkRow).values(values))

@@ -1,4 +1,4 @@
-"""Scenarios: those there are, checking, running, cancelling."""
+"""Scenarios: list, check, run, cancel."""
 
 from fastapi import Request
 from fastapi.concurrency import run_in_threadpool

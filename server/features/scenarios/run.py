@@ -1,4 +1,4 @@
-"""One run of a scenario: how far it is, and how it is ended before its time."""
+"""One run of a scenario: its progress and its cancellation."""
 
 import asyncio
 from dataclasses import dataclass, field
@@ -17,11 +17,11 @@ from server.features.scenarios.schemas import (
 
 
 class RunCancelledError(Exception):
-    """Somebody ended the run; the text says who or how."""
+    """The run was cancelled; the text says why."""
 
 
 class RunFailedError(Exception):
-    """The run cannot go on; the text says why."""
+    """The run cannot continue; the text says why."""
 
 
 @dataclass(slots=True)
@@ -41,23 +41,23 @@ class RunRecord:
     before: int | None = None
     """The newest older session of the same scenario."""
     remarks: list[str] = field(default_factory=list)
-    """What did not go as the scenario says, though the run went on."""
+    """Deviations from the scenario that did not end the run."""
     _cancelled: asyncio.Event = field(default_factory=asyncio.Event)
     _why: str = ""
 
     def cancel(self, why: str) -> None:
-        """End the run soon and in order; the first reason counts."""
+        """Request an orderly end of the run; the first reason counts."""
         if not self._cancelled.is_set():
             self._why = why
             self._cancelled.set()
 
     def check(self) -> None:
-        """Raises RunCancelledError where it was cancelled."""
+        """Raise RunCancelledError if the run is cancelled."""
         if self._cancelled.is_set():
             raise RunCancelledError(self._why)
 
     async def cancelled(self) -> None:
-        """Wait until it is cancelled."""
+        """Wait until the run is cancelled."""
         await self._cancelled.wait()
 
     async def sleep(self, seconds: float) -> None:
@@ -70,7 +70,7 @@ class RunRecord:
         self.check()
 
     def describe(self) -> ActiveRun:
-        """As sent to the pages."""
+        """The run as sent to the pages."""
         coming = (one for one in self.scenario.events if one.at > self.elapsed or self.phase == "preparing")
         following = next(coming, None)
         return ActiveRun(

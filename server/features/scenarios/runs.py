@@ -22,15 +22,15 @@ NOTIFY_SECONDS = 0.25
 
 
 class ScenarioExecutor(Protocol):
-    """Where a scenario is performed."""
+    """Performs scenarios, on the robot or in simulated time."""
 
     def check(self, scenario: Scenario) -> None:
-        """Raises RefusedError with all reasons why it cannot be performed here now."""
+        """Raise RefusedError with all reasons against a run now."""
 
     async def perform(self, run: RunRecord) -> None:
-        """From its beginning to its end.
+        """Perform a run.
 
-        Raises RunCancelledError, RunFailedError, and what it meets on its way.
+        Raises RunCancelledError, RunFailedError, RefusedError, RuntimeSilentError, StoreError, OSError.
         """
 
 
@@ -50,7 +50,7 @@ class ScenarioRunner:
 
     @property
     def active(self) -> RunRecord | None:
-        """The run that is on."""
+        """The active run."""
         return self._active
 
     def state(self) -> ScenarioState:
@@ -65,36 +65,34 @@ class ScenarioRunner:
         )
 
     def start(self, text: str, place: Place, board: BoardKind, who: str = "") -> int:
-        """Run a scenario, or let it wait for its turn; its number. Raises ConfigError, RefusedError."""
+        """Start or queue a scenario, and return its number. Raises ConfigError, RefusedError."""
         scenario = read_scenario(text)
         if place == "live" and self._active is not None:
-            raise RefusedError(
-                f"“{self._active.scenario.title}” is being run. Wait for its end, or cancel it."
-            )
+            raise RefusedError(f"“{self._active.scenario.title}” is running. Wait for its end, or cancel it.")
         if len(self._queue) >= QUEUE_MAX:
-            raise RefusedError(f"{QUEUE_MAX} scenarios wait already. Wait until some have ended.")
+            raise RefusedError(f"{QUEUE_MAX} scenarios are waiting already. Wait until some have ended.")
         self._executors[place].check(scenario)
         self._number += 1
         run = RunRecord(self._number, scenario, text, place, board, who)
         self._queue.append(run)
         if self._task is None or self._task.done():
-            # Now, and not when the task begins: whoever asks next must find it occupied.
+            # Set here, before the task begins, so that the next request finds it active.
             self._active = self._queue.popleft()
             self._task = asyncio.create_task(self._work())
         self.announce()
         return run.number
 
     def cancel(self) -> None:
-        """End what runs, in order, and forget what waits; what was recorded is kept."""
+        """Cancel the active run and clear the queue; recordings stay."""
         self._queue.clear()
         if self._active is not None:
             self._active.cancel("It was cancelled.")
         self.announce()
 
     def see_stop(self) -> None:
-        """Somebody said STOP to the robot: that ends what runs on it."""
+        """Cancel a live run after a STOP of the robot."""
         if self._active is not None and self._active.place == "live":
-            self._active.cancel("Somebody pressed STOP.")
+            self._active.cancel("STOP was pressed.")
 
     async def wait(self) -> None:
         """Wait until nothing runs."""
@@ -107,7 +105,7 @@ class ScenarioRunner:
         await self.wait()
 
     def announce(self) -> None:
-        """Tell the state."""
+        """Send the state to the pages."""
         self._notify({"op": "scenario", **self.state().model_dump()})
 
     async def _work(self) -> None:
@@ -141,7 +139,7 @@ class ScenarioRunner:
             state, problem = "failed", str(why)
         except Exception as why:
             log.exception("a scenario failed")
-            state, problem = "failed", f"The server made a mistake ({why!r}); its log says more."
+            state, problem = "failed", f"Internal error ({why!r}); the server's log has details."
         return run.end(state, problem)
 
     async def _announce_regularly(self) -> None:

@@ -15,13 +15,13 @@ Text = Annotated[str, Field(max_length=TEXT_BYTES_MAX, description="TOML")]
 
 
 class ScenarioText(BaseModel):
-    """A scenario; `shipped` ones come with the program, the others lie in the data folder."""
+    """A scenario; `shipped` ones are part of the program, the others are in the data folder."""
 
     name: str
     title: str
     text: str = Field(description="TOML")
     shipped: bool
-    summary: "ScenarioSummary | None" = Field(description="null where there is something wrong with it")
+    summary: "ScenarioSummary | None" = Field(description="null if it is not valid")
 
 
 class ScenarioDocument(BaseModel):
@@ -32,7 +32,7 @@ class ScenarioDocument(BaseModel):
 
 
 class ScenarioEvent(BaseModel):
-    """Something that happens in a scenario."""
+    """An event of a scenario."""
 
     at: float = Field(description="s")
     do: str
@@ -40,7 +40,7 @@ class ScenarioEvent(BaseModel):
 
 
 class ScenarioSummary(BaseModel):
-    """A scenario in short."""
+    """The summary of a scenario."""
 
     name: str
     title: str
@@ -48,7 +48,7 @@ class ScenarioSummary(BaseModel):
     duration: float = Field(description="s")
     seed: int
     scene: Literal["pool", "natural"]
-    controller: str = Field(description="the title of what steers the depth")
+    controller: str = Field(description="title of the depth controller")
     events: list[ScenarioEvent]
 
 
@@ -60,7 +60,7 @@ class ScenarioCheck(BaseModel):
 
 
 class ScenarioStart(BaseModel):
-    """A scenario that is to be run: on the running robot in real time, or in simulated time.
+    """A scenario to run: on the robot in real time, or in simulated time.
 
     `board`, in simulated time alone: the firmware built for this computer, or on the emulated board.
     """
@@ -85,7 +85,7 @@ class NextEvent(BaseModel):
 
 
 class ActiveRun(BaseModel):
-    """The run that is on; times in s of the scenario."""
+    """The active run; times in s of the scenario."""
 
     run: int
     name: str
@@ -101,7 +101,7 @@ class ActiveRun(BaseModel):
 
 
 class QueuedRun(BaseModel):
-    """A run that waits for its turn."""
+    """A queued run."""
 
     run: int
     name: str
@@ -109,7 +109,7 @@ class QueuedRun(BaseModel):
 
 
 class EndedRun(BaseModel):
-    """The run that ended last; `session` is null where it came to no recording."""
+    """The run that ended last; `session` is null if it recorded nothing."""
 
     run: int
     name: str
@@ -130,7 +130,7 @@ class ScenarioState(BaseModel):
 
 
 def summarize(scenario: Scenario) -> ScenarioSummary:
-    """The scenario in short."""
+    """The summary of a scenario."""
     steering = scenario.control.controller
     return ScenarioSummary(
         name=scenario.name,
@@ -145,5 +145,5 @@ def summarize(scenario: Scenario) -> ScenarioSummary:
 
 
 def describe_events(scenario: Scenario) -> list[ScenarioEvent]:
-    """Its events, in order."""
+    """The events of a scenario, in order."""
     return [ScenarioEvent(at=event.at, do=event.do, words=event.words) for event in scenario.events]

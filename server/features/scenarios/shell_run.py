@@ -1,4 +1,4 @@
-"""A scenario run by a shell: in simulated time here, where no server works on the data folder; else by it."""
+"""Runs a scenario from a shell: in simulated time if no server uses the data folder, else by the server."""
 
 import asyncio
 import math
@@ -25,9 +25,9 @@ POLL_SECONDS = 0.25
 
 
 def run_scenario(start: ScenarioStart, settings: Settings) -> int:
-    """Run a scenario and print its events as they come. Exit status: 1 where it did not come to its end.
+    """Run a scenario and print its events as they come. Exit status: 1 if it did not complete.
 
-    Raises SetupError where it cannot be begun.
+    Raises SetupError if it cannot start.
     """
     with ExitStack() as claimed:
         if start.place == "simulated" and _enter(claimed, claim(settings.data)):
@@ -36,7 +36,7 @@ def run_scenario(start: ScenarioStart, settings: Settings) -> int:
 
 
 def _enter(claimed: ExitStack, claim: AbstractContextManager[None]) -> bool:
-    """True where the data folder was claimed; false where a server uses it or it is not usable."""
+    """True if the data folder was claimed; false if a server uses it or it is not usable."""
     try:
         claimed.enter_context(claim)
     except SetupError:
@@ -65,7 +65,7 @@ async def _simulate(start: ScenarioStart, settings: Settings, store: Store) -> E
 
 
 def _run_there(start: ScenarioStart, folder: DataFolder) -> EndedRun:
-    """Ask the server that runs; Ctrl-C cancels the run there."""
+    """Run it by the running server; Ctrl-C cancels it there."""
     if start.place == "simulated":
         number = ask(folder, "POST", "/scenarios/runs", start.model_dump())["run"]
         return _follow(number, folder, lambda: None)
@@ -86,7 +86,7 @@ def _follow(number: int, folder: DataFolder, keep: Callable[[], None]) -> EndedR
             sleep(POLL_SECONDS)
     except KeyboardInterrupt:
         ask(folder, "POST", "/scenarios/cancel")
-        raise SetupError("The run was cancelled; what was recorded is kept.") from None
+        raise SetupError("The run was cancelled; its recording stays.") from None
 
 
 def _conclude(last: EndedRun) -> int:
@@ -96,7 +96,7 @@ def _conclude(last: EndedRun) -> int:
 
 
 class _Progress:
-    """Writes each event as the run reaches it."""
+    """Prints each event as the run reaches it."""
 
     def __init__(self) -> None:
         self._run: int | None = None
@@ -107,7 +107,7 @@ class _Progress:
         """Print the events that are new in this state."""
         active, last = state.active, state.last
         if last is not None and last.run == self._run and last.state == "complete":
-            # A fast run may be over before its last events were told.
+            # A fast run may end before its last events are reported.
             self._print_until(math.inf)
         if active is None or active.phase not in ("running", "ending"):
             return

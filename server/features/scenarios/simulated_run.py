@@ -1,8 +1,7 @@
-"""A scenario in simulated time: a process of its own, at lower priority, whose blocks are recorded here.
+"""Runs a scenario in simulated time, in a process of low priority, and records its blocks.
 
-`python -m robot_runtime.experiments.scenario` takes the text on its standard input, and writes messages on
-its standard
-output: `u32 size | u8 kind | bytes` (little-endian), kind 0 a JSON object, kind 1 blocks.
+`python -m robot_runtime.experiments.scenario` reads the text from its standard input, and writes messages to
+its standard output: `u32 size | u8 kind | bytes` (little-endian), kind 0 a JSON object, kind 1 blocks.
 """
 
 import asyncio
@@ -36,7 +35,7 @@ FLUSH_BYTES = 2_000_000
 ERROR_LINES = 5
 NICENESS = "10"
 END_SECONDS = 10.0
-"""After which a process that was asked to end is killed."""
+"""Time after which a terminated process is killed."""
 
 
 class ScenarioClock:
@@ -51,7 +50,7 @@ class ScenarioClock:
 
 
 class SimulatedExecutor:
-    """A process for each scenario, as a stage."""
+    """Performs scenarios in simulated time, each in its own process."""
 
     def __init__(self, settings: Settings, store: Store, notices: Notices) -> None:
         self._settings = settings
@@ -59,10 +58,10 @@ class SimulatedExecutor:
         self._notices = notices
 
     def check(self, scenario: Scenario) -> None:
-        """There is always room for one more in the queue."""
+        """Accept every scenario."""
 
     async def perform(self, run: RunRecord) -> None:
-        """From its beginning to its end. Raises RunCancelledError, RunFailedError, StoreError, OSError."""
+        """Perform a run. Raises RunCancelledError, RunFailedError, StoreError, OSError."""
         clock = ScenarioClock()
         recorder = Recorder(self._store, clock, self._notices, lambda: None)
         run.phase = "preparing"
@@ -95,7 +94,7 @@ class _Playback:
         self._ended: dict[str, Any] | None = None
 
     async def take(self, process: Process) -> None:
-        """Everything up to its end. Raises RunFailedError, StoreError."""
+        """Store everything up to its end. Raises RunFailedError, StoreError."""
         assert process.stdout is not None
         try:
             while (message := await _read(process.stdout)) is not None:
@@ -140,7 +139,7 @@ class _Playback:
 
 @asynccontextmanager
 async def _process(run: RunRecord, settings: Settings) -> AsyncIterator[tuple[Process, deque[str]]]:
-    """The process, which has the scenario's text; `errors` are the last lines of its complaints."""
+    """The process of a scenario; `errors` are the last lines of its standard error."""
     command = [
         "nice",
         "-n",
@@ -204,7 +203,7 @@ def _signal(process: Process, number: signal.Signals) -> None:
 
 
 async def _read(stream: asyncio.StreamReader) -> tuple[int, bytes] | None:
-    """One message; None after the last. Raises ValueError, IncompleteReadError where it is cut off."""
+    """One message; None after the last. Raises ValueError, and IncompleteReadError if it is cut off."""
     try:
         size, kind = HEADER.unpack(await stream.readexactly(HEADER.size))
     except asyncio.IncompleteReadError as problem:

@@ -182,7 +182,7 @@ class Recorder:
             self._reset()
             self._accepts = True
             if self._standing is not None:
-                # They are sent at each change and rarely otherwise: the session begins with the values in force.
+                # They are sent rarely: the session begins with the values in force.
                 self.add(_as_of(self._standing, self._clock.now()))
         self._notices.notify("recording", "info", f"Recording of “{row.name}” has begun.")
         self._changed()

@@ -62,7 +62,7 @@ class Recording:
             yield database
 
     def counts(self, start: float = -inf, end: float = inf) -> dict[str, int]:
-        """Samples by topic in the chunks that may overlap this range; topics without samples are left out."""
+        """Samples by topic in the chunks that may overlap this range, without empty topics."""
         query = select(Chunk.topic, func.sum(Chunk.count)).where(Chunk.session_id == self.row.id)
         if start > -inf:
             query = query.where(Chunk.last_time >= start)
@@ -151,7 +151,7 @@ class Recording:
             if name not in layout.names:
                 raise KeyError(f"{topic} has no column {name}; it has {', '.join(layout.names)}")
         places = [layout.names.index(name) for name in names]
-        # A chunk holds the first bytes of all its rows, then the second ones; only the chosen ones are joined.
+        # A chunk holds the first bytes of all its rows, then the second ones; the chosen ones are joined.
         offsets = np.concatenate([np.arange(8), *(np.arange(ends[at], ends[at + 1]) for at in places)])
         pieces = [
             table[:, offsets].transpose(1, 0, 2).reshape(len(offsets), -1)

@@ -1,8 +1,8 @@
 """Deletes removed and expired sessions in small transactions, while recording goes on.
 
-A session moves to the bin first. When it leaves the bin it is marked and hidden; then its chunks are deleted, a
-few in each transaction, so that the recorder can commit in between. Finally the free pages are returned to the
-disk, a few at a time as well (the database's auto_vacuum is incremental).
+A session moves to the bin first. When it leaves the bin it is marked and hidden; then its chunks are deleted,
+a few in each transaction, so that the recorder can commit in between. Finally the free pages are returned to
+the disk, a few at a time as well (the database's auto_vacuum is incremental).
 """
 
 import asyncio

@@ -26,7 +26,7 @@ class Session(BaseModel):
     markers: int = Field(description="number of bookmarks")
     state: State
     origin: Origin = Field(
-        description="started by an operator, arming, a scenario in real time or in simulated time; or imported"
+        description="started by an operator, arming, a scenario in real or in simulated time; or imported"
     )
     started: datetime = Field(description="UTC")
     ended: datetime | None = Field(description="UTC; null while it records")

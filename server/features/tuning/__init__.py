@@ -1,1 +1,1 @@
-"""Tuning: step responses and relay experiments on the running robot, kept with what came of them."""
+"""Tuning: step responses and relay experiments on the running robot, and their results."""

@@ -12,7 +12,7 @@ from robot_runtime.contract.packets import Motor
 from robot_runtime.transport.blocks import Block, read_rows
 
 DIGITS = 6
-"""Of the seconds and values that are kept."""
+"""Stored decimals of times and values."""
 TURNING = ("heading", "pitch", "roll")
 FINS = 4
 
@@ -30,14 +30,14 @@ class TuningCurve:
     outputs: list[float]
 
     def add(self, time: float, set_point: float, value: float, output: float) -> None:
-        """One tick, where the loop was steered and its value known."""
+        """Add a tick, unless the loop is off or its value unknown."""
         if isnan(set_point) or isnan(value) or isnan(output):
             return
         for column, number in zip(self._columns(), (time, set_point, value, output), strict=True):
             column.append(number)
 
     def between(self, start: float, end: float, zero: float) -> "TuningCurve":
-        """The ticks from `start` until before `end`, counted from `zero` on."""
+        """The ticks from `start` up to, but not at, `end`, with times relative to `zero`."""
         inside = [place for place, time in enumerate(self.times) if start <= time < end]
         times = [round(self.times[place] - zero, DIGITS) for place in inside]
         rest = ([round(column[place], DIGITS) for place in inside] for column in self._columns()[1:])
@@ -57,7 +57,7 @@ class TuningCurve:
 
 
 class SampleBuffer:
-    """Takes in, block by block, what a run on this loop needs."""
+    """Collects the samples that a run on this loop needs, block by block."""
 
     def __init__(self, loop: str) -> None:
         self.curve = TuningCurve([], [], [], [])
@@ -67,7 +67,7 @@ class SampleBuffer:
         self._loop = loop
 
     def see(self, block: Block) -> None:
-        """Keep what of it belongs to the run."""
+        """Process a block of any topic."""
         name = block.topic.name
         if name == "motor":
             for time, motor in read_rows(block):

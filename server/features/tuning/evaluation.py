@@ -1,4 +1,4 @@
-"""Results of a run that has ended."""
+"""Evaluates a run that has ended."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,7 +9,7 @@ from server.features.tuning.relay import TIME_TOLERANCE, measure_limit_cycle
 from server.features.tuning.schemas import RelayStart, RunState, StepStart
 
 LEAD = 3.0
-"""s before the step that a curve begins."""
+"""s of a curve before the step."""
 
 
 def measure_run(
@@ -19,9 +19,9 @@ def measure_run(
     state: RunState,
     problem: str,
 ) -> tuple[dict[str, Any], TuningCurve, str]:
-    """The results, the curve, and the reason where there are no results.
+    """The results, the curve, and the reason for missing results.
 
-    `starts` says when each phase began (s, steady clock). Only a run that is complete is measured.
+    `starts` are the starts of the phases (s, steady clock). Only a complete run is evaluated.
     """
     began, ended = min(starts.values(), default=0.0), starts.get(state, float("inf"))
     if experiment.kind == "relay":
@@ -44,7 +44,7 @@ def _relay(
     ended: float,
     problem: str,
 ) -> tuple[dict[str, Any], TuningCurve, str]:
-    # The relay ends in its last tick, a step before the tick in which the set point is the usual one again.
+    # The relay ends one tick before the set point returns to its previous value.
     curve = samples.curve.between(began, ended + TIME_TOLERANCE, began)
     if problem or "running" not in starts:
         return {}, curve, problem

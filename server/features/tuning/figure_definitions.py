@@ -1,14 +1,14 @@
-"""Definitions of a step response's figures, without the code that computes them."""
+"""Definitions of a step response's figures; they load no NumPy."""
 
 from server.features.metrics.figure import FigureMeaning, describe
 
 NEAR = 0.02
-"""m, and 2 for angles in degrees: the band of one settling time, whatever the step."""
+"""m; the band of one settling time, whatever the step."""
 NEAR_DEGREES = 2.0
 
 
 def is_angle(loop: str) -> bool:
-    """True where the loop's unit is rad, shown in degrees; else it is m."""
+    """True if the loop's unit is rad, shown in degrees; else it is m."""
     return loop != "depth"
 
 

@@ -10,16 +10,16 @@ from server.features.tuning.rules import ultimate_gain
 from server.features.tuning.schemas import MeasuredLimitCycle
 
 TIME_TOLERANCE = 0.05
-"""s by which a tick may bear another time than what it has caused; less than the time between two ticks."""
+"""s between the times of a tick and its effect; less than the time between two ticks."""
 SPREAD_MAX = 0.2
-"""Share by which cycles may differ from each other, and the halves of one, before that is remarked on."""
+"""Largest relative spread of the cycles, and of their halves, without a remark."""
 
 
 def measure_limit_cycle(curve: TuningCurve, began: float, hysteresis: float) -> MeasuredLimitCycle:
     """Period, swing and ultimate gain over the cycles from `began` (s of the curve) on.
 
-    Each is the median over whole cycles, from one time that the relay turns to its greater command to the
-    next. Raises ValueError where there is no whole cycle, or it does not go beyond the hysteresis.
+    Each is the median over whole cycles, from one switch of the relay to its greater command to the next.
+    Raises ValueError without a whole cycle, or if the swing does not exceed the hysteresis.
     """
     times, values, outputs = (np.array(one) for one in (curve.times, curve.values, curve.outputs))
     counts = outputs[times >= began - TIME_TOLERANCE]

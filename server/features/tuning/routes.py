@@ -1,4 +1,4 @@
-"""Tuning: step responses and relay experiments on the running robot, and what is kept of them."""
+"""Tuning: step responses and relay experiments on the running robot, and their stored runs."""
 
 from fastapi.concurrency import run_in_threadpool
 

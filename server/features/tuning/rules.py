@@ -1,4 +1,4 @@
-"""From ultimate gain and period to gains of a PID, by named rules.
+"""Rules that compute the gains of a PID from ultimate gain and period.
 
 Each rule gives gain Kp, integral time Ti and derivative time Td of u = Kp (e + ∫e dt / Ti + Td de/dt); the
 robot's PID is the parallel form: kp = Kp, ki = Kp / Ti, kd = Kp Td.

@@ -1,4 +1,4 @@
-"""The run that is on: begun in the runtime, gathered from what it sends, measured and kept at its end."""
+"""Runs tuning experiments: starts them in the runtime, collects their samples, evaluates and stores them."""
 
 import asyncio
 import json
@@ -34,7 +34,7 @@ from server.stream.bridge import Bridge, RuntimeSilentError
 log = logging.getLogger(__name__)
 
 SILENCE_SECONDS = 5.0
-"""s without a word of the experiment, which speaks twice a second, after which it is lost."""
+"""s without a report of the experiment, which sends two per second, after which it has failed."""
 CHECK_SECONDS = 1.0
 PID = "pid"
 SERVER = "the server"
@@ -54,14 +54,14 @@ class _Active:
     cycles: int = 0
     text: str = ""
     starts: dict[str, float] = field(default_factory=dict)
-    """When each phase began, s, steady clock."""
+    """The start of each phase, s, steady clock."""
 
     @property
     def over(self) -> bool:
         return self.phase in ENDED
 
     def describe(self) -> ActiveTuning:
-        """As sent to the pages."""
+        """The run as sent to the pages."""
         return ActiveTuning(
             run=self.run,
             kind=self.experiment.kind,
@@ -76,7 +76,7 @@ class _Active:
 
 
 class TuningRunner:
-    """At most one run at a time; `notify` reports progress, `occupied` gives a reason against a start."""
+    """Runs one experiment at a time; `notify` reports progress, `occupied` a reason against a start."""
 
     def __init__(
         self,
@@ -107,11 +107,11 @@ class TuningRunner:
         return TuningState(active=active, last=self._last)
 
     async def start(self, who: str, experiment: StepStart | RelayStart) -> int:
-        """Begin a run; its number. Raises RefusedError, RuntimeSilentError, StoreError."""
+        """Start a run and return its number. Raises RefusedError, RuntimeSilentError, StoreError."""
         self._check()
         self._starting = True
         try:
-            # What the server was told last may be older than the controller that was just chosen.
+            # The last state that the server received may be older than a change of the controller.
             force, limits = _in_force(await self._bridge.query("state"), experiment.loop)
             run = await self.runs.begin(experiment, _name(experiment, force), force, limits)
             now = self._clock.now()
@@ -132,7 +132,7 @@ class TuningRunner:
     async def delete(self, run: int) -> None:
         """Remove a run for good.
 
-        Raises SessionStateError while it is on, UnknownTuningRunError, StoreError.
+        Raises SessionStateError while it runs, UnknownTuningRunError, StoreError.
         """
         await self.runs.delete(run)
         if self._last is not None and self._last.id == run:
@@ -140,16 +140,16 @@ class TuningRunner:
             self.announce()
 
     async def stop(self) -> None:
-        """End what runs; the curve so far is kept.
+        """Stop the active run; its curve so far is stored.
 
-        Raises RefusedError where nothing runs, RuntimeSilentError.
+        Raises RefusedError if nothing runs, RuntimeSilentError.
         """
         if self._active is None:
-            raise RefusedError("No experiment runs.")
+            raise RefusedError("No experiment is running.")
         await self._changes.command(SERVER, EndExperimentCommand())
 
     def see(self, block: Block) -> None:
-        """Something came from the robot."""
+        """Process a block from the robot."""
         active = self._active
         if block.topic.name == "experiment":
             for document in json.loads(block.payload):
@@ -158,17 +158,17 @@ class TuningRunner:
             active.samples.see(block)
 
     def announce(self) -> None:
-        """Tell the state."""
+        """Send the state to the pages."""
         self._notify({"op": "tuning", **json.loads(self.state().model_dump_json())})
 
     async def run(self) -> None:
-        """Look after the run that is on, for ever."""
+        """Check every second that the active run still reports; end orphaned experiments."""
         while True:
             await asyncio.sleep(CHECK_SECONDS)
             active = self._active
             if active is not None and not active.over and self._clock.now() - active.heard > SILENCE_SECONDS:
                 active.phase = "failed"
-                active.text = "The robot's runtime said nothing of it any more."
+                active.text = "The robot's runtime no longer reports on it."
                 self._end(active)
             if self._orphaned:
                 self._orphaned = False
@@ -176,7 +176,7 @@ class TuningRunner:
                     await self._changes.command(SERVER, EndExperimentCommand())
 
     async def close(self) -> None:
-        """End what runs, and keep what there is of it."""
+        """Stop the active run, and store what was measured."""
         active = self._active
         if active is not None and not active.over:
             with suppress(RefusedError, RuntimeSilentError):
@@ -188,14 +188,14 @@ class TuningRunner:
 
     def _check(self) -> None:
         if self._active is not None or self._starting:
-            raise RefusedError("An experiment runs already. Wait for its end, or stop it first.")
+            raise RefusedError("An experiment is already running. Wait for its end, or stop it first.")
         if (why := self._occupied()) is not None:
             raise RefusedError(why)
 
     def _take_progress(self, document: dict[str, Any]) -> None:
         active = self._active
         if active is None or document["number"] != active.run:
-            # Of a server that was killed, or of a start that this one did not hear the answer to.
+            # An experiment of a killed server, or of a start whose answer was lost.
             self._orphaned = self._orphaned or document["phase"] not in ENDED
             return
         if active.over:
@@ -220,7 +220,7 @@ class TuningRunner:
         state: RunState = "failed" if active.phase not in ("complete", "stopped") else active.phase
         problem = active.text
         try:
-            # NumPy is loaded here, when it is first needed.
+            # NumPy is loaded at its first use.
             from server.features.tuning.evaluation import measure_run
 
             found, curve, problem = await asyncio.to_thread(
@@ -255,15 +255,15 @@ def _format(value: float, loop: str) -> str:
 def _in_force(
     state: Mapping[str, Any], loop: str
 ) -> tuple[ControllerInForce, dict[str, tuple[float, float]]]:
-    """The loop's controller, and what its PID's gains may be.
+    """The loop's controller, and the limits of its PID's gains.
 
-    Raises RefusedError where no run may begin on it.
+    Raises RefusedError if no run can start on it.
     """
     if state["mode"] != "automatic":
         raise RefusedError(f"The robot is {state['mode']}. Arm it, in automatic, before an experiment.")
     one = next((one for one in state["loops"] if one["name"] == loop), None)
     if one is None:
-        raise RefusedError(f"This robot's runtime steers no loop {loop!r}.")
+        raise RefusedError(f"This robot's runtime has no loop {loop!r}.")
     choices = {choice["name"]: choice for choice in one["controllers"]}
     chosen = choices[one["controller"]]
     force = ControllerInForce(

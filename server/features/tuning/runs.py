@@ -1,4 +1,4 @@
-"""Tuning runs in the database. What is awaited is on the disk when it returns."""
+"""Tuning runs in the database. A change is on the disk when its method returns."""
 
 import json
 import time
@@ -37,7 +37,7 @@ class UnknownTuningRunError(NotFoundError):
 
 
 class TuningStore:
-    """All runs, stored until they are deleted. Methods raise StoreError, and UnknownRun."""
+    """All runs, stored until they are deleted. Methods raise StoreError, and UnknownTuningRunError."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
@@ -69,7 +69,7 @@ class TuningStore:
     async def begin(
         self, experiment: StepStart | RelayStart, name: str, force: ControllerInForce, limits: Any
     ) -> int:
-        """A run that begins now; its number. `limits` are those of the PID's gains, by name."""
+        """Add a run that begins now, and return its number; `limits` are those of the PID's gains."""
         values = {
             "name": name,
             "kind": experiment.kind,
@@ -87,7 +87,7 @@ class TuningStore:
     async def end(
         self, run: int, state: RunState, problem: str, found: dict[str, Any], curve: TuningCurve
     ) -> None:
-        """The run is over; with all that came of it, or nothing of it is kept."""
+        """Store the end of a run and its results, in one transaction."""
         values = {
             "state": state,
             "problem": problem,
@@ -97,13 +97,13 @@ class TuningStore:
         await self._store.execute(update(TuningRunRow).where(col(TuningRunRow.id) == run).values(values))
 
     async def rename(self, run: int, name: str) -> None:
-        """Call it so."""
+        """Rename a run."""
         change = update(TuningRunRow).where(col(TuningRunRow.id) == run).values(name=name)
         if await self._store.execute(change) == 0:
             raise UnknownTuningRunError(run)
 
     async def delete(self, run: int) -> None:
-        """Remove it for good. Raises SessionStateError while it runs."""
+        """Remove a run for good. Raises SessionStateError while it runs."""
 
         def change(connection: Connection) -> None:
             state = connection.execute(
@@ -112,18 +112,18 @@ class TuningStore:
             if state is None:
                 raise UnknownTuningRunError(run)
             if state == "running":
-                raise SessionStateError("This run is on. Stop it first.")
+                raise SessionStateError("This run is active. Stop it first.")
             connection.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
 
         await self._store.write(change)
 
     async def forget(self, run: int) -> None:
-        """It never began."""
+        """Remove a run that could not start."""
         await self._store.execute(delete(TuningRunRow).where(col(TuningRunRow.id) == run))
 
     async def mark_interrupted(self) -> None:
-        """Runs that still say that they are on were left by a server that was killed."""
-        values = {"state": "interrupted", "problem": "The server ended while it ran; its curve is not kept."}
+        """Mark the running runs of a killed server as interrupted."""
+        values = {"state": "interrupted", "problem": "The server ended during the run; its curve is lost."}
         running = col(TuningRunRow.state) == "running"
         await self._store.execute(update(TuningRunRow).where(running).values(values))
 

@@ -1,4 +1,4 @@
-"""Tuning as the interface shows it."""
+"""Schemas of tuning in the interface."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -29,7 +29,7 @@ Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle 
 
 
 class Limits(BaseModel):
-    """Limits of the value from its first entry on; outside them the experiment ends at once."""
+    """Limits of the value; once inside them, leaving them ends the experiment at once."""
 
     model_config = ConfigDict(extra="forbid")
     low: Value
@@ -44,9 +44,9 @@ class StepStart(Limits):
     start: Value
     target: Value
     tolerance: Annotated[
-        FiniteFloat, Field(gt=0, le=20, description="how near to the start counts as settled")
+        FiniteFloat, Field(gt=0, le=20, description="largest distance from the start that counts as settled")
     ]
-    settle: Annotated[SettleSeconds, Field(description="s for which the start is held at most")]
+    settle: Annotated[SettleSeconds, Field(description="longest time at the start, s")]
     duration: Annotated[ExperimentSeconds, Field(description="s from the step on")]
 
     def command(self, run: int) -> ExperimentCommand:
@@ -55,14 +55,14 @@ class StepStart(Limits):
 
 
 class RelayStart(Limits):
-    """A relay in the place of a loop's controller."""
+    """A relay in place of a loop's controller."""
 
     kind: Literal["relay"]
     loop: LoopName = "depth"
     set_point: Value
     amplitude: Annotated[RelayAmplitude, Field(description="d, share of the largest command")]
     hysteresis: Annotated[FiniteFloat, Field(ge=0, le=20, description="ε, in the loop's unit")]
-    cycles: Annotated[RelayCycles, Field(description="that are measured")]
+    cycles: Annotated[RelayCycles, Field(description="number of measured cycles")]
     duration: Annotated[ExperimentSeconds, Field(description="s after which it gives up")]
 
     def command(self, run: int) -> ExperimentCommand:
@@ -98,7 +98,7 @@ class MeasuredLimitCycle(BaseModel):
     bias: float = Field(description="mean command, which balances the load")
     asymmetry: float = Field(description="share of the cycle by which its halves differ; 0: none")
     ultimate_gain: float = Field(description="command for each unit of the loop")
-    remarks: list[str] = Field(description="what makes these figures doubtful")
+    remarks: list[str] = Field(description="reasons to doubt these figures")
 
 
 class Proposal(BaseModel):
@@ -109,7 +109,7 @@ class Proposal(BaseModel):
     source: str
     known_for: str
     gains: dict[str, float]
-    problem: str = Field(description="why these cannot be set; empty where they can")
+    problem: str = Field(description="why these cannot be set; empty if they can")
 
 
 class TuningRun(BaseModel):
@@ -122,28 +122,28 @@ class TuningRun(BaseModel):
     started: datetime
     state: RunState
     problem: str = Field(description="why it did not complete")
-    settings: dict[str, Any] = Field(description="as it was started")
+    settings: dict[str, Any] = Field(description="the request that started it")
     force: ControllerInForce
     figures: dict[str, Figure] = Field(description="of a step response, by name")
     cycle: MeasuredLimitCycle | None = Field(description="of a relay experiment")
 
 
 class TuningRunDetail(TuningRun):
-    """A run with everything that is known of it."""
+    """A run with its curve and proposals."""
 
     curve: TuningCurve
     proposals: list[Proposal] = Field(description="of a relay experiment: gains of a PID by several rules")
 
 
 class TuningRuns(BaseModel):
-    """The runs on a loop, newest first, and what their figures are."""
+    """The runs on a loop, newest first, and the meanings of their figures."""
 
     figures: list[FigureMeaning]
     runs: list[TuningRun]
 
 
 class TuningStarted(BaseModel):
-    """The run that has begun."""
+    """The number of the started run."""
 
     run: int
 
@@ -156,7 +156,7 @@ class TuningName(BaseModel):
 
 
 class ActiveTuning(BaseModel):
-    """The run that is on."""
+    """The active run."""
 
     run: int
     kind: ExperimentKind

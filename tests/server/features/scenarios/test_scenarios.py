@@ -156,7 +156,7 @@ def test_a_live_run_is_recorded_and_leaves_everything_as_it_was(stack: Stack) ->
     wait(lambda: robot(stack)["loops"][0]["set_point"] == 0.9, "the set points")
     before = settings_of(stack)
     start(stack, SHORT)
-    assert refusal(stack, SHORT).startswith("“A short one” is being run.")
+    assert refusal(stack, SHORT).startswith("“A short one” is running.")
     wait(lambda: robot(stack)["armed"], "the scenario to arm the robot")
     during = settings_of(stack)
     assert (during["set_point_default"], during["vision_rate"]) == (0.3, 10)
@@ -182,11 +182,11 @@ def test_stop_ends_it(stack: Stack) -> None:
     begin_long(stack)
     stack.api.post("/robot/stop").raise_for_status()
     last = ended(stack)
-    assert (last["state"], last["problem"]) == ("cancelled", "Somebody pressed STOP.")
+    assert (last["state"], last["problem"]) == ("cancelled", "STOP was pressed.")
     assert not robot(stack)["armed"]
     session = last["session"]
     marks = query(stack, f"SELECT text FROM marker WHERE session_id = {session} ORDER BY id")
-    assert marks[-1] == ("Somebody pressed STOP.",)
+    assert marks[-1] == ("STOP was pressed.",)
     assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
 
 
@@ -194,7 +194,7 @@ def test_the_end_of_its_recording_ends_it_and_cancelling_does(stack: Stack) -> N
     begin_long(stack)
     session = state(stack)["active"]["session"]
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
-    assert ended(stack)["problem"] == "Somebody stopped the recording."
+    assert ended(stack)["problem"] == "The recording was stopped."
     begin_long(stack)
     stack.api.post("/scenarios/cancel").raise_for_status()
     assert (ended(stack)["state"], ended(stack)["problem"]) == ("cancelled", "It was cancelled.")
@@ -206,7 +206,7 @@ def test_a_simulator_that_ends_fails_it(stack: Stack) -> None:
     last = ended(stack)
     assert (last["state"], last["problem"]) == (
         "failed",
-        "The simulator ended in the middle of it, and with it what was set.",
+        "The simulator ended during the run, and its settings are lost.",
     )
     stack.wait_ready()
     wait(lambda: simulator_answers(stack), "the next simulator to answer")
@@ -221,17 +221,15 @@ def test_a_server_that_is_killed_puts_everything_back_at_its_next_start(stack: S
     wait(lambda: settings_of(stack) == before, "everything to be as before")
     wait(lambda: not (stack.data / "scenario-before.json").exists(), "nothing to be left to put back")
     marks = query(stack, f"SELECT text FROM marker WHERE session_id = {session} ORDER BY id")
-    assert marks[-1] == ("The server was killed, and the scenario ends here.",)
+    assert marks[-1] == ("The server was killed; the scenario ends here.",)
     assert query(stack, f"SELECT state FROM session WHERE id = {session}") == [("complete",)]
 
 
 def test_what_is_refused_says_why(stack: Stack) -> None:
     hull = SHORT + "[robot]\nmass = 3.1\n"
-    assert (
-        refusal(stack, hull) == "It changes the hull's parameters, which can be done in simulated time alone."
-    )
+    assert refusal(stack, hull) == "It changes the hull's parameters, which needs simulated time."
     fast = SHORT.replace("[control]", "[control]\nrate = 20")
-    assert refusal(stack, fast).startswith("It wants control at 20 Hz; this robot's runs at 10 Hz")
+    assert refusal(stack, fast).startswith("It needs control at 20 Hz; this robot's runs at 10 Hz")
     session = stack.api.post("/sessions", json={"name": "mine"}).json()["id"]
     stack.api.post("/robot/commands/arm").raise_for_status()
     wait(lambda: robot(stack)["armed"], "the robot to be armed")

@@ -253,10 +253,10 @@ def test_what_cannot_begin_is_refused_and_leaves_nothing(settings: Settings) -> 
         assert "The scenario “Dive”" in await refused(served, STEP, 409)
         served.container.tuning._occupied = lambda: None
         nothing = await served.api.post("/tuning/stop")
-        assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment runs.")
+        assert (nothing.status_code, nothing.json()["detail"]) == (409, "No experiment is running.")
         assert (await served.api.get("/tuning/runs")).json()["runs"] == []
         await begin(served, STEP)
-        assert "runs already" in await refused(served, STEP, 409)
+        assert "already running" in await refused(served, STEP, 409)
 
     play(settings, scenario)
 
