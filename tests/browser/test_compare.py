@@ -104,7 +104,7 @@ def test_an_address_that_names_nothing_says_what_to_do(any_page: Page, stack: St
     expect(any_page.get_by_text("No session selected")).to_be_visible()
     any_page.goto(f"{stack.url}/#/sessions/compare/999999")
     expect(
-        any_page.get_by_text("There is no session 999999; the list of sessions has those that there are.")
+        any_page.get_by_text("There is no session 999999; choose one from the list of sessions.")
     ).to_be_visible()
     wider = "document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth"
     assert any_page.evaluate(wider) == 0

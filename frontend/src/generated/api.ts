@@ -1749,7 +1749,7 @@ export interface components {
             events: components["schemas"]["ScenarioEvent"][];
             /** Name */
             name: string;
-            next: components["schemas"]["NextEvent"] | null;
+            next: components["schemas"]["ScenarioEvent"] | null;
             /**
              * Phase
              * @enum {string}
@@ -3167,19 +3167,6 @@ export interface components {
             role: "viewer" | "operator";
         };
         /**
-         * NextEvent
-         * @description The next event of the run.
-         */
-        NextEvent: {
-            /**
-             * At
-             * @description s
-             */
-            at: number;
-            /** Words */
-            words: string;
-        };
-        /**
          * OwnPanel
          * @description A panel, named by its file; `problem` is the reason why it cannot be shown.
          */
@@ -4240,7 +4227,7 @@ export interface components {
             keep_days: number;
             /**
              * Keep Free
-             * @description GB that are kept free by removing the oldest sessions; 0: no such rule
+             * @description GB to keep free by removing the oldest sessions; 0: no such rule
              */
             keep_free: number;
             /**

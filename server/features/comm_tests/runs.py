@@ -41,9 +41,7 @@ class CommTestRuns:
         with self._reader.read() as database:
             found = database.get(CommTestRun, run)
         if found is None:
-            raise UnknownCommTestRunError(
-                f"There is no run {run}; the list of runs has those that there are."
-            )
+            raise UnknownCommTestRunError(f"There is no run {run}; choose one from the list of runs.")
         return found
 
     def cells(self, run: int) -> Sequence[CommTestCell]:

@@ -70,9 +70,7 @@ class Jobs:
     def find(self, job: str) -> Job:
         """The job of this name. Raises UnknownExportError."""
         if job not in self._jobs:
-            raise UnknownExportError(
-                f"There is no export {job}; the list of exports has those that there are."
-            )
+            raise UnknownExportError(f"There is no export {job}; choose one from the list of exports.")
         return self._jobs[job]
 
     def path(self, job: Job) -> Path:

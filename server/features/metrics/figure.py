@@ -21,7 +21,7 @@ class FigureMeaning(BaseModel):
 def describe(
     name: str, title: str, unit: str, decimals: int, meaning: str, better: Better = "less"
 ) -> FigureMeaning:
-    """The meaning of a figure, of which less is better unless `better` says otherwise."""
+    """The meaning of a figure, of which less is better by default."""
     return FigureMeaning(name=name, title=title, unit=unit, decimals=decimals, better=better, meaning=meaning)
 
 

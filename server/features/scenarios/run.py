@@ -9,7 +9,6 @@ from server.features.scenarios.schemas import (
     BoardKind,
     End,
     EndedRun,
-    NextEvent,
     Phase,
     Place,
     describe_events,
@@ -71,8 +70,8 @@ class RunRecord:
 
     def describe(self) -> ActiveRun:
         """The run as sent to the pages."""
-        coming = (one for one in self.scenario.events if one.at > self.elapsed or self.phase == "preparing")
-        following = next(coming, None)
+        events = describe_events(self.scenario)
+        coming = (one for one in events if one.at > self.elapsed or self.phase == "preparing")
         return ActiveRun(
             run=self.number,
             name=self.scenario.name,
@@ -83,8 +82,8 @@ class RunRecord:
             elapsed=round(self.elapsed, 2),
             duration=self.scenario.duration,
             session=self.session,
-            next=None if following is None else NextEvent(at=following.at, words=following.words),
-            events=describe_events(self.scenario),
+            next=next(coming, None),
+            events=events,
         )
 
     def end(self, state: End, problem: str) -> EndedRun:

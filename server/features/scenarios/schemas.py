@@ -77,13 +77,6 @@ class ScenarioStarted(BaseModel):
     run: int
 
 
-class NextEvent(BaseModel):
-    """The next event of the run."""
-
-    at: float = Field(description="s")
-    words: str
-
-
 class ActiveRun(BaseModel):
     """The active run; times in s of the scenario."""
 
@@ -96,7 +89,7 @@ class ActiveRun(BaseModel):
     elapsed: float
     duration: float
     session: int | None
-    next: NextEvent | None
+    next: ScenarioEvent | None
     events: list[ScenarioEvent]
 
 

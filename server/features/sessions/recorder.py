@@ -114,8 +114,8 @@ class Recorder:
             self._notices.notify(
                 "recording",
                 "caution",
-                f"“{name}” was cut off after {duration:.1f} s. What was stored is kept; at most the last "
-                "second before the end is missing.",
+                f"“{name}” was cut off after {duration:.1f} s. At most the last second before the end is "
+                "missing.",
             )
         return interrupted
 
@@ -139,9 +139,8 @@ class Recorder:
             self._notices.notify(
                 "recording",
                 "caution",
-                f"The server was killed while “{row.name}” was recorded. What was stored is kept; "
-                + (f"{lost} samples sent since are" if lost else "what was sent since is")
-                + " not to be had any more.",
+                f"The server was killed while “{row.name}” was recorded. Its stored samples remain; "
+                + (f"{lost} samples sent since are lost." if lost else "those sent since are lost."),
             )
             return
         self._reset()
@@ -159,7 +158,7 @@ class Recorder:
         self._notices.notify(
             "recording",
             "caution",
-            f"The server was killed. Recording of “{row.name}” goes on; the {away:.1f} s since are fetched.",
+            f"The server was killed. Recording of “{row.name}” continues; the {away:.1f} s since are fetched.",
         )
         self._changed()
 

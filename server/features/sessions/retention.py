@@ -148,11 +148,11 @@ class RetentionWorker:
             self._notify(rows, f"Less than {self._settings.sessions.keep_free:g} GB of the disk are free")
         elif not self._out_of_candidates:
             self._out_of_candidates = True
-            text = (
-                "Room is short, and every session is kept, tagged or in the bin already. Delete some, or free"
-            )
             self._notices.notify(
-                "storage", "caution", f"{text} room on the computer that holds the data folder."
+                "storage",
+                "caution",
+                "Disk space is short, and every session is protected, tagged or in the bin. Delete some, or "
+                "free space on the computer that holds the data folder.",
             )
 
     def _notify(self, rows: list[_Candidate], why: str) -> None:

@@ -31,7 +31,7 @@ class UnknownSessionError(NotFoundError):
     """There is no such session"""
 
     def __init__(self, session: int) -> None:
-        super().__init__(f"There is no session {session}; the list of sessions has those that there are.")
+        super().__init__(f"There is no session {session}; choose one from the list of sessions.")
 
 
 class SessionStateError(ConflictError):

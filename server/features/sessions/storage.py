@@ -8,7 +8,7 @@ from sqlmodel import col, func, select
 
 from server.features.sessions.session import HIDDEN
 from server.platform.models import SessionRow
-from server.platform.settings import DataFolder, Settings
+from server.platform.settings import Settings
 from server.platform.store import Store
 
 GIGABYTE = 1_000_000_000
@@ -28,9 +28,7 @@ class Storage(BaseModel):
     bin_bytes: int
     undo_days: float = Field(description="days in the bin before a session is removed")
     keep_days: float = Field(description="days after which a session is moved to the bin; 0: never")
-    keep_free: float = Field(
-        description="GB that are kept free by removing the oldest sessions; 0: no such rule"
-    )
+    keep_free: float = Field(description="GB to keep free by removing the oldest sessions; 0: no such rule")
 
 
 def measure(store: Store, settings: Settings) -> Storage:
@@ -48,7 +46,7 @@ def measure(store: Store, settings: Settings) -> Storage:
     sessions, sessions_bytes = found.get(False, (0, 0))
     in_bin, bin_bytes = found.get(True, (0, 0))
     return Storage(
-        database=sum(_bytes(path) for path in _database_files(folder)),
+        database=sum(_bytes(Path(f"{folder.database}{end}")) for end in ("", "-wal", "-shm")),
         reusable=pages * size,
         exports=sum(_bytes(path) for path in folder.exports.glob("*")),
         free=disk.free,
@@ -61,10 +59,6 @@ def measure(store: Store, settings: Settings) -> Storage:
         keep_days=rules.keep_days,
         keep_free=rules.keep_free,
     )
-
-
-def _database_files(folder: DataFolder) -> list[Path]:
-    return [folder.database.with_name(folder.database.name + end) for end in ("", "-wal", "-shm")]
 
 
 def _bytes(path: Path) -> int:

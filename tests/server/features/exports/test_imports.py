@@ -173,7 +173,7 @@ BAD = {
     "too many samples": (count, True, "Chunk 0 of depth has 1000 bytes, which are not 51 samples"),
     "a bomb": (bomb, True, "Chunk 0 of debug does not unpack"),
     "documents that are none": (nonsense, True, "Chunk 0 of debug does not hold documents"),
-    "a time that is none": (endless, True, "Chunk 0 of debug has a time"),
+    "a time that is none": (endless, True, "Chunk 0 of debug has an invalid time"),
     "a newer format": (tell(version=2), True, "It has format 2; this version of µ-CAT reads format 1"),
     "another program's": (tell(format="x"), True, "is not that of an archive"),
     "no JSON": (lambda members: members.update({SESSION: b"{"}), True, "session.json is not JSON"),

@@ -242,7 +242,7 @@ def test_where_room_is_short_the_oldest_go_into_the_bin_and_an_hour_later_for_go
         for _ in range(2):
             await keeper.retention.apply(NOW + 2 * BIN_SECONDS)
         assert len(keeper.names()) == 2
-        assert len([text for text in keeper.told if "Room is short" in text]) == 1
+        assert len([text for text in keeper.told if "Disk space is short" in text]) == 1
 
     keep(SessionsConfig(keep_free=1.0), scenario)
 
