@@ -158,7 +158,7 @@ class Recorder:
         self._notices.notify(
             "recording",
             "caution",
-            f"The server was killed. Recording of “{row.name}” continues; the {away:.1f} s since are fetched.",
+            f"The server was killed. Recording of “{row.name}” continues; {away:.1f} s are fetched.",
         )
         self._changed()
 

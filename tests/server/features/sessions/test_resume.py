@@ -314,7 +314,7 @@ def test_what_is_no_longer_kept_ends_the_session(wreck: Wreck, monkeypatch: pyte
         assert wreck.state == "interrupted"
         missed = [("depth", "missed", 15), ("debug", "missed", 1), ("truth", "missed", 3)]
         assert sorted(wreck.after.gaps()) == sorted(missed)
-        assert "19 samples sent since are not to be had any more" in wreck.after.told[0]
+        assert "19 samples sent since are lost" in wreck.after.told[0]
 
     play(scenario)
 
