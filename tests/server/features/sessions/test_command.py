@@ -44,7 +44,7 @@ def test_sessions_without_a_server(settings: Settings, capsys: pytest.CaptureFix
     assert "changed" in told("sessions", "tag", "1", "--remove", "sea")
     assert "changed" in told("sessions", "note", "1", "calm water")
     assert "dive  [pool]" in told("sessions", "list", "calm")
-    assert "No session" in told("sessions", "list", "--tag", "sea")
+    assert "No matching session" in told("sessions", "list", "--tag", "sea")
     assert "tags: pool" in told("sessions", "show", "1")
     assert "bin" in told("sessions", "delete", "1")
     assert "dive" in told("sessions", "list", "--deleted")
@@ -59,7 +59,7 @@ def test_in_a_folder_that_no_server_has_used_yet(
 ) -> None:
     settings.data.database.unlink(missing_ok=True)
     assert run(settings, "sessions", "list") == 0
-    assert "No session" in capsys.readouterr().out
+    assert "No matching session" in capsys.readouterr().out
 
 
 def test_what_a_running_server_is_asked(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:

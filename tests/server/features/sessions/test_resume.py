@@ -127,7 +127,7 @@ def test_a_session_goes_on_without_a_hole_and_nothing_is_there_twice(wreck: Wrec
         assert wreck.after.numbers("truth") == list(range(9))
         assert wreck.after.gaps() == []
         assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
-        assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” goes on")
+        assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” continues")
 
     play(scenario)
 
