@@ -2476,31 +2476,6 @@ export interface components {
             text: string;
         };
         /**
-         * Drawn
-         * @description One session's lines.
-         */
-        Drawn: {
-            /** Id */
-            id: number;
-            /**
-             * Offset
-             * @description s since its start of what is 0 s; null where it lacks that
-             */
-            offset: number | null;
-            /**
-             * Problem
-             * @description why it cannot be laid over the others; empty where it can
-             */
-            problem: string;
-            /**
-             * Series
-             * @description by signal; without those that it does not have
-             */
-            series: {
-                [key: string]: components["schemas"]["SignalLine"];
-            };
-        };
-        /**
          * DriveCounts
          * @description Stick commands since the server started: passed to the robot, and dropped for a reason.
          */
