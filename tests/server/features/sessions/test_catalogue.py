@@ -83,7 +83,7 @@ def test_marks_are_set_live_and_later(settings: Settings) -> None:
         assert (await api.post(path, json={"time": 1e6})).status_code == 409
         duration = (await api.post(f"/sessions/{session}/stop")).json()["duration"]
         assert 0 <= live["time"] <= duration
-        assert "Say at what time" in (await api.post(path, json={})).json()["detail"]
+        assert "Give the time of the bookmark" in (await api.post(path, json={})).json()["detail"]
         late = (await api.post(path, json={"time": duration, "text": "end"})).json()
         changed = await api.patch(f"{path}/{late['id']}", json={"time": 0, "text": "start"})
         assert (changed.json()["time"], changed.json()["text"]) == (0, "start")
