@@ -16,12 +16,12 @@ POLICY_VIOLATION = 1008
 """WebSocket close code for a client that breaks the rules."""
 BODY_BYTES_MAX = 65_536
 FRAMED = "/api/panels/frame"
-"""What the page shows in a frame; it brings a stricter policy of its own (panels/frame.py)."""
+"""The frame of own panels, with a stricter policy of its own (panels/frame.py)."""
 HELP = "/help/"
 """The help pages, whose policies name their scripts (http/help_pages.py)."""
 OWN_POLICY = frozenset({"content-security-policy", "x-frame-options"})
 STREAMED = frozenset({"/api/imports"})
-"""Paths that take bodies of any size, piece by piece, and see to their limits themselves."""
+"""Paths that read bodies of any size piece by piece, and check their limits themselves."""
 HEADERS = {
     "content-security-policy": "default-src 'self'; img-src 'self' blob:; object-src 'none'; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
@@ -56,14 +56,14 @@ class SecurityMiddleware:
             text = f"A request's body may have {BODY_BYTES_MAX} bytes, and must say how many."
             await refuse(scope, receive, _with_headers(send, scope), 413, text)
         elif reason is None:
-            # What passes an open socket has no headers, and is too much for a detour.
+            # Messages of an open socket have no headers, and are too many for a detour.
             opened = scope["type"] == "websocket"
             await self._app(scope, receive, send if opened else _with_headers(send, scope))
         else:
             await refuse(scope, receive, _with_headers(send, scope), 403, reason)
 
     def _refusal(self, scope: Scope) -> str | None:
-        """Why this request is refused; None where it is not."""
+        """Reason to refuse this request; None if it is allowed."""
         headers = Headers(scope=scope)
         hosts, origins = headers.getlist("host"), headers.getlist("origin")
         if len(hosts) != 1 or hosts[0].lower() not in self._hosts:

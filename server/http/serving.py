@@ -10,18 +10,17 @@ from server.platform.certificate import Certificate
 from server.platform.settings import SetupError
 
 SEND_BUFFER_BYTES = 65_536
-"""With the kernel's own megabytes a client that has stopped reading would go unnoticed for minutes."""
+"""Small: with the kernel's default of megabytes, a client that stopped reading goes unnoticed for minutes."""
 USER_TIMEOUT_MS = 10_000
 """The kernel ends a connection whose data nobody has taken for this long."""
 BACKLOG = 128
-"""Clients that may wait while the server is being replaced."""
+"""Clients that may wait while the server restarts."""
 MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
 KEEP_ALIVE_SECONDS = 60
-"""For which a connection waits for its next request.
-
-After the 5 that are usual programs let go of theirs, too: whoever asks just then would find it reset.
+"""The time for which an idle connection stays open; longer than the usual 5 s of programs, so that the program
+closes it first and no request meets a reset.
 """
 
 

@@ -12,9 +12,9 @@ from robot_runtime.durable_files import make_folder, unfinished, write_whole
 from server.platform.settings import DataFolder
 
 Kind = Literal["backup", "before", "replaced"]
-"""Made by hand, before an upgrade, and by a restore of what was there."""
+"""Copies made by hand, before an upgrade, and of a database that a restore replaced."""
 COPIES_MOST = 5
-"""Of each kind, in the data folder."""
+"""The greatest number of copies of each kind in the data folder."""
 CHECKSUM = ".sha256"
 SUM_BYTES = 1 << 20
 

@@ -17,15 +17,15 @@ class Notices:
         self._sent = 0
 
     def continue_from(self, number: int) -> None:
-        """Number on from here, where an earlier server's notices end."""
+        """Continue numbering after the notices of an earlier server."""
         self._sent = number
 
     def notify(self, kind: str, severity: documents.Severity, text: str) -> None:
-        """Say something in words for a person; `kind` is one word for programs."""
+        """Write a notice: a text for a person, and its `kind` in one word for programs."""
         self.add_event(documents.Event(time=self._clock.now(), kind=kind, severity=severity, text=text))
 
     def add_event(self, event: documents.Event) -> None:
-        """Say what an event says."""
+        """Write a notice from an event."""
         block = Block.of(BY_NAME["notice"], 1, self._sent, pack_documents([event]))
         self._sent += 1
         self._deliver(block)

@@ -30,7 +30,7 @@ def started_at(pid: int) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A part that runs: its process, when that was started (`started_at`), and of what it was made."""
+    """A running process: its PID, start time (`started_at`) and the fingerprint of its command."""
 
     pid: int
     started: int
@@ -38,7 +38,7 @@ class Running:
 
 
 class PidFile:
-    """Says in `path` which process a part is."""
+    """The PID file `path` of one process."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -1,4 +1,4 @@
-"""The server that works on a data folder, asked from a shell: nothing else may write its database."""
+"""Requests from a shell to the running server: only the server may write its database."""
 
 import json
 import urllib.error
@@ -16,7 +16,7 @@ ASK_SECONDS = 10.0
 
 
 def announce(settings: Settings) -> None:
-    """Write down where the server of this folder is to be asked."""
+    """Write the server's address into its data folder."""
     host = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host
     host = f"[{host}]" if ":" in host else host
     write_whole(settings.data.address, f"{settings.scheme}://{host}:{settings.port}\n".encode("ascii"))

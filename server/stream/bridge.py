@@ -43,7 +43,7 @@ CONTACT_SECONDS = 10.0
 """For which a server that starts waits for processes that a killed one has left."""
 
 QUESTIONS = {"runtime": "query/blocks", "simulator": "simulator/blocks"}
-"""Where the processes answer for what they have kept."""
+"""The query topics at which the processes answer with their backlog."""
 
 
 class RuntimeSilentError(ApiError):
@@ -93,7 +93,7 @@ class Bridge:
         self._asking = 0
 
     async def open(self) -> None:
-        """Join the conversation; the others may come and go at any time. Raises SetupError."""
+        """Open the Zenoh session; the other processes may start and end at any time. Raises SetupError."""
         self._loop = asyncio.get_running_loop()
         folder = self._settings.data
         try:
@@ -181,7 +181,7 @@ class Bridge:
             ) from problem
 
     async def close(self) -> None:
-        """Leave the conversation."""
+        """Close the Zenoh session."""
         for filler in self._fillers.values():
             await filler.close()
         self._stops.shutdown(wait=False, cancel_futures=True)

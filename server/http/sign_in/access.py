@@ -48,7 +48,7 @@ class Access:
         self._limit_reported = False
 
     def open(self) -> None:
-        """Know who was paired, and give the shell of this computer its token. Raises StoreError, OSError."""
+        """Load the devices, and write the token of this computer's shell. Raises StoreError, OSError."""
         self.devices.load()
         write_whole(self._token_file, f"{self._token}\n".encode(), 0o600)
 
@@ -88,13 +88,13 @@ class Access:
         return device.identity, secret
 
     async def make_program(self, name: str, role: Role, by: Identity) -> tuple[Device, str]:
-        """A program's place, and its token. Raises RefusedError, StoreError."""
+        """Add a program; returns its device and token. Raises RefusedError, StoreError."""
         device, token = await self.devices.add(name, role, "program")
         self._notify("access", "info", f"“{by.name}” made a token for “{name}”, as {role}.")
         return device, token
 
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
-        """From now on; live sockets are closed, and come back in the new role.
+        """Change a device's role; its live sockets are closed, and open again in the new role.
 
         Raises UnknownDeviceError, RefusedError, StoreError.
         """
@@ -103,7 +103,6 @@ class Access:
             return
         if role == "viewer":
             self._keep_an_operator(device, by)
-            # Before anything else, and whatever the database says of it.
         try:
             await self.devices.set_role(number, role)
         finally:
@@ -121,7 +120,7 @@ class Access:
         self._notify("access", "caution", f"“{by.name}” revoked the access of “{device.name}”.")
 
     async def sign_out(self, identity: Identity) -> None:
-        """Its own end, which even the last operator may choose.
+        """Sign the caller out, even the last operator.
 
         Raises RefusedError for the shell, StoreError.
         """

@@ -32,7 +32,7 @@ class UnknownDeviceError(NotFoundError):
 
 @dataclass(slots=True)
 class Device:
-    """As DeviceRow."""
+    """A paired browser or program, as in DeviceRow; `stored` is the last visit in the database."""
 
     id: int
     name: str
@@ -49,7 +49,7 @@ class Device:
 
 
 class Devices:
-    """All devices. This server alone writes them, so that memory is never behind the database."""
+    """All devices. Only this server writes them, so that memory and database agree."""
 
     def __init__(self, store: Store, utc: Callable[[], float] = time.time) -> None:
         self._store = store
@@ -59,14 +59,14 @@ class Devices:
         self._writing: set[asyncio.Task[None]] = set()
 
     def load(self) -> None:
-        """Take in what the database holds. Raises StoreError."""
+        """Load all devices from the database. Raises StoreError."""
         with self._store.read() as session:
             for row in session.exec(select(DeviceRow)):
                 assert row.id is not None
                 self._keep(row.id, row)
 
     def all(self) -> list[Device]:
-        """By their numbers."""
+        """All devices, by number."""
         return [self._devices[number] for number in sorted(self._devices)]
 
     def get(self, number: int) -> Device:
@@ -100,7 +100,7 @@ class Devices:
         return self._keep(number, row), secret
 
     async def set_role(self, number: int, role: Role) -> None:
-        """Less is allowed from now on, whatever the database says; more once it is stored.
+        """Change a role: a lower one holds at once, a higher one when it is stored.
 
         Raises UnknownDeviceError, StoreError.
         """
@@ -111,13 +111,13 @@ class Devices:
         device.role = role
 
     async def rename(self, number: int, name: str) -> None:
-        """Call it otherwise. Raises UnknownDeviceError, StoreError."""
+        """Rename a device. Raises UnknownDeviceError, StoreError."""
         device = self.get(number)
         await self._update(number, name=name)
         device.name = name
 
     async def remove(self, number: int) -> None:
-        """It proves nothing from now on. Raises UnknownDeviceError; StoreError where it would come back."""
+        """Remove a device; its secret is invalid at once. Raises UnknownDeviceError, StoreError."""
         self.get(number)
         self._by_secret = {secret: one for secret, one in self._by_secret.items() if one != number}
         await self._store.write(
@@ -126,7 +126,7 @@ class Devices:
         self._devices.pop(number, None)
 
     def see(self, device: Device) -> None:
-        """It has just asked for something."""
+        """Note a request of the device."""
         device.seen = self._utc()
         # The clock may also have been set back.
         if abs(device.seen - device.stored) < SEEN_SECONDS:
@@ -137,7 +137,7 @@ class Devices:
         task.add_done_callback(self._writing.discard)
 
     async def close(self) -> None:
-        """Wait for what is being written."""
+        """Wait for pending writes."""
         await asyncio.gather(*self._writing)
 
     async def _store_seen(self, device: Device) -> None:

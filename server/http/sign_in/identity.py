@@ -1,4 +1,4 @@
-"""Somebody who has signed in: a person's browser, a program, or the shell of this computer."""
+"""The identity of a signed-in caller: a browser, a program, or the shell of this computer."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -10,7 +10,7 @@ Role = Literal["viewer", "operator"]
 Kind = Literal["browser", "program", "shell"]
 
 IDENTITY = "identity"
-"""The entry of an ASGI scope that holds who asks."""
+"""The entry of an ASGI scope that holds the caller's identity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ async def identify_caller(connection: HTTPConnection) -> Identity:
 
 
 Caller = Annotated[Identity, Depends(identify_caller)]
-"""A route's parameter that is who asks."""
+"""A route's parameter that is the caller's identity."""
 
 SHELL = Identity(device=0, name="the shell of this computer", role="operator", kind="shell")
-"""Whoever can read this computer's data folder."""
+"""The identity of a shell that can read this computer's data folder."""

@@ -1,4 +1,4 @@
-"""The gate before everything under /api: who is not signed in is sent away before a byte of it is read."""
+"""Sign-in check for everything under /api: refuses a request before its body is read."""
 
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -9,9 +9,9 @@ from server.http.sign_in.access import Access
 from server.http.sign_in.identity import IDENTITY, Identity
 
 OPEN = frozenset({("GET", "/api/access/me"), ("POST", "/api/access/pair")})
-"""What anybody may ask: those operations that need nothing."""
+"""The operations that need no sign-in."""
 PAGE_HEADER, PAGE_VALUE = "x-mucat", "page"
-"""No foreign page can send this header without being asked first by its browser, which is told no."""
+"""A header that a foreign page cannot send: its browser asks this server first, which refuses."""
 
 NOBODY = (
     "You are not signed in. Open the link that the server printed when it started, or that `mucat pair` "
@@ -20,8 +20,10 @@ NOBODY = (
 
 
 class SignInMiddleware:
-    """ASGI middleware: puts the Identity of who asks into the scope; 401 where there is none, and 403 where
-    a browser does not say that its page asks."""
+    """ASGI middleware: puts the caller's Identity into the scope.
+
+    Refuses with 401 without one, and with 403 a browser that does not name this server's page as its origin.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -48,7 +50,7 @@ def _is_api(path: str) -> bool:
 
 
 def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
-    """Why this may have been caused by a foreign page; its cookie a browser adds to whatever it sends."""
+    """Reason why a foreign page may have caused this request: browsers add the cookie to every request."""
     socket = connection.scope["type"] == "websocket"
     if identity.kind != "browser" or (not socket and connection.scope["method"] in SAFE_METHODS):
         return None

@@ -1,6 +1,6 @@
-"""Pairing codes, and how often a wrong one may be tried.
+"""Pairing codes, and the limits for wrong ones.
 
-Both live in memory: what nobody used before the server ended is void.
+Both are in memory only: codes become invalid when the server ends.
 """
 
 from collections import deque
@@ -15,7 +15,7 @@ from server.platform.errors import ApiError, ForbiddenError
 
 CODE_SECONDS = 600.0
 CODES_MAX = 20
-"""More than that nobody needs at once; the oldest makes room."""
+"""The greatest number of valid codes; a further one replaces the oldest."""
 LIMITS = ((3, 60.0), (10, 3600.0))
 """Wrong codes within so many seconds. They are counted together, wherever they come from: an address proves
 nothing."""
@@ -50,7 +50,7 @@ class _Code:
 
 
 class PairingCodes:
-    """The codes that are valid now; times are of the steady clock, s."""
+    """The valid codes; times in s, steady clock."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
@@ -87,7 +87,7 @@ class PairingCodes:
             raise TooManyTriesError(wait)
         self._forget_old()
         typed_digest = digest(normal_code(typed))
-        # Every one is compared, and in full, so that the time taken tells nothing.
+        # Every code is compared in full, so that the time taken reveals nothing.
         found = [code for code in self._codes if compare_digest(code.digest, typed_digest)]
         if not found:
             self._wrong.append(self._clock.now())

@@ -1,4 +1,4 @@
-"""The need of each operation: declared at its route. An operation without one is refused to everybody."""
+"""The access policy: each route declares its need. An operation without one is refused to everybody."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -41,12 +41,12 @@ MESSAGES: dict[str, Need] = {
 
 
 def may_say(identity: Identity, op: str) -> str | None:
-    """Why this message of a live socket is not obeyed; None where it is."""
+    """Reason to refuse this message of a live socket; None if it is allowed."""
     return refusal(identity, MESSAGES.get(op))
 
 
 def refusal(identity: Identity | None, need: Need | None) -> str | None:
-    """Why this is not for this one; None where it is. What declares no need is for nobody."""
+    """Reason to refuse the caller; None if it is allowed. Without a declared need, everybody is refused."""
     if need is None:
         return "Nobody may ask for this: the server does not declare what it needs."
     if need == Need.NOTHING:

@@ -6,7 +6,7 @@ from hashlib import sha256
 TOKEN_BYTES = 32
 TOKEN_PREFIX = "mucat_"
 CODE_ALPHABET = "23456789ABCDEFGHJKMNPQRSTUVWXYZ"
-"""Without what looks alike: 0 and O, 1, I and L."""
+"""Without characters that look alike: 0 and O, 1, I and L."""
 CODE_LENGTH = 10
 """49 bits: with ten tries an hour and ten minutes' life, guessing one takes longer than there is."""
 
@@ -23,10 +23,10 @@ def make_code() -> str:
 
 
 def normal_code(typed: str) -> str:
-    """A code as it was made, however it was typed."""
+    """A typed code in the form in which it was made."""
     return "".join(letter for letter in typed.upper() if letter.isalnum())
 
 
 def digest(secret: str) -> str:
-    """All that is kept of a secret; it is random enough to need no salt."""
+    """The SHA-256 of a secret, which is random enough to need no salt."""
     return sha256(secret.encode()).hexdigest()
