@@ -19,8 +19,8 @@ MESSAGE_BYTES_MAX = 4096
 HEAD_BYTES_MAX = 16_384
 GRACE_SECONDS = 3
 KEEP_ALIVE_SECONDS = 60
-"""The time for which an idle connection stays open; longer than the usual 5 s of programs, so that the program
-closes it first and no request meets a reset.
+"""The time for which an idle connection stays open. It is longer than the 5 s that are usual in programs: the
+program closes the connection first, and no request meets a reset.
 """
 
 
