@@ -242,8 +242,10 @@ def test_arms_controls_at_its_rate_and_stops(rig: Rig) -> None:
     rig.arm()
     rig.board.wait(lambda: rig.board.count(Navigation.type) >= 21)
     times = [at for at, type_, _ in rig.board.heard if type_ == Navigation.type]
-    # A busy computer loses a tick now and then.
-    assert median(after - before for before, after in pairwise(times)) == pytest.approx(0.1, rel=0.1)
+    gaps = [after - before for before, after in pairwise(times)]
+    assert median(gaps) == pytest.approx(0.1, rel=0.1)
+    # A busy computer is late now and then, which makes two gaps wrong.
+    assert sum(gap == pytest.approx(0.1, rel=0.3) for gap in gaps) >= 0.7 * len(gaps)
     assert Navigation.from_bytes(rig.board.heard[-1][2]).z == pytest.approx(1.0)
     rig.ask("stop")
     rig.listener.wait(lambda: not rig.listener.newest_state()["armed"])
