@@ -24,6 +24,7 @@ export default ts.config(
       'house/rooms': 'error',
       'house/component-once': 'error',
       'house/texts-apart': 'error',
+      'house/sentences-apart': 'error',
       eqeqeq: 'error',
       'no-console': 'error',
       // `void signal` is how an effect depends on a signal that it does not use.

@@ -1,7 +1,7 @@
 /** Rules of the page's house: which room may import which, that a component's name is there once, and that texts stand apart. */
 import { existsSync, readdirSync } from 'node:fs';
 import path from 'node:path';
-import { textsApart } from './texts.js';
+import { sentencesApart, textsApart } from './texts.js';
 
 const SOURCES = path.resolve(import.meta.dirname, '../src');
 
@@ -97,4 +97,4 @@ const componentOnce = {
   },
 };
 
-export const house = { rules: { rooms, 'component-once': componentOnce, 'texts-apart': textsApart } };
+export const house = { rules: { rooms, 'component-once': componentOnce, 'texts-apart': textsApart, 'sentences-apart': sentencesApart } };

@@ -34,6 +34,30 @@ function isCode(node) {
   return ['SvelteStyleElement', 'SvelteScriptElement'].includes(node.type) || (node.type === 'SvelteElement' && node.name.name === 'code');
 }
 
+/** A sentence, or the part of one between its values: two words and more. */
+const SENTENCE = /\p{L}[\p{L}’']+ \p{L}{2}/u;
+/** Selectors, markup and functions of styles. */
+const CODE = /[=[]|\w\(/;
+
+/** Whether a text below this node is for programs: of an error that is thrown, compared, or a type. */
+const isForPrograms = (node) => ['NewExpression', 'BinaryExpression', 'TSLiteralType'].includes(node?.type) && node.operator !== '+';
+
+/** For modules and scripts: a sentence belongs in src/texts, whatever it is used for. */
+export const sentencesApart = {
+  meta: { type: 'problem', messages: { sentence: '“{{ words }}” is a sentence: it belongs in src/texts.' }, schema: [] },
+  create(context) {
+    if (!/\/src\/(?!texts\/)/.test(context.filename)) return {};
+    function check(node) {
+      const text = words(node);
+      if (SENTENCE.test(text) && !CODE.test(text)) context.report({ node, messageId: 'sentence', data: { words: text } });
+    }
+    return {
+      Literal: (node) => typeof node.value !== 'string' || isForPrograms(node.parent) || check(node),
+      TemplateElement: (node) => isForPrograms(node.parent.parent) || check(node),
+    };
+  },
+};
+
 export const textsApart = {
   meta: { type: 'problem', messages: { literal: '“{{ words }}” is read by people: it belongs in src/texts.' }, schema: [] },
   create(context) {

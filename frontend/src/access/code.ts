@@ -25,7 +25,7 @@ const SYSTEMS = [
   ['iPad', 'iPad'],
   ['Android', 'Android'],
   ['Windows', 'Windows'],
-  ['Mac OS', 'Mac'],
+  ['Macintosh', 'Mac'],
   ['Linux', 'Linux'],
 ] as const;
 
