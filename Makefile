@@ -14,8 +14,9 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Named, so that nothing else is collected.
-REAL_TIME = tests/browser $(shell grep -rl --include='test_*.py' mark.stack tests)
+# Named, so that nothing else is collected. Uploads to the emulated chip come first: beside the checks, which leave
+# them the processor that they need.
+REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort) tests/browser
 LONGEST_FIRST := tests/server/features/comm_tests/test_thesis_example.py tests/documents tests/proofs tests
 
 .DEFAULT_GOAL := help
@@ -35,12 +36,12 @@ test: ## every check and every test; what one of the two lanes says comes when a
 
 # Robots in real time are served first. Each takes half a core or more, so that there is one of them at a time.
 test-real-time:
-	$(PYTHON) -m pytest -m stack $(REAL_TIME)
+	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME)
 
 test-rest:
 	@nice $(MAKE) --no-print-directory check
 	cd frontend && nice npm test --silent
-	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile \
+	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile --durations 20 \
 		--no-loadscope-reorder $(LONGEST_FIRST)
 
 check: setup-test ## style, types, imports, and whether generated files are current

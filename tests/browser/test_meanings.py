@@ -11,7 +11,7 @@ def test_a_finger_asks_what_a_gain_means(browser: Browser, stack: Stack, cookies
     page = context.new_page()
     page.goto(stack.url)
     page.get_by_role("tab", name="Control").tap()
-    meaning = page.get_by_text("Target depth", exact=True)
+    meaning = page.get_by_text("Set point of the depth", exact=True)
     expect(meaning).to_be_hidden()
     page.locator("summary", has_text="default").tap()
     expect(meaning).to_be_visible()
