@@ -55,7 +55,7 @@ void say() {
   line.packet().text_size = heard.text_size;
   memcpy(line.packet().text, heard.text, heard.text_size);
   const uint16_t lost = the_link.lines_lost();
-  the_link.say(line);
+  the_link.queue_line(line);
   full = the_link.lines_lost() != lost;
   if (!full) {
     said++;
