@@ -1,6 +1,7 @@
 # `make run` and `make test` set up what a fresh machine lacks. `make help` lists the rest.
 PORT ?= 8000
 ONLY ?=
+COMPARE ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
 FAULTS ?= 100
@@ -70,8 +71,8 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
 	$(PYTHON) -m server.openapi --reference
 
-bench: setup-test .venv/.ready-bench ## measure; a part by name with ONLY=link; figures go to build/bench.json
-	$(PYTHON) -m bench $(ONLY)
+bench: setup-test .venv/.ready-bench ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
+	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE)) $(ONLY)
 
 figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/pictures, from a run of its scenario
 	@rm -rf build/figures
