@@ -5,12 +5,13 @@ import tempfile
 import time
 from pathlib import Path
 from statistics import median, quantiles
-from typing import Any
 
 from playwright.sync_api import Page, expect, sync_playwright
 
+from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.simulation.boards.emulator_process import EmulatorClient
+from tests.board.host import Robot, start
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
 from tests.stack import Stack
 
@@ -18,15 +19,28 @@ _SECONDS = 20
 _ROWS_PER_SECOND = 50
 _PRESSES = 60
 _KEYS = ("w", "s", "r", "f", "a", "d")
+_CHART = "Depth and set point"
+_LINE_SECONDS, _LINE_STEP = 0.8, 0.0002
+"""s of emulated time; it disarms after a second without a HEARTBEAT."""
 _REST = 0.1
 """s without any drive, before a key is pressed."""
 _LATE = 5.0
 """s after which a key has moved nothing."""
 
-# Runs before the page's own code: notes the board's stamp of each depth, and when it has been drawn.
+# Runs before the page's own code. Of the depths that came with the socket's messages it notes the stamps with
+# the moment when the chart that holds them was drawn (it is cleared first), and the newest stamp
+# with the moment when other digits of the depth were drawn. What a frame draws is seen at that frame's end.
 _WATCH = """
 (topic) => {
-  globalThis.seen = [];
+  globalThis.charted = [];
+  globalThis.printed = [];
+  let undrawn = [];
+  let newest = 0;
+  const frameEnd = (act) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => act((performance.timeOrigin + performance.now()) / 1000);
+    port2.postMessage(null);
+  };
   const Plain = WebSocket;
   globalThis.WebSocket = class extends Plain {
     constructor(...options) {
@@ -36,18 +50,31 @@ _WATCH = """
         const view = new DataView(data);
         for (let at = 0; at < data.byteLength; at += 12 + view.getUint32(at + 8, true)) {
           if (view.getUint8(at) !== topic.id) continue;
-          const stamps = [];
           for (let row = 0; row < view.getUint16(at + 2, true); row += 1) {
-            stamps.push(view.getUint32(at + 12 + row * topic.bytes + 8, true));
+            newest = view.getUint32(at + 12 + row * topic.bytes + 8, true) / 1e6;
+            undrawn.push(newest);
           }
-          requestAnimationFrame(() => {
-            const drawn = (performance.timeOrigin + performance.now()) / 1000;
-            for (const stamp of stamps) globalThis.seen.push([stamp / 1e6, drawn]);
-          });
         }
       });
     }
   };
+  const clear = CanvasRenderingContext2D.prototype.clearRect;
+  CanvasRenderingContext2D.prototype.clearRect = function (...area) {
+    const chart = this.canvas.closest('.chart');
+    if (this.canvas.closest('.u-over') && chart?.querySelector(`[aria-label*="${topic.chart}"]`)) {
+      const stamps = undrawn;
+      undrawn = [];
+      frameEnd((drawn) => stamps.forEach((stamp) => globalThis.charted.push([stamp, drawn])));
+    }
+    return clear.apply(this, area);
+  };
+  addEventListener('DOMContentLoaded', () => {
+    new MutationObserver((changes) => {
+      if (!changes.some(({ target }) => target.parentElement?.closest('.reading.huge .value'))) return;
+      const stamp = newest;
+      frameEnd((drawn) => globalThis.printed.push([stamp, drawn]));
+    }).observe(document.body, { subtree: true, characterData: true });
+  });
 }
 """
 
@@ -64,8 +91,12 @@ _KEYS_DOWN = """
 
 
 def measure() -> dict[str, float]:
-    """ms from the chip's stamp of a depth to the drawn frame, and from a key to the H-bridges' commands."""
-    topic = {"id": BY_NAME["depth"].id, "bytes": BY_NAME["depth"].row_bytes}
+    """ms from the chip's stamp of a depth until the chart with it is drawn (`sample_to_page`), and until the
+    digits that show it are (`sample_to_digits`, which change eight times a second at most); the first without
+    the median time that the sample takes to leave the chip's UART (`uart_to_page`), which is measured in
+    emulated time; and from a key to the H-bridges' commands.
+    """
+    topic = {"id": BY_NAME["depth"].id, "bytes": BY_NAME["depth"].row_bytes, "chart": _CHART}
     with (
         tempfile.TemporaryDirectory() as folder,
         Stack(Path(folder)) as stack,
@@ -76,26 +107,51 @@ def measure() -> dict[str, float]:
         sign_in(page.context, stack.url, stack.data)
         page.add_init_script(f"({_WATCH})({topic!r})")
         page.goto(stack.url)
-        page.wait_for_function("() => globalThis.seen.length > 100")
+        page.wait_for_function("() => globalThis.charted.length > 100 && globalThis.printed.length > 2")
         with EmulatorClient(Path(folder) / "run/board.sock") as board:
-            page.evaluate("() => { globalThis.seen.length = 0; }")
+            page.evaluate("() => { globalThis.charted.length = 0; globalThis.printed.length = 0; }")
             before = _started(board)
             wanted = _ROWS_PER_SECOND * _SECONDS
-            page.wait_for_function(f"() => globalThis.seen.length > {wanted}", timeout=2000 * _SECONDS)
-            seen: list[list[Any]] = page.evaluate("() => globalThis.seen")
+            page.wait_for_function(f"() => globalThis.charted.length > {wanted}", timeout=2000 * _SECONDS)
+            charted, printed = page.evaluate("() => [globalThis.charted, globalThis.printed]")
             after = _started(board)
             keys = _press_keys(page, board)
         browser.close()
     # The board's clock falls back where the computer is too slow for it; half of that is the best guess.
     started = (before + after) / 2
-    ages = [(drawn - started - stamp) * 1000 for stamp, drawn in seen]
+    ages = _ages(charted, started)
+    on_line = _line_ms()
     return {
-        "latency.sample_to_page_ms_p50": median(ages),
-        "latency.sample_to_page_ms_p95": quantiles(ages, n=20)[-1],
+        **_percentiles("latency.sample_to_page_ms", ages),
+        **_percentiles("latency.uart_to_page_ms", [age - on_line for age in ages]),
+        **_percentiles("latency.sample_to_digits_ms", _ages(printed, started)),
+        "latency.sample_to_uart_ms": on_line,
         "latency.board_fell_back_ms": (after - before) * 1000,
-        "latency.key_to_fin_ms_p50": median(keys),
-        "latency.key_to_fin_ms_p95": quantiles(keys, n=20)[-1],
+        **_percentiles("latency.key_to_fin_ms", keys),
     }
+
+
+def _ages(drawn: list[list[float]], started: float) -> list[float]:
+    """ms from each stamp (s of the board's clock) until it was drawn (s since 1970)."""
+    return [(when - started - stamp) * 1000 for stamp, when in drawn]
+
+
+def _percentiles(name: str, values: list[float]) -> dict[str, float]:
+    return {f"{name}_p50": median(values), f"{name}_p95": quantiles(values, n=20)[-1]}
+
+
+def _line_ms() -> float:
+    """Median ms from a depth's stamp until its frame's last byte has left the UART, of a swimming robot."""
+    delays = []
+    with tempfile.TemporaryDirectory() as folder, start("robot", Path(folder)) as rig:
+        robot = Robot(rig)
+        robot.listen(0.3)
+        robot.arm()
+        for _ in range(round(_LINE_SECONDS / _LINE_STEP)):
+            heard = robot.listen(_LINE_STEP)
+            now = rig.board.stats()["time"]
+            delays += [(now - one.time / 1e6) * 1000 for one in heard if isinstance(one, Depth)]
+    return median(delays)
 
 
 def _press_keys(page: Page, board: EmulatorClient) -> list[float]:

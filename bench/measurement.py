@@ -6,17 +6,18 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bench.calibration import Slowness, mean, measure_slowness
 from bench.parts import PARTS, Part
 
-_LINES_OF_FAILURE = 12
+_LOGS = Path("build/bench_logs")
 
 
 class MeasurementError(Exception):
-    """The part could not be measured; the text ends with what its process said last."""
+    """The part could not be measured; the text says why, and where all is that its process said."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,13 @@ def _measure_here(part: Part) -> Measurement:
 
 def main() -> None:
     name, file = sys.argv[1:]
-    Path(file).write_text(json.dumps(asdict(_measure_here(PARTS[name]))))
+    try:
+        measured = _measure_here(PARTS[name])
+    except Exception as problem:
+        traceback.print_exc()
+        print(type(problem).__name__, *str(problem).splitlines()[:1], sep=": ")
+        sys.exit(1)
+    Path(file).write_text(json.dumps(asdict(measured)))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import psutil
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from server.platform.pidfile import running_parts
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack
@@ -23,12 +24,9 @@ def measure() -> dict[str, float]:
         viewer = _Viewer(stack)
         stack.api.post("/robot/commands/arm").raise_for_status()
         stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
-        parts = {
-            "server": stack.server,
-            "runtime": stack.child("robot_runtime --config"),
-            "board": stack.child("build/board"),
-            "simulator": stack.child("robot_runtime.simulation"),
-        }
+        running = running_parts(DataFolder(stack.data).run)
+        parts = {name: psutil.Process(running[name].pid) for name in ("runtime", "board", "simulator")}
+        parts["server"] = stack.server
         time.sleep(_SETTLE)
         before = {name: cpu_seconds(process) for name, process in parts.items()}
         received = viewer.bytes

@@ -4,7 +4,8 @@ import { LiveFeed } from '../src/live/feed';
 export const NAMES = ['imu.rate', 'imu.force', 'motor.angle', 'imu.attitude'].flatMap((field) =>
   [0, 1, 2].map((element) => `${field}_${element}`),
 );
-export const SECONDS = 60;
+/** s that the charts span; a minute where the address says nothing else */
+export const SECONDS = Number(new URLSearchParams(location.search).get('seconds') ?? 60);
 
 export function startFeed(): LiveFeed {
   const nobody = { know: () => undefined, check: () => Promise.resolve() };

@@ -19,7 +19,8 @@ PROCESSES = 2
 def figures(measured: dict[str, faults.Measured], outcomes: Sequence[outages.Outcome]) -> dict[str, float]:
     """The longest times, ms: until a fault was told, until the fins were at rest, until they had no power.
 
-    Of processes, instead of the first, it is the time until all was well again.
+    Of processes, instead of the first, it is the time until all was well again; and of those that were
+    killed, s of the slowest.
     """
     found = {f"fault.{name}_ms_max": 1000 * max(one.told) for name, one in measured.items()}
     found |= {f"fault.{name}_rest_ms_max": 1000 * max(one.rest) for name, one in measured.items() if one.rest}
@@ -29,7 +30,9 @@ def figures(measured: dict[str, faults.Measured], outcomes: Sequence[outages.Out
         found[f"fault.{outage.name}_ms_max"] = 1000 * max(one.again for one in mine)
         if outage.off is not None:
             found[f"fault.{outage.name}_off_ms_max"] = 1000 * max(one.off for one in mine)
-    return {name: round(value, 1) for name, value in found.items()}
+    killed = [one.again for one in outcomes if one.outage.blow == "kill"]
+    restarts = {"fault.restart_s_max": max(killed)} if killed else {}
+    return restarts | {name: round(value, 1) for name, value in found.items()}
 
 
 def main() -> int:
