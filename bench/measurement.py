@@ -34,12 +34,13 @@ def measure(part: Part) -> Measurement:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "figures.json"
         command = [sys.executable, "-m", "bench.measurement", part.name, str(file)]
-        ended = subprocess.run(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
-        )
+        _LOGS.mkdir(parents=True, exist_ok=True)
+        log = _LOGS / f"{part.name}.log"
+        with log.open("w") as output:
+            ended = subprocess.run(command, stdout=output, stderr=subprocess.STDOUT, check=False)
         if ended.returncode != 0:
-            said = "\n".join(ended.stdout.splitlines()[-_LINES_OF_FAILURE:])
-            raise MeasurementError(f"status {ended.returncode}\n{said}")
+            last = next(reversed(log.read_text().splitlines()), f"status {ended.returncode}")
+            raise MeasurementError(f"{last} (see {log})")
         return Measurement(**json.loads(file.read_text()))
 
 
