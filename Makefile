@@ -2,6 +2,7 @@
 PORT ?= 8000
 ONLY ?=
 COMPARE ?=
+LONG ?=
 FUZZ_SECONDS ?= 600
 KILLS ?= 100
 FAULTS ?= 100
@@ -21,7 +22,7 @@ REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort) test
 LONGEST_FIRST := tests/server/features/comm_tests/test_thesis_example.py tests/documents tests/proofs tests
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test long check bench figures control screenshots fuzz soak samples proofs kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -72,7 +73,10 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 	$(PYTHON) -m server.openapi --reference
 
 bench: setup-test .venv/.ready-bench ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
-	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE)) $(ONLY)
+	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE))$(if $(LONG), --long) $(ONLY)
+
+proofs: setup-test .venv/.ready-bench ## every long proof, with one report in build/proofs; goes on where it stopped
+	@$(PYTHON) -m tests.proofs.report $(ONLY)
 
 figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/pictures, from a run of its scenario
 	@rm -rf build/figures

@@ -35,7 +35,7 @@ def main() -> int:
     _measure_all([part for part in parts if part.is_emulated], os.cpu_count() or 1, results)
     _measure_all([part for part in parts if not part.is_emulated], 1, results)
     print(f"\n{len(parts)} parts took {(time.monotonic() - began) / 60:.1f} min", file=sys.stderr)
-    return _summarise(results, {part.name for part in parts}, is_whole=not options.parts)
+    return summarise(results, {part.name for part in parts}, is_whole=not options.parts)
 
 
 def _measure_all(parts: Sequence[Part], at_once: int, results: Results) -> None:
@@ -55,7 +55,7 @@ def _measure_all(parts: Sequence[Part], at_once: int, results: Results) -> None:
             print(f"{part.name} took {measured.took:.0f} s", file=sys.stderr, flush=True)
 
 
-def _summarise(results: Results, parts: set[str], is_whole: bool) -> int:
+def summarise(results: Results, parts: set[str], is_whole: bool) -> int:
     """Prints what is met, missed and not measured."""
     mine = {name: one for name, one in results.figures.items() if is_whole or one.part in parts}
     judged = {name: one for name, one in mine.items() if name in GOALS}

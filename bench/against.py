@@ -68,7 +68,7 @@ def _compare(part: str, before: Path, now: Path, rounds: int) -> bool:
         print(f"  {part} could not be measured in this tree")
         return False
     verdicts = {
-        name: _verdict(name, found[before].get(name, []), values) for name, values in found[now].items()
+        name: verdict(name, found[before].get(name, []), values) for name, values in found[now].items()
     }
     for name, values in found[now].items():
         print(_row(name, found[before].get(name, []), values, verdicts[name]), flush=True)
@@ -91,7 +91,7 @@ def _measure(tree: Path, part: str) -> dict[str, float]:
     return {name: float(value) for name, value in figures.items()}
 
 
-def _verdict(name: str, before: Sequence[float], now: Sequence[float]) -> str:
+def verdict(name: str, before: Sequence[float], now: Sequence[float]) -> str:
     """What the rounds say of a figure; of one without a goal it is not known which direction is better."""
     if not before:
         return "new"
