@@ -1,4 +1,4 @@
-"""What twelve live traces at 100 Hz cost the page, beside bare uPlot; and the first view."""
+"""Cost of twelve live traces at 100 Hz, compared with bare uPlot; and the first view."""
 
 import re
 import subprocess
