@@ -95,7 +95,7 @@ class HealthMonitor:
     def health(self) -> Health:
         """The health of every part now."""
         conditions: dict[PartName, Condition] = {
-            "server": ("ok", "It answers."),
+            "server": ("ok", "Answers requests."),
             "database": self._database(),
             "runtime": self._runtime(),
             "link": self._link(),
@@ -125,7 +125,7 @@ class HealthMonitor:
     def _database(self) -> Condition:
         if self._store.failing is not None:
             return "failed", f"Nothing can be stored: {self._store.failing}."
-        return "ok", "It stores."
+        return "ok", "Stores data."
 
     def _runtime(self) -> Condition:
         process = self._processes.get("runtime")
@@ -134,8 +134,8 @@ class HealthMonitor:
         if process is not None and process.state == "paused":
             return "absent", process.problem
         if self._fresh("state", STATE_SECONDS, process):
-            return "ok", "It runs."
-        return self._silent(process, "It runs, but sends nothing.")
+            return "ok", "Sends data."
+        return self._silent(process, "Runs, but sends nothing.")
 
     def _link(self) -> Condition:
         runtime = self._processes.get("runtime")
@@ -158,7 +158,7 @@ class HealthMonitor:
         if runtime is not None and runtime.state == "paused":
             return "absent", runtime.problem
         if self._is_recent(self._bytes_grew, LINK_SECONDS, process or runtime):
-            return "ok", "It sends data."
+            return "ok", "Sends data."
         return self._silent(process or runtime, "Nothing arrives from it.")
 
     def _simulator(self) -> Condition:
@@ -169,10 +169,10 @@ class HealthMonitor:
             return "failed", f"It {process.problem}."
         # Hardware in the loop may be fed by a simulator on another computer.
         if self._fresh("truth", TRUTH_SECONDS, process):
-            return "ok", "The water is simulated."
+            return "ok", "Simulates the water."
         if process is not None and process.state == "paused":
             return "absent", process.problem
-        return self._silent(process, "It runs, but the simulated water stands still.")
+        return self._silent(process, "Runs, but the simulated water stands still.")
 
     def _scene(self) -> Condition:
         if self._settings.mode == "robot":
@@ -181,11 +181,11 @@ class HealthMonitor:
             return "absent", f"Not rendered: {self._unrenderable}."
         process = self._processes.get("scene")
         if process is None or process.state == "paused":
-            return "absent", "It does not run on this computer."
+            return "absent", "Does not run on this computer."
         if process.state == "failed":
             return "failed", f"It {process.problem}."
         if process.state == "running":
-            return "ok", "It renders on demand."
+            return "ok", "Renders on demand."
         return self._silent(process, "")
 
     def _fresh(self, topic: str, seconds: float, process: ManagedProcess | None) -> bool:
@@ -198,8 +198,8 @@ class HealthMonitor:
     def _silent(self, process: ManagedProcess | None, text: str) -> Condition:
         if process is not None and process.state == "waiting":
             missing = ", ".join(path.name for path in process.command.needs if not path.exists())
-            return "starting", f"It waits for {missing or 'its turn'}."
+            return "starting", f"Waits for {missing or 'its turn'}."
         since = self._began if process is None else process.since
         if (process is None or process.state == "running") and self._clock.now() - since < GRACE_SECONDS:
-            return "starting", text or "It starts."
+            return "starting", text or "Starting."
         return "failed", text or "It sends nothing."

@@ -45,7 +45,7 @@ def test_without_a_simulator_the_robot_says_so_and_does_not_arm(
     assert told["alone"] == [
         "There is no simulator. Start it with “mucat simulator --connect ...”, or on the System page."
     ]
-    assert told["simulator"] == "ok: The water is simulated."
+    assert told["simulator"] == "ok: Simulates the water."
 
 
 def test_it_dives_to_its_set_point_through_delay_jitter_and_loss(
