@@ -16,13 +16,15 @@ INSTALL := --quiet --python $(PYTHON) --constraint constraints.txt --compile-byt
 PAGE_SOURCES := $(shell find frontend/src frontend/index.html frontend/public -type f 2>/dev/null) \
 	$(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 HELP_SOURCES := $(shell find docs -type f)
-# Named, so that nothing else is collected. Uploads to the emulated chip come first: beside the checks, which leave
-# them the processor that they need.
-REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort) tests/browser
-LONGEST_FIRST := tests/server/features/comm_tests/test_thesis_example.py tests/documents tests/proofs tests
+# Files are named, so that nothing else is collected and the order is the one told: a folder would swallow its files.
+# Uploads to the emulated chip come first: beside the checks, which leave them the processor that they need.
+REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort)
+LONGEST := tests/server/features/comm_tests/test_thesis_example.py $(wildcard tests/documents/test_*.py) \
+	$(wildcard tests/proofs/test_*.py)
+REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
 
 .DEFAULT_GOAL := help
-.PHONY: help run test long check bench figures control screenshots fuzz soak samples proofs kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test test-real-time test-browser test-check test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -31,20 +33,25 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every check and every test; what one of the two lanes says comes when a command of it has ended
+test: ## every check and every test; what one of the four lanes says comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=line test-real-time test-rest
+	@$(MAKE) --no-print-directory --jobs 4 --output-sync=line test-real-time test-browser test-check test-rest
 
-# Robots in real time are served first. Each takes half a core or more, so that there is one of them at a time.
+# Robots in real time are served first. One takes less than half a core, so that there are two at a time: that of the
+# browser tests, and those of the other tests one after the other.
 test-real-time:
 	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME)
 
-test-rest:
+test-browser:
+	$(PYTHON) -m pytest --durations 20 tests/browser
+
+test-check:
 	@nice $(MAKE) --no-print-directory check
 	cd frontend && nice npm test --silent
-	nice $(PYTHON) -m pytest -m "not stack" --ignore tests/browser --numprocesses 2 --dist loadfile --durations 20 \
-		--no-loadscope-reorder $(LONGEST_FIRST)
+
+test-rest:
+	nice $(PYTHON) -m pytest -m "not stack" --numprocesses 2 --dist loadfile --durations 20 --no-loadscope-reorder $(REST)
 
 check: setup-test ## style, types, imports, and whether generated files are current
 	.venv/bin/ruff check
