@@ -14,15 +14,15 @@ export interface Scale {
 /** A sample, in pixels. */
 export type Spot = readonly [x: number, y: number];
 
-/** px that the columns of a trace are high on average, from which on its line is thin */
+/** px that a trace goes up and down in each column, on average, from which on its line is thin */
 const DENSE = 4;
 const THIN = 1;
 
 /**
  * Draw a trace: in each column its least and its greatest value in the order in which they came, joined by lines.
  *
- * `before` and `after` are the samples next to the span, to which the line goes on where it does. Where the columns are
- * high, as with noise, the line is thin: wide ones that lie so close take a browser eight times as long.
+ * `before` and `after` are the samples next to the span, to which the line goes on where it does. Where it goes
+ * up and down much, as with noise, the line is thin: wide ones that lie so close take a browser ten times as long.
  */
 export function paintTrace(
   context: CanvasRenderingContext2D,
@@ -32,10 +32,17 @@ export function paintTrace(
   before: Spot | null,
   after: Spot | null,
 ): void {
-  if (height(columns, span, scale) > DENSE) context.lineWidth = THIN;
+  if (travel(columns, span) * Math.abs(scale.unit) > DENSE) context.lineWidth = THIN;
   const { low, high, order, broken } = columns;
   const { left, column, zero, unit } = scale;
   let open = before !== null;
+  // Where the level part ends that is not drawn yet: a line that rests costs no more than one segment.
+  let level = NaN;
+  let y = before?.[1] ?? NaN;
+  const rest = () => {
+    if (!Number.isNaN(level)) context.lineTo(level, y);
+    level = NaN;
+  };
   context.beginPath();
   if (before !== null) context.moveTo(...before);
   for (let index = 0; index < span.columns; index += 1) {
@@ -45,29 +52,49 @@ export function paintTrace(
     const least = zero + unit * (low[place] ?? NaN);
     const most = zero + unit * (high[place] ?? NaN);
     const x = left + index * column;
-    if (broken[place] === 1) open = false;
+    if (broken[place] === 1) {
+      rest();
+      open = false;
+    }
     if (least === most) {
-      if (open) context.lineTo(x + column / 2, least);
-      else context.moveTo(x + column / 2, least);
+      if (open && least === y) level = x + column / 2;
+      else {
+        rest();
+        if (open) context.lineTo(x + column / 2, least);
+        else context.moveTo(x + column / 2, least);
+      }
+      y = least;
     } else {
+      rest();
       const begin = kind === Order.RISING ? least : most;
       if (open) context.lineTo(x + column / 4, begin);
       else context.moveTo(x + column / 4, begin);
-      context.lineTo(x + 0.75 * column, kind === Order.RISING ? most : least);
+      y = kind === Order.RISING ? most : least;
+      context.lineTo(x + 0.75 * column, y);
     }
     open = true;
   }
+  rest();
   if (after !== null && open) context.lineTo(...after);
   context.stroke();
 }
 
-function height({ low, high, order, place }: Columns, { first, columns: many }: Span, { unit }: Scale): number {
+/** How far a trace goes up and down in each column on average, in its own unit, the way from column to column included. */
+function travel({ low, high, order, place }: Columns, { first, columns: many }: Span): number {
   let sum = 0;
+  let last = NaN;
   for (let number = first; number < first + many; number += 1) {
     const at = place(number);
-    if (order[at] !== Order.NONE) sum += (high[at] ?? 0) - (low[at] ?? 0);
+    const kind = order[at];
+    if (kind === Order.NONE) continue;
+    const least = low[at] ?? NaN;
+    const most = high[at] ?? NaN;
+    const begin = kind === Order.RISING ? least : most;
+    if (!Number.isNaN(last)) sum += Math.abs(begin - last);
+    sum += most - least;
+    last = kind === Order.RISING ? most : least;
   }
-  return (sum / many) * Math.abs(unit);
+  return sum / many;
 }
 
 /** Fill what lies between two traces. Each holds its last value where it has none of its own. */

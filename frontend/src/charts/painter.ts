@@ -39,10 +39,13 @@ interface Line {
 }
 
 const SEVERITIES = { info: 'accent', caution: 'caution', alarm: 'alarm' } as const;
-/** Redraws per pixel that passes by, so that the line moves rather than steps, and their limits per second. */
+/**
+ * Redraws per pixel that passes by, so that the line moves rather than steps, and their limits per second. The upper
+ * one is well above a screen's usual 60 frames, so that of these none is left out because it came a little early.
+ */
 const PER_PIXEL = 2;
 const RATE_LEAST = 8;
-const RATE_MOST = 60;
+const RATE_MOST = 90;
 const RATE_STILL = 1;
 const DASH = [6, 5];
 

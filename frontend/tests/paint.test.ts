@@ -1,0 +1,86 @@
+import { describe, expect, it } from 'vitest';
+import { Columns, type Span } from '../src/charts/columns';
+import { paintTrace, type Scale } from '../src/charts/paint';
+import { ROW_TOPICS } from '../src/generated/topics';
+import { RowRing } from '../src/live/ring';
+import { join, rowBytes } from './bytes';
+
+const topic = ROW_TOPICS.control;
+const MANY = 60;
+const SPAN: Span = { first: 0, columns: MANY, width: 1 };
+const SCALE: Scale = { left: 0, column: 1, zero: 100, unit: -10 };
+const WIDE = 1.75;
+
+/** Samples of one value a column, or several where a column has a list of them. */
+function columnsOf(values: readonly (number | readonly number[])[]): Columns {
+  const rows = values.flatMap((value, column) => {
+    const some = typeof value === 'number' ? [value] : value;
+    return some.map((one, at) => rowBytes(topic, column + (at + 0.5) / some.length, { error: [one] }));
+  });
+  const ring = new RowRing(topic, rows.length);
+  ring.append(new DataView(join(...rows).buffer), -Infinity);
+  const columns = new Columns(ring, ring.column('error'));
+  columns.update(SPAN, 1.5);
+  return columns;
+}
+
+/** What is painted: the lines, each by its corners, and how wide they are. */
+function painted(columns: Columns) {
+  const lines: (readonly [number, number])[][] = [];
+  const context = {
+    lineWidth: WIDE,
+    beginPath: () => undefined,
+    moveTo: (x: number, y: number) => lines.push([[x, y]]),
+    lineTo: (x: number, y: number) => lines.at(-1)?.push([x, y]),
+    stroke: () => undefined,
+  };
+  paintTrace(context as unknown as CanvasRenderingContext2D, columns, SPAN, SCALE, null, null);
+  return { lines, width: context.lineWidth };
+}
+
+describe('a painted trace', () => {
+  it('goes through every sample where columns hold one each', () => {
+    const values = Array.from({ length: MANY }, (_, at) => Math.sin(at / 9));
+    const { lines } = painted(columnsOf(values));
+    expect(lines).toHaveLength(1);
+    expect(lines[0]?.map(([x]) => x)).toEqual(values.map((_, at) => at + 0.5));
+    lines[0]?.forEach(([, y], at) => expect(y).toBeCloseTo(100 - 10 * (values[at] ?? NaN), 4));
+  });
+
+  it('takes one segment for as long as it rests', () => {
+    const values = Array.from({ length: MANY }, (_, at) => (at < 20 ? 1 : at < 40 ? 3 : 2));
+    expect(painted(columnsOf(values)).lines).toEqual([
+      [
+        [0.5, 90],
+        [19.5, 90],
+        [20.5, 70],
+        [39.5, 70],
+        [40.5, 80],
+        [59.5, 80],
+      ],
+    ]);
+  });
+
+  it('rests up to a column that is high, and breaks where samples are missing', () => {
+    const { lines } = painted(columnsOf([1, 1, 1, [1, 3], 3, 3, [], [], 3, 3]));
+    expect(lines).toEqual([
+      [
+        [0.5, 90],
+        [2.5, 90],
+        [3.25, 90],
+        [3.75, 70],
+        [5.5, 70],
+      ],
+      [
+        [8.5, 70],
+        [9.5, 70],
+      ],
+    ]);
+  });
+
+  it('is thin where it goes up and down much, within columns or from one to the next', () => {
+    expect(painted(columnsOf(Array.from({ length: MANY }, (_, at) => at / MANY))).width).toBe(WIDE);
+    expect(painted(columnsOf(Array.from({ length: MANY }, (_, at) => at % 2))).width).toBe(1);
+    expect(painted(columnsOf(Array.from({ length: MANY }, () => [0, 1]))).width).toBe(1);
+  });
+});
