@@ -8,6 +8,7 @@ from itertools import groupby, islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from sqlalchemy import bindparam
 from sqlmodel import Session, col, desc, func, select
 
 from server.features.sessions.chunks import (
@@ -31,6 +32,14 @@ if TYPE_CHECKING:
 
 CHUNKS_AT_ONCE = 32
 DATA_AT_ONCE = 512
+_NEWEST = (
+    select(Chunk.number)
+    .where(Chunk.session_id == bindparam("session"), Chunk.topic == bindparam("topic"))
+    .where(Chunk.first_time <= bindparam("time"))
+    .order_by(desc(col(Chunk.first_time)))
+    .limit(1)
+)
+"""The newest chunk that begins at or before a time; made once, since that takes longer than to run it."""
 
 
 class RecordingError(ApiError):
@@ -97,16 +106,12 @@ class Recording:
         Found by the index of times, however long the session is. One more at either end, since the times of
         samples may overlap a little where two chunks meet. The last is before the first where there are none.
         """
-        newest = (
-            select(Chunk.number)
-            .where(Chunk.session_id == self.row.id, Chunk.topic == topic)
-            .order_by(desc(col(Chunk.first_time)))
-            .limit(1)
-        )
-        last = database.exec(newest.where(Chunk.first_time <= end)).first()
+        connection = database.connection()
+        place = {"session": self.row.id, "topic": topic}
+        last: int | None = connection.execute(_NEWEST, {**place, "time": end}).scalar()
         if last is None:
             return 0, -1
-        first = None if start == -inf else database.exec(newest.where(Chunk.first_time <= start)).first()
+        first: int | None = connection.execute(_NEWEST, {**place, "time": start}).scalar()
         return (0 if first is None else max(first - 1, 0)), last + 1
 
     def rows(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[bytes]:
@@ -176,12 +181,16 @@ class Recording:
         """The documents that differ from the previous one in more than their time."""
         before = b""
         for chunk in self._data(topic, -inf, inf):
-            with _reading(chunk, topic, DOCUMENTS_ENCODING):
+            if chunk.encoding != DOCUMENTS_ENCODING:
+                raise _wrong_encoding(chunk, topic)
+            try:
                 for line in zlib.decompress(chunk.data).splitlines():
                     content = line.partition(b",")[2]
                     if content != before:
                         before = content
                         yield json.loads(line)
+            except (ValueError, KeyError, zlib.error) as problem:
+                raise _damaged(chunk, topic, problem) from problem
 
     def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
         """The bytes of rows in the shape (chunks, size of a row, samples), of chunks of one length.
@@ -196,12 +205,19 @@ class Recording:
                 yield np.frombuffer(b"".join(some), np.uint8).reshape(len(some), size, -1)
 
     def _shuffled(self, topic: str, size: int, start: float, end: float) -> Iterator[bytes]:
-        """The rows of each chunk, of `size` bytes each, as `chunks.shuffle` left them."""
+        """The rows of each chunk, of `size` bytes each, as `chunks.shuffle` left them.
+
+        An hour has thousands of chunks: a context manager for each would cost a tenth of the time.
+        """
         for chunk in self._data(topic, start, end):
-            with _reading(chunk, topic, ROWS_ENCODING):
+            if chunk.encoding != ROWS_ENCODING:
+                raise _wrong_encoding(chunk, topic)
+            try:
                 shuffled = zlib.decompress(chunk.data)
                 if len(shuffled) % size:
                     raise ValueError(f"{len(shuffled)} bytes are not whole rows of {size}")
+            except (ValueError, zlib.error) as problem:
+                raise _damaged(chunk, topic, problem) from problem
             yield shuffled
 
     def _data(self, topic: str, start: float, end: float) -> Iterator[Any]:
@@ -248,8 +264,16 @@ def depth_loop(state: Mapping[str, Any]) -> Mapping[str, Any]:
 @contextmanager
 def _reading(chunk: Chunk, topic: str, encoding: str) -> Iterator[None]:
     if chunk.encoding != encoding:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
+        raise _wrong_encoding(chunk, topic)
     try:
         yield
     except (ValueError, KeyError, zlib.error) as problem:
-        raise RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}") from problem
+        raise _damaged(chunk, topic, problem) from problem
+
+
+def _wrong_encoding(chunk: Chunk, topic: str) -> RecordingError:
+    return RecordingError(f"chunk {chunk.number} of {topic} is encoded as {chunk.encoding!r}")
+
+
+def _damaged(chunk: Chunk, topic: str, problem: Exception) -> RecordingError:
+    return RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}")

@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from math import inf
 from typing import Any
 
+from sqlalchemy import bindparam
 from sqlmodel import col, select
 
 from robot_runtime.contract.topics import BY_NAME, CHART_SECONDS, LINES, TIME, Kind, Topic
@@ -67,6 +68,14 @@ class _StoredChunk:
     count: int
     encoding: str
     data: bytes
+
+
+_CHUNKS = (
+    select(*(getattr(Chunk, field.name) for field in fields(_StoredChunk)))
+    .where(Chunk.session_id == bindparam("session"), Chunk.topic == bindparam("topic"))
+    .where(col(Chunk.number).between(bindparam("first"), bindparam("last")))
+    .order_by(col(Chunk.number))
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +143,6 @@ def _range(name: str, start: float, end: float, history: float | None) -> _Range
 
 
 def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_StoredChunk]]:
-    names = [field.name for field in fields(_StoredChunk)]
     found: dict[str, list[_StoredChunk]] = {}
     with recording.read() as database:
         for name, limits in ranges.items():
@@ -142,13 +150,8 @@ def _find(recording: Recording, ranges: dict[str, _Range]) -> dict[str, list[_St
             first, last = recording.numbers(database, name, since, limits.end)
             if limits.since == -inf:
                 first = max(0, first - LISTED_CHUNKS)
-            query = (
-                select(*(getattr(Chunk, name) for name in names))
-                .where(Chunk.session_id == recording.row.id, Chunk.topic == name)
-                .where(col(Chunk.number).between(first, last))
-                .order_by(col(Chunk.number))
-            )
-            found[name] = [_StoredChunk(*row) for row in database.exec(query)]
+            which = {"session": recording.row.id, "topic": name, "first": first, "last": last}
+            found[name] = [_StoredChunk(*row) for row in database.connection().execute(_CHUNKS, which)]
     return found
 
 
