@@ -19,8 +19,7 @@ HELP_SOURCES := $(shell find docs -type f)
 # Files are named, so that nothing else is collected and the order is the one told: a folder would swallow its files.
 # Uploads to the emulated chip come first: beside the checks, which leave them the processor that they need.
 REAL_TIME = $(shell grep -rl --include='test_*.py' mark.stack tests | sort)
-LONGEST := tests/server/features/comm_tests/test_thesis_example.py $(wildcard tests/documents/test_*.py) \
-	$(wildcard tests/proofs/test_*.py)
+LONGEST := $(wildcard tests/documents/test_*.py tests/proofs/test_*.py)
 REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
 
 .DEFAULT_GOAL := help

@@ -13,6 +13,7 @@ from server.platform.settings import Settings
 from tests.board.rig import ROOT, build
 
 
+@pytest.mark.stack  # Its uploads fail where others starve them of the processor.
 @pytest.mark.timeout(1200)
 def test_the_whole_example_gives_what_ships(settings: Settings, capsys: pytest.CaptureFixture[str]) -> None:
     build(ROOT / "firmware/emulator")
