@@ -158,6 +158,10 @@ class Core:
         """Requests publication of the state."""
         self._state_changed.set()
 
+    def announce_all(self) -> None:
+        """Requests publication of everything that is published periodically."""
+        self._due = [self.clock.now()] * len(self._every)
+
     def control_tick(self) -> None:
         """Runs one control tick; call it at the control rate."""
         with self.control.tick_lock:
@@ -362,12 +366,13 @@ class Core:
         self.outbox.flush()
 
     def link_changed(self) -> None:
-        """Publishes that the connection was established or lost."""
+        """Publishes that the connection was established or lost, and soon the link's counters."""
         text = self.line.text
         severity: Severity = "info" if self.line.connected else "caution"
         self.publish_event(
             Event(time=self.clock.now(), kind="link", severity=severity, text=f"Link: {text}.")
         )
+        self.announce_all()
 
     def _take_detection(self, detection: Detection) -> None:
         self.supervisor.detector.see_picture(detection.taken)

@@ -64,8 +64,8 @@ class Robot(Core):
         )
         self._vision_file = vision_file
         self._restore_vision()
-        detector = self.supervisor.detector
-        messages.subscribe(HEARTBEAT, lambda *_: detector.see_server())
+        self._server_run = ""
+        messages.subscribe_runs(HEARTBEAT, lambda _name, _payload, run: self._see_server(run))
         messages.subscribe(PILOT, lambda _, payload: self.take_pilot(payload))
 
     def serve(self) -> None:
@@ -113,6 +113,13 @@ class Robot(Core):
     def close(self) -> None:
         """Makes `run` return; takes no lock, so that a signal handler may call it."""
         self._closing = True
+
+    def _see_server(self, run: str) -> None:
+        self.supervisor.detector.see_server()
+        if run != self._server_run:
+            # A server that has just started needs the state at once, not only when it is due again.
+            self._server_run = run
+            self.announce_all()
 
     def _restore_vision(self) -> None:
         try:

@@ -20,6 +20,10 @@ log = logging.getLogger(__name__)
 Answer = dict[str, Any]
 _CLIENT_TIMEOUT_MS = 1000
 _JOIN_RETRY = 1.0
+_OPENING_MS = 50
+"""ms for which a peer's opening waits at most for the others' declarations; Zenoh's own default is 500."""
+_RETRY_MS_MIN, _RETRY_MS_MAX = 50, 200
+"""ms between two attempts to connect to a lost peer, doubled from the first to the last."""
 
 _REFUSAL = zenoh.Encoding.TEXT_PLAIN
 
@@ -187,8 +191,14 @@ def _configuration(
         # A client's opening waits for this; a peer's goes on trying behind it.
         "connect/timeout_ms": _CLIENT_TIMEOUT_MS if client else -1,
         "connect/exit_on_failure": False,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000, "period_increase_factor": 2},
+        "connect/retry": {
+            "period_init_ms": _RETRY_MS_MIN,
+            "period_max_ms": _RETRY_MS_MAX,
+            "period_increase_factor": 2,
+        },
     }
+    if not client:
+        settings["scouting/delay"] = _OPENING_MS
     config = zenoh.Config()
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))

@@ -118,7 +118,8 @@ class HealthMonitor:
     def _see_link(self, block: Block, now: float) -> None:
         row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
         received = LinkStatistics.from_bytes(row).bytes_received
-        if received > self._bytes_received >= 0:
+        # A smaller number counts from 0 again, since the line was opened anew.
+        if received > self._bytes_received >= 0 or 0 < received < self._bytes_received:
             self._bytes_grew = now
         self._bytes_received = received
 

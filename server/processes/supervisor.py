@@ -95,9 +95,12 @@ class ManagedProcess:
 
     async def run(self) -> None:
         """Keep the process running until this is cancelled; then end it."""
-        self._set("waiting")
         try:
-            await self._adopt()
+            if await self._adopt():
+                # What was heard of it while this server started counts: `since` stays as it is.
+                self.state = "running"
+            else:
+                self._set("waiting")
             while True:
                 began = self._clock.now()
                 if self._process is None:
@@ -111,15 +114,19 @@ class ManagedProcess:
             await self.end()
             self._set("ended")
 
-    async def _adopt(self) -> None:
-        """Take over the process that a killed server has left, or end it where it is not the same."""
+    async def _adopt(self) -> bool:
+        """Take over the process that a killed server has left, or end it where it is not the same.
+
+        Returns True if there is one to go on with.
+        """
         found = self._pid_file.read()
         if found is None:
-            return
+            return False
         with suppress(OSError):
             self._process = AdoptedProcess(found.pid, found.started)
         if found.made != self.command.fingerprint():
             await self.end()
+        return self._process is not None
 
     async def _wait_for_needs(self) -> None:
         while not all(path.exists() for path in self.command.needs):
@@ -134,7 +141,8 @@ class ManagedProcess:
         except OSError as problem:
             program = self.command.arguments[0]
             return f"cannot be started: {program}: {problem.strerror}. Build it with “make firmware”", False
-        self._set("running")
+        if self.state != "running":
+            self._set("running")
         trimming = asyncio.create_task(self._trim())
         try:
             status = await process.wait()

@@ -407,6 +407,22 @@ def test_without_the_server_s_heartbeat_an_armed_robot_is_stopped(tmp_path: Path
         rig.close()
 
 
+def test_a_server_that_has_just_started_is_sent_everything_at_once(rig: Rig) -> None:
+    def link_times() -> list[float]:
+        return [at for name, at, _ in rig.listener.rows if name == "link"]
+
+    rig.ready()
+    # Otherwise there is one a second.
+    for _ in range(2):
+        known = len(link_times())
+        rig.listener.wait(lambda known=known: len(link_times()) > known)  # type: ignore[misc]
+    known = len(link_times())
+    rig.messages.publish(HEARTBEAT, b"")
+    rig.listener.wait(lambda: len(link_times()) > known)
+    before, after = link_times()[known - 1 : known + 1]
+    assert after - before < 0.9
+
+
 def test_the_pilot_s_input_reaches_the_board_and_its_end_stops_the_robot(rig: Rig) -> None:
     def newest_yaw() -> float:
         payloads = [payload for _, kind, payload in rig.board.heard if kind == Navigation.type]

@@ -133,6 +133,21 @@ def test_a_board_that_restarts_stops_the_robot(flight: Flight) -> None:
     assert not flight.supervisor.board_armed
 
 
+def test_a_link_that_is_back_is_reported_with_its_counters_at_once(flight: Flight) -> None:
+    reported: list[float] = []
+    flight.robot.bus.on_row("link", lambda _, time, __: reported.append(time))
+    # Without a reason there is one report a second, which may come soon by chance.
+    for pause in (1.0, 1.3, 1.6):
+        flight.cut(on=True)
+        flight.until(lambda: not flight.robot.line.connected, 2.0)
+        flight.run(pause)
+        flight.cut(on=False)
+        flight.until(lambda: flight.robot.line.connected, 2.0)
+        back = flight.now
+        flight.run(0.2)
+        assert reported[-1] > back - 0.05
+
+
 def test_a_robot_held_down_after_a_stop_is_an_alarm_and_one_that_rises_is_not(flight: Flight) -> None:
     flight.arm()
     flight.run(5.0)

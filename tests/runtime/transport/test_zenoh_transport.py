@@ -1,6 +1,8 @@
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -17,6 +19,38 @@ def ends() -> Iterator[tuple[ZenohTransport, ZenohTransport]]:
             ZenohTransport("turtle", connect=[endpoint]) as asking,
         ):
             yield answering, asking
+
+
+def heard(by: ZenohTransport, of: ZenohTransport) -> float:
+    """s until a message of the one reaches the other."""
+    arrived, began = threading.Event(), time.monotonic()
+    subscription = by.subscribe("word", lambda *_: arrived.set())
+    while not arrived.wait(0.01):
+        assert time.monotonic() < began + 10
+        of.publish("word", b"")
+    subscription.close()
+    return time.monotonic() - began
+
+
+def test_a_peer_does_not_wait_for_others_that_are_not_there(tmp_path: Path) -> None:
+    seconds = []
+    for number in range(3):
+        began = time.monotonic()
+        with ZenohTransport("turtle", connect=[f"unixsock-stream/{tmp_path}/nobody{number}"]):
+            seconds.append(time.monotonic() - began)
+    assert min(seconds) < 0.25
+
+
+def test_a_peer_that_was_away_is_connected_again_soon() -> None:
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        endpoint = f"unixsock-stream/{folder}/zenoh"
+        with ZenohTransport("turtle", connect=[endpoint]) as staying:
+            with ZenohTransport("turtle", listen=[endpoint]) as leaving:
+                heard(staying, leaving)
+            # Retries come ever later at first; by now they are as far apart as they become.
+            time.sleep(1.8)
+            with ZenohTransport("turtle", listen=[endpoint]) as back:
+                assert heard(staying, back) < 0.5
 
 
 def ask(asking: ZenohTransport, name: str, payload: bytes) -> bytes:

@@ -55,6 +55,18 @@ def test_a_board_that_sends_no_more_bytes_has_failed_though_the_link_is_reported
     assert rig.state("board") == "failed"
 
 
+def test_a_board_is_well_with_the_first_bytes_after_the_runtime_was_restarted(rig: MonitorRig) -> None:
+    rig.run_all()
+    rig.monitor.see(link_block(0, 500_000))
+    rig.clock.forward(60)
+    rig.monitor.see(link_block(0, 0))
+    assert rig.state("board") == "failed"
+    rig.monitor.see(link_block(0, 500_000))
+    rig.clock.forward(60)
+    rig.monitor.see(link_block(0, 60))
+    assert rig.state("board") == "ok"
+
+
 def test_the_link_speaks_in_the_words_of_the_runtime(rig: MonitorRig) -> None:
     rig.run_all()
     rig.clock.forward(60)

@@ -258,9 +258,12 @@ def test_what_a_killed_server_has_left_is_adopted(tmp_path: Path) -> None:
     left = Left(tmp_path, program("engine", "import time; time.sleep(600)", tmp_path / "never"))
     crew = Crew(tmp_path, left.command)
 
+    started = crew.part("engine").since
+
     async def scenario() -> None:
         await until(lambda: crew.part("engine").state == "running", "the adoption")
         assert crew.part("engine").pid == left.process.pid
+        assert crew.part("engine").since == started
         (tmp_path / "never").touch()
         left.process.kill()
         await until(lambda: crew.told, "the news")
