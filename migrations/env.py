@@ -1,15 +1,12 @@
 """Alembic's entry point: upgrades the database of the given connection to the requested revision."""
 
 from alembic import context
-from sqlmodel import SQLModel
-
-import server.platform.models  # noqa: F401 - declares the tables
 
 
 def migrate() -> None:
     """Run the migrations in one transaction. Raises KeyError where no connection was handed over."""
     connection = context.config.attributes["connection"]
-    context.configure(connection=connection, target_metadata=SQLModel.metadata, render_as_batch=True)
+    context.configure(connection=connection, render_as_batch=True)
     with context.begin_transaction():
         context.run_migrations()
 
