@@ -208,8 +208,16 @@ void Link::queue_line(DebugLine& line) {
 
 bool Link::line_idle() { return board::line_room() >= kIdleRoom; }
 
+bool Link::line_due(uint16_t now_ms) {
+  const uint16_t interval_ms = now_ms - stepped_ms_;
+  stepped_ms_ = now_ms;
+  // Half a millisecond more, because the clock counts whole ones.
+  const uint32_t bytes = (2UL * interval_ms + 1) * kBaud / 20000;
+  return board::line_room() >= board::kLineRoom - (bytes < kFrameBytesMax ? bytes : kFrameBytesMax);
+}
+
 void Link::step(uint16_t now_ms) {
-  if (!line_idle()) return;
+  if (!line_due(now_ms)) return;
   if (!announce_ready_) {
     const uint16_t bytes = bytes_in_flight();
     if (repeat(now_ms, round_trip_.timeout(bytes)) || start_flight(now_ms)) return;

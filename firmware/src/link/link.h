@@ -64,7 +64,8 @@ class Link {
   }
   // Queues a line of text; without room it is dropped and counted.
   void queue_line(DebugLine& line);
-  // Sends one frame of reliable messages, or an acknowledgement, if one is due and the line is idle.
+  // Sends one frame of reliable messages, or an acknowledgement, if one is due and the line has sent most of
+  // what waited. Call it at a steady pace.
   void step(uint16_t now_ms);
 
   // Sends an acknowledgement now. Call it regularly if nothing else is sent: the host treats a board that is
@@ -101,6 +102,10 @@ class Link {
   void note_losses();
   void add_selective_acknowledgement();
   uint16_t bytes_in_flight() const;
+  // True if no more bytes wait than the line sends until the next step, and at most a frame. The time until
+  // then is assumed to be the time since the last step. More waiting bytes would make the round trip longer,
+  // and under noise the window of seven short frames is too small for that.
+  bool line_due(uint16_t now_ms);
   bool repeat(uint16_t now_ms, uint16_t timeout);
   bool start_flight(uint16_t now_ms);
   uint8_t pack(uint8_t offset, uint8_t limit);
@@ -130,6 +135,7 @@ class Link {
   bool restored_ = false;        // it was stored: its acknowledgement is old
   bool acknowledge_ = false;
   uint16_t received_ms_ = 0;
+  uint16_t stepped_ms_ = 0;  // the last step()
 };
 
 }  // namespace mucat
