@@ -37,6 +37,8 @@ class Guard:
     guard: str
     without: str
     tests: tuple[str, ...]
+    subjects: tuple[str, ...] = ()
+    """What it guards of that which `guarded.list_guarded` finds."""
 
     def problem(self, root: Path) -> str:
         """Why it cannot be taken away there; empty where it can."""
@@ -107,7 +109,8 @@ class Tree:
 def read_guards(path: Path = LIST) -> list[Guard]:
     """The guards of the list."""
     entries = tomllib.loads(path.read_text(encoding="utf-8"))["guards"]
-    return [Guard(**entry | {"tests": tuple(entry["tests"])}) for entry in entries]
+    lists = ("tests", "subjects")
+    return [Guard(**entry | {name: tuple(entry.get(name, ())) for name in lists}) for entry in entries]
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.board.rig import ROOT
+from tests.proofs.guarded import list_guarded
 from tests.proofs.guards import Guard, GuardError, copy_tree, read_guards
 
 ONE = "runtime: a set point has its range"
@@ -18,6 +19,10 @@ def named(name: str) -> Guard:
 def test_every_guard_is_where_the_list_says(guard: Guard) -> None:
     assert guard.problem(ROOT) == ""
     assert guard.without != guard.guard
+
+
+def test_all_that_the_tables_of_the_code_hold_is_on_the_list() -> None:
+    assert {subject for guard in read_guards() for subject in guard.subjects} == list_guarded()
 
 
 def test_names_are_given_once() -> None:

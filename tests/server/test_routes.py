@@ -376,6 +376,10 @@ def test_every_answer_binds_the_browser(settings: Settings) -> None:
         for url in ("/health", "/nothing", f"{root}/", f"{root}/operate"):
             headers = (await served.api.get(url)).headers
             assert headers["x-content-type-options"] == "nosniff"
+            assert headers["x-frame-options"] == "DENY"
+            assert headers["referrer-policy"] == "same-origin"
+            assert headers["cross-origin-opener-policy"] == "same-origin"
+            assert headers["cross-origin-resource-policy"] == "same-origin"
             assert "frame-ancestors 'none'" in headers["content-security-policy"]
             assert "unsafe" not in headers["content-security-policy"]
             assert "server" not in headers

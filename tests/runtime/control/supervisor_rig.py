@@ -16,6 +16,7 @@ from robot_runtime.contract.packets import (
     StatusFlag,
     Stop,
 )
+from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.supervisor import Supervisor
 
 
@@ -46,11 +47,16 @@ def imu(tilt: float) -> Imu:
 class Rig:
     """A supervisor, its board and its events."""
 
-    def __init__(self, baud: int = 250_000, heartbeat: float | None = None) -> None:
+    def __init__(
+        self, baud: int = 250_000, heartbeat: float | None = None, *, in_the_loop: bool = False
+    ) -> None:
         self.clock, self.board = SimulatedClock(100.0), Board(baud)
         self.events: list[Event] = []
+        self.hil = HilFeed(self.clock, lambda _: None, self.events.append) if in_the_loop else None
         self.on_start: Callable[[], None] = lambda: None
-        self.supervisor = Supervisor(self.clock, self.board, self.events.append, heartbeat=heartbeat)
+        self.supervisor = Supervisor(
+            self.clock, self.board, self.events.append, self.hil, heartbeat=heartbeat
+        )
         self._pressure = 101_325
         self.board.send = self._send  # type: ignore[method-assign]
 

@@ -10,7 +10,9 @@ from robot_runtime.contract.packets import SensorFault, StatusFlag
 from robot_runtime.control.alarms import CLEAR_AFTER, Alarms
 from robot_runtime.control.fault_detector import REPEATS
 from robot_runtime.control.faults import BY_NAME, FAULTS
+from robot_runtime.control.hil_feed import SILENCE
 from tests.runtime.control.supervisor_rig import Rig
+from tests.runtime.control.test_hil_feed import WORD
 
 MS = 0.001
 
@@ -140,6 +142,21 @@ def test_the_server_s_silence_counts_while_armed_alone(rig: Rig) -> None:
     assert wrong(rig) == {"server_silent"}
     assert wrong(rig, "disarmed") == set()
     rig.supervisor.detector.see_server()
+    assert wrong(rig) == set()
+
+
+def test_a_simulator_that_falls_silent_is_a_fault_also_while_disarmed() -> None:
+    rig = Rig(in_the_loop=True)
+    rig.ready()
+    assert rig.hil is not None
+    assert rig.supervisor.detector.active_faults("disarmed", []) == {}
+    rig.hil.forward(WORD.to_bytes())
+    live(rig, SILENCE - 0.02, rig.sense)
+    assert wrong(rig, "disarmed") == set()
+    live(rig, 0.04, rig.sense)
+    assert wrong(rig, "disarmed") == wrong(rig) == {"simulator_silent"}
+    assert BY_NAME["simulator_silent"].stops("automatic")
+    rig.hil.forward(WORD.to_bytes())
     assert wrong(rig) == set()
 
 

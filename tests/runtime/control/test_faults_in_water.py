@@ -213,6 +213,19 @@ def test_a_pilot_s_input_that_cannot_be_sent_stops_the_robot(
     assert flight.supervisor.mode == "failsafe"
 
 
+def test_a_check_for_faults_that_fails_stops_the_robot(
+    flight: Flight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("out of order")
+
+    flight.arm()
+    flight.run(0.5)
+    monkeypatch.setattr(flight.supervisor.detector, "active_faults", fail)
+    flight.until(lambda: flight.supervisor.mode == "failsafe", BY_NAME["control_failed"].limit + LATE)
+    assert [alarm.fault for alarm in flight.supervisor.alarms] == ["control_failed"]
+
+
 def test_by_hand_a_lost_depth_is_an_alarm_alone_and_bars_the_controller(flight: Flight) -> None:
     flight.sticks = [0.0] * 6
     flight.arm("manual")

@@ -1,3 +1,4 @@
+import asyncio
 import shutil
 from types import SimpleNamespace
 from typing import Any
@@ -6,12 +7,14 @@ import pytest
 
 from robot_runtime.contract.documents import Alarm, Event
 from robot_runtime.control.alarms import Alarms
+from server.app import create_app
 from server.health.faults import FAULTS
 from server.health.watchdog import DOWN, HUNG_SECONDS, PERIOD, SILENT_SECONDS, STARTING_SECONDS, Watchdog
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.supervisor import ManagedProcess
 from tests.server.health.monitor_rig import MonitorRig
+from tests.server.new_database import place_with_samples
 
 
 class AlarmRig(MonitorRig):
@@ -188,3 +191,18 @@ def test_every_fault_says_the_likely_cause_and_what_to_do() -> None:
     for fault in FAULTS.values():
         assert fault.cause.endswith(".")
         assert fault.remedy.endswith(".")
+
+
+def test_a_server_that_was_started_again_says_so(settings: Settings) -> None:
+    async def started(ended: str) -> list[tuple[str, str, str]]:
+        await place_with_samples(settings.data)
+        app = create_app(settings)
+        app.state.ended = ended
+        async with app.router.lifespan_context(app):
+            alarms = app.state.container.alarms.listed()
+        return [(one.fault, one.what, one.severity) for one in alarms if one.fault == "server_restarted"]
+
+    assert asyncio.run(started("")) == []
+    said = asyncio.run(started("The server was ended by signal SIGKILL."))
+    words = "The server was ended by signal SIGKILL. It was started again."
+    assert said == [("server_restarted", words, "caution")]

@@ -1,3 +1,4 @@
+import errno
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -74,6 +75,15 @@ def test_what_is_no_database_is_refused(settings: Settings, content: bytes) -> N
     with pytest.raises(SetupError, match="cannot be used"):
         schema.prepare(settings.data)
     assert settings.data.database.read_bytes() == content
+
+
+def test_a_full_disk_is_told_in_words(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(schema, "_upgrade", fail)
+    with pytest.raises(SetupError, match=r"the disk that holds .* is full\. Free some space"):
+        schema.prepare(settings.data)
 
 
 def test_the_database_of_another_program_is_refused(settings: Settings) -> None:

@@ -4,6 +4,7 @@ import asyncio
 import io
 import json
 import math
+import shutil
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from contextlib import closing
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -19,7 +21,8 @@ from sqlmodel import col, select
 
 from server.features.exports.archive import CHECKSUMS, HEAD, SESSION, write_archive
 from server.features.exports.archive_reader import ArchiveError, examine
-from server.features.exports.imports import Imports
+from server.features.exports.files import FileWriteError
+from server.features.exports.imports import SPARE_BYTES, Imports
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.sessions.catalogue import Catalogue
@@ -249,6 +252,22 @@ def test_an_import_that_fails_on_the_way_leaves_nothing_and_is_seen_by_nobody(
     with store.read() as database:
         states = database.exec(select(SessionRow.state).order_by(col(SessionRow.id))).all()
     assert states == ["complete", REMOVING]
+
+
+def test_what_is_larger_than_the_room_is_refused_before_it_is_read(
+    store: Store, settings: Settings, session: int, archive: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    change(archive, tell(identifier="f" * 32))
+    size = archive.stat().st_size
+    disk = SimpleNamespace(free=size + SPARE_BYTES - 1)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: disk)
+    imports = Imports(settings.data, store)
+    with pytest.raises(FileWriteError, match="Free some space"):
+        asyncio.run(imports.take(archive))
+    assert [one.id for one in Catalogue(store).list()] == [session]
+    disk.free += 1
+    asyncio.run(imports.take(archive))
+    assert len(Catalogue(store).list()) == 2
 
 
 def test_what_a_killed_server_has_half_imported_is_removed(
