@@ -1,14 +1,24 @@
-"""A short version of `make guards`: one guard is removed, and the list of guards matches the sources."""
+"""A short version of `make guards`: a tenth of the guards is removed, and the list matches the sources.
 
+The day chooses which tenth: its number since 1970 in UTC, modulo ten. MUCAT_GUARDS_DAY=20780 repeats a day's.
+"""
+
+import time
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from os import environ
 
 import pytest
 
-from tests.board.rig import ROOT
+from tests.board.rig import ROOT, build
 from tests.proofs.guarded import list_guarded
-from tests.proofs.guards import Guard, GuardError, copy_tree, read_guards
+from tests.proofs.guards import Guard, GuardError, Tree, copy_tree, read_guards
 
 ONE = "runtime: a set point has its range"
+DAY = int(environ.get("MUCAT_GUARDS_DAY", time.time() // 86400))
+PARTS = 10
+MOST = -(-len(read_guards()) // PARTS)
+"""Guards of the largest tenth."""
 
 
 def named(name: str) -> Guard:
@@ -40,3 +50,27 @@ def test_a_guard_is_missed_and_what_guards_nothing_is_not() -> None:
         assert tree.run_without(replace(guard, without=f"{guard.guard}  # still here")).failed == ()
         with pytest.raises(GuardError, match="0 times, not once"):
             tree.run_without(replace(guard, guard="there is no such text"))
+
+
+@pytest.fixture(scope="module")
+def tree() -> Iterator[Tree]:
+    with copy_tree() as tree:
+        yield tree
+
+
+# By number, since the names of tests must not change with the date.
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("number", range(MOST))
+def test_a_guard_of_today_s_tenth_is_missed(
+    tree: Tree, number: int, record_property: Callable[[str, object], None]
+) -> None:
+    guards = read_guards()[DAY % PARTS :: PARTS]
+    if number == len(guards):
+        return
+    guard, again = guards[number], f"MUCAT_GUARDS_DAY={DAY} repeats it."
+    record_property("guard", guard.name)
+    if any(test.startswith("tests/board/") for test in guard.tests):
+        build(tree.root / "firmware/emulator")
+    outcome = tree.run_without(guard)
+    assert not outcome.broken, f"{guard.name}: {outcome.broken}. {again}\n{outcome.words}"
+    assert outcome.failed, f"without “{guard.name}” no test fails. {again}"

@@ -1,5 +1,6 @@
 """Every route and every message of the live socket, asked by everybody from everywhere, against one table.
 
+Whoever is let in gets exactly the answer of `probes.py`; who is not, exactly the status of the refusal.
 The table is written here by hand, and knows nothing of the server's own: what is not in it fails.
 """
 
@@ -7,9 +8,10 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, cast
 
+import pytest
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 from starlette.types import Message
@@ -20,6 +22,7 @@ from server.http.sign_in.policy import MESSAGES
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
 from tests.server.new_database import place_with_samples
+from tests.server.probes import CODE, PROBES, THERE, Probe, place_things
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
@@ -147,14 +150,8 @@ ROLES: dict[Who, int] = {
 }
 LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3}
 SAFE = {"GET", "HEAD"}
-REFUSED = {401, 403, 423}
-FAULTS_ALLOWED = {503, 504, 507}
-"""There is no scene and no simulator, and an import says that it is larger than the disk."""
-ABSENT = dict.fromkeys(("session", "mark", "run", "device", "layout", "panel", "profile"), "999") | {
-    "export": "0" * 16,
-    "path": "x.html",
-    "name": "heading",
-}
+NEAR, FAR = "127.0.0.1", "192.0.2.7"
+"""Addresses that ask: this computer's own, and one elsewhere."""
 
 
 def expected(who: Who, least: Least, *, safe: bool, host: Where, origin: Where) -> int | None:
@@ -196,14 +193,23 @@ class House:
         return said if origin == "missing" else said | {"origin": f"http://{names[origin]}"}
 
     async def ask(
-        self, who: Somebody, method: str, path: str, places: dict[str, str], body: object = None
+        self,
+        who: Somebody,
+        method: str,
+        path: str,
+        places: dict[str, str],
+        body: object = None,
+        *,
+        query: str = "",
+        address: str = NEAR,
     ) -> tuple[int, dict[str, str], bytes]:
         """The status, headers and body of an answer."""
         data = json.dumps({} if body is None else body).encode()
         # An archive that says it is so large is refused before a process looks at it.
         size = 10**15 if path == "/api/imports" else len(data)
         headers = places | who.headers | {"content-length": str(size), "content-type": "application/json"}
-        scope = self._scope("http", path, headers) | {"method": method, "scheme": "http"}
+        scope = self._scope("http", path, headers, address) | {"method": method, "scheme": "http"}
+        scope["query_string"] = query.encode()
         sent: list[Message] = []
         parts = iter([{"type": "http.request", "body": data, "more_body": False}])
 
@@ -222,10 +228,20 @@ class House:
         role = "viewer" if "viewer" in who else "operator"
         return await (self._program(role) if who.startswith("program") else self._pair(role))
 
-    async def _pair(self, role: str) -> Somebody:
+    async def fill(self, body: dict[str, Any]) -> dict[str, Any]:
+        """The body, with a new code of the shell's where there is to be one."""
+        if body.get("code") != CODE:
+            return body
+        return body | {"code": await self._code("viewer")}
+
+    async def _code(self, role: str) -> str:
         right = self.places("right", "right")
         _, _, told = await self.ask(self.shell, "POST", "/api/access/codes", right, {"role": role})
-        wanted = {"code": json.loads(told)["code"], "name": role}
+        return str(json.loads(told)["code"])
+
+    async def _pair(self, role: str) -> Somebody:
+        right = self.places("right", "right")
+        wanted = {"code": await self._code(role), "name": role}
         status, headers, _ = await self.ask(Somebody(), "POST", "/api/access/pair", right, wanted)
         assert status == 200
         return Somebody({"cookie": headers["set-cookie"].partition(";")[0], "x-mucat": "page"})
@@ -237,10 +253,12 @@ class House:
         return Somebody({"authorization": f"Bearer {json.loads(told)['token']}"})
 
     @asynccontextmanager
-    async def socket(self, who: Somebody, places: dict[str, str]) -> AsyncIterator["LiveSocket"]:
+    async def socket(
+        self, who: Somebody, places: dict[str, str], address: str = NEAR
+    ) -> AsyncIterator["LiveSocket"]:
         """A live socket, let in or not."""
         socket = LiveSocket()
-        scope = self._scope("websocket", "/api/live", places | who.headers) | {"scheme": "ws"}
+        scope = self._scope("websocket", "/api/live", places | who.headers, address) | {"scheme": "ws"}
         running = asyncio.create_task(self.app(scope | {"subprotocols": []}, socket.receive, socket.send))
         try:
             await until(lambda: socket.opened is not None, "an answer to the handshake")
@@ -249,7 +267,7 @@ class House:
             socket.to_server.put_nowait({"type": "websocket.disconnect", "code": 1000})
             await running
 
-    def _scope(self, kind: str, path: str, headers: dict[str, str]) -> dict[str, Any]:
+    def _scope(self, kind: str, path: str, headers: dict[str, str], address: str) -> dict[str, Any]:
         return {
             "type": kind,
             "asgi": {"version": "3.0"},
@@ -259,7 +277,7 @@ class House:
             "query_string": b"",
             "root_path": "",
             "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
-            "client": ("127.0.0.1", 50000),
+            "client": (address, 50000),
             "server": ("127.0.0.1", 8000),
         }
 
@@ -300,8 +318,10 @@ class LiveSocket:
 
 @asynccontextmanager
 async def open_house(settings: Settings) -> AsyncIterator[House]:
-    """A running application, and everybody signed in; who is in control has a live page."""
+    """A running application, and everybody signed in; the browsers of operators have a live page."""
     await place_with_samples(settings.data)
+    settings = replace(settings, help_pages=settings.data.path / "help")
+    place_things(settings)
     app = create_app(settings)
     with RuntimeEnd(settings.data.runtime_socket, settings.robot) as runtime:
         async with app.router.lifespan_context(app):
@@ -313,9 +333,25 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
                 if who != "anonymous":
                     house.people[who] = await house.enter(who)
             right = house.places("right", "right")
-            async with house.socket(house.people["control"], right) as live:
-                house.people["control"].headers["x-mucat-client"] = (await live.hello())["client_key"]
+            operator, control = house.people["operator"], house.people["control"]
+            async with house.socket(operator, right) as other, house.socket(control, right) as live:
+                operator.headers["x-mucat-client"] = (await other.hello())["client_key"]
+                control.headers["x-mucat-client"] = (await live.hello())["client_key"]
+                await place_things_to_ask_for(house)
                 yield house
+
+
+async def place_things_to_ask_for(house: House) -> None:
+    """A session with a bookmark that is being recorded, a profile and a layout: the first of each."""
+    right, one = house.places("right", "right"), house.people["control"]
+    for path, body in (
+        ("/api/sessions", {"name": "Dive"}),
+        (f"/api/sessions/{THERE['session']}/markers", {"text": "here"}),
+        ("/api/profiles", {"name": "first"}),
+        ("/api/layouts", PROBES["POST", "/api/layouts"].body | {"name": "first"}),
+    ):
+        status, _, told = await house.ask(one, "POST", path, right, body)
+        assert status == 201, (path, told)
 
 
 def routes() -> Iterator[tuple[str, str]]:
@@ -337,13 +373,23 @@ def test_every_message_has_an_entry_and_every_entry_a_message() -> None:
 
 
 WHERE: tuple[Where, ...] = ("right", "wrong", "missing")
+WHENCE = [(host, origin, FAR) for host in WHERE for origin in WHERE] + [("right", "right", NEAR)]
+"""Host, Origin and address. No address is trusted, so that each answer is the same from both."""
 
 
-def test_every_route_lets_in_whom_the_table_says(settings: Settings) -> None:
+def test_every_exception_has_its_reason_and_its_words_and_every_probe_a_route() -> None:
+    assert PROBES.keys() <= ROUTES.keys()
+    for route, probe in PROBES.items():
+        excepted = probe.status >= 400
+        assert bool(probe.because and probe.words) is excepted, route
+
+
+@pytest.mark.parametrize("who", ROLES)
+def test_every_route_lets_in_whom_the_table_says(settings: Settings, who: Who) -> None:
     async def scenario() -> None:
         async with open_house(settings) as house:
-            surprises = [one for who in ROLES for one in await ask_everything(house, who)]
-            assert surprises == []
+            surprises = await ask_everything(house, who)
+            assert not surprises, "\n".join(map(str, surprises))
 
     asyncio.run(scenario())
 
@@ -353,20 +399,23 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
     surprises: list[tuple[object, ...]] = []
     right = house.places("right", "right")
     for (method, template), least in ROUTES.items():
-        path = template.replace(":path", "").format(**ABSENT)
-        for host in WHERE:
-            for origin in WHERE:
-                # Whoever has control may have given it back a moment ago.
-                await house.ask(house.people["control"], "POST", "/api/control/take", right)
-                places = house.places(host, origin)
-                status, _, body = await house.ask(house.people[who], method, path, places)
-                wanted = expected(who, least, safe=method in SAFE, host=host, origin=origin)
-                fine = status == wanted if wanted else status not in REFUSED
-                fault = status >= 500 and status not in FAULTS_ALLOWED
-                if not fine or fault:
-                    surprises.append((who, method, template, host, origin, wanted, status, body[:200]))
-                if status == 204 and template.endswith("/sign-out"):
-                    house.people[who] = await house.enter(who)
+        probe = PROBES.get((method, template), Probe())
+        path = template.replace(":path", "").format(**THERE | probe.named)
+        for host, origin, address in WHENCE:
+            # Whoever has control may have given it back a moment ago, or another may have taken it.
+            control = house.people["control"]
+            await house.ask(control, "POST", "/api/control/take", right, query="over=true")
+            places, body = house.places(host, origin), await house.fill(probe.body)
+            status, _, told = await house.ask(
+                house.people[who], method, path, places, body, query=probe.query, address=address
+            )
+            refusal = expected(who, least, safe=method in SAFE, host=host, origin=origin)
+            fine = status == (refusal or probe.status) and (bool(refusal) or probe.words.encode() in told)
+            if not fine:
+                wanted = refusal or (probe.status, probe.words)
+                surprises.append((who, method, template, host, origin, address, wanted, status, told[:300]))
+            if status == 204 and template.endswith("/sign-out"):
+                house.people[who] = await house.enter(who)
     return surprises
 
 
@@ -374,13 +423,13 @@ def test_every_message_is_obeyed_for_whom_the_table_says(settings: Settings) -> 
     async def scenario() -> None:
         async with open_house(settings) as house:
             for who in ROLES:
-                for host in WHERE:
-                    for origin in WHERE:
-                        wanted = expected(who, "viewer", safe=False, host=host, origin=origin)
-                        async with house.socket(house.people[who], house.places(host, origin)) as socket:
-                            assert socket.opened is (wanted is None), (who, host, origin)
-                            if wanted is None:
-                                await say_everything(house, who, socket)
+                for host, origin, address in WHENCE:
+                    wanted = expected(who, "viewer", safe=False, host=host, origin=origin)
+                    places = house.places(host, origin)
+                    async with house.socket(house.people[who], places, address) as socket:
+                        assert socket.opened is (wanted is None), (who, host, origin, address)
+                        if wanted is None:
+                            await say_everything(house, who, socket)
 
     asyncio.run(scenario())
 

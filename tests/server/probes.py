@@ -1,0 +1,166 @@
+"""A request to each route, and the answer that it gives to whom it lets in.
+
+Most requests are valid, and about something that is there: their answer is the route's success. The others
+are exceptions, each with its reason in `because` and its own words, which no router and no guard says.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from robot_runtime.contract.vision_settings import VisionSettings
+from server.platform.settings import Settings
+
+SESSION = "/api/sessions/{session}"
+NOT_THERE = 404
+GONE = "It would be gone for all that is asked afterwards."
+STARTS = "It would start a process each time."
+CODE = "a new code"
+"""In a body: a code that the shell has just made."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What is sent, and the status and words of the answer."""
+
+    status: int = 200
+    body: Any = field(default_factory=dict)
+    query: str = ""
+    words: str = ""
+    because: str = ""
+    named: dict[str, str] = field(default_factory=dict)
+    """Parts of the path that differ from `THERE`."""
+
+
+THERE = {
+    "session": "1",
+    "run": "1",
+    "device": "1",
+    "layout": "1",
+    "profile": "1",
+    "panel": "mine",
+    "mark": "1",
+}
+THERE |= {"export": "0" * 16, "path": "index.html"}
+
+
+def absent(thing: str, words: str, because: str, **more: Any) -> Probe:
+    """A request about what is not there."""
+    return Probe(NOT_THERE, words=words, because=because, named={thing: "999"}, **more)
+
+
+STEP: dict[str, Any] = {
+    "kind": "step",
+    "low": 2.0,
+    "high": 0.0,
+    "start": 0.3,
+    "target": 0.6,
+    "tolerance": 0.1,
+}
+STEP |= {"settle": 10.0, "duration": 20.0}
+
+PROBES: dict[tuple[str, str], Probe] = {
+    ("GET", "/help"): Probe(307),
+    ("HEAD", "/help"): Probe(307),
+    ("POST", "/api/access/pair"): Probe(body={"code": CODE, "name": "somebody"}),
+    ("POST", "/api/access/codes"): Probe(201),
+    ("PATCH", "/api/access/devices/{device}"): Probe(body={"name": "viewer"}),
+    ("DELETE", "/api/access/devices/{device}"): absent("device", "There is no device 999", GONE),
+    ("POST", "/api/access/tokens"): Probe(201, {"name": "program"}),
+    ("POST", "/api/control/take"): Probe(query="over=true"),
+    ("POST", "/api/robot/stop"): Probe(204),
+    ("POST", "/api/robot/commands/acknowledge"): Probe(204),
+    ("POST", "/api/robot/commands/arm"): Probe(204),
+    ("POST", "/api/robot/commands/mode"): Probe(204, {"mode": "manual"}),
+    ("POST", "/api/robot/commands/check_fins"): Probe(204),
+    ("POST", "/api/robot/commands/loop"): Probe(body={"name": "depth", "on": False}),
+    ("POST", "/api/robot/commands/parameters"): Probe(body={"values": {"depth.set_point": 1.0}}),
+    ("POST", "/api/robot/commands/vision_settings"): Probe(body=VisionSettings().table()),
+    ("POST", "/api/robot/commands/steering"): Probe(body={"by": "none"}),
+    ("POST", "/api/robot/commands/card"): Probe(204),
+    ("POST", "/api/vision/pick"): Probe(body={"x": 0.5, "y": 0.5}),
+    ("POST", "/api/vision/read"): Probe(body={"text": "[vision]"}),
+    ("POST", "/api/parameters/undo"): Probe(
+        409, {"change": 999}, words="change", because="Nothing has been changed."
+    ),
+    ("POST", "/api/profiles"): Probe(
+        409, {"name": "first"}, words="There is a profile", because="Names are given once."
+    ),
+    ("POST", "/api/profiles/file"): Probe(
+        422, {"text": "?"}, words="The file is not a profile", because="There would be more."
+    ),
+    ("GET", "/api/profiles/{profile}/file"): Probe(),
+    ("POST", "/api/profiles/{profile}/restore"): Probe(
+        409, words="holds no parameters", because="The runtime's end has none."
+    ),
+    ("DELETE", "/api/profiles/{profile}"): absent("profile", "There is no such profile", GONE),
+    ("PUT", "/api/simulator"): Probe(
+        409, {"here": True}, words="loop", because="The robot is not in the loop."
+    ),
+    ("PUT", "/api/scene/view"): Probe(
+        503,
+        {"name": "side", "azimuth": 0.0, "elevation": 0.0, "distance": 1.0},
+        words="scene",
+        because="There is no scene.",
+    ),
+    ("GET", "/api/past"): Probe(query="topic=depth&until=100"),
+    ("POST", "/api/sessions"): Probe(
+        409, words="record", because="One is recorded already; two of them are not possible."
+    ),
+    ("PATCH", SESSION): Probe(body={"name": "Dive"}),
+    ("DELETE", SESSION): absent("session", "There is no session 999", GONE),
+    ("POST", SESSION + "/stop"): absent("session", "There is no session 999", GONE),
+    ("POST", SESSION + "/restore"): absent("session", "There is no session 999", GONE),
+    ("POST", SESSION + "/purge"): absent("session", "There is no session 999", GONE),
+    ("GET", SESSION + "/thumbnail"): Probe(404, query="time=100", words="picture", because="It has none."),
+    ("GET", SESSION + "/blocks"): Probe(query="start=0&end=100"),
+    ("POST", SESSION + "/markers"): absent("session", "There is no session 999", "There would be ever more."),
+    ("PATCH", SESSION + "/markers/{mark}"): Probe(body={"text": "here"}),
+    ("DELETE", SESSION + "/markers/{mark}"): absent("mark", "999", GONE),
+    ("POST", "/api/compare"): Probe(body={"sessions": [1], "signals": ["depth.depth"]}),
+    ("POST", "/api/compare/lines"): Probe(body={"sessions": [1], "signals": ["depth.depth"]}),
+    ("GET", "/api/compare/report"): Probe(
+        404, query="sessions=999", words="There is no session 999", because="It takes a second to make."
+    ),
+    ("POST", "/api/exports"): Probe(
+        404, {"session": 999, "format": "csv"}, words="There is no session 999", because=STARTS
+    ),
+    ("GET", "/api/exports/{export}"): Probe(404, words="There is no export 0000", because=STARTS),
+    ("DELETE", "/api/exports/{export}"): Probe(404, words="There is no export 0000", because=STARTS),
+    ("GET", "/api/exports/{export}/file"): Probe(404, words="There is no export 0000", because=STARTS),
+    ("POST", "/api/imports"): Probe(507, words="Free some space", because=STARTS),
+    ("POST", "/api/comm-tests/check"): Probe(body={"text": "[]"}),
+    ("POST", "/api/comm-tests/runs"): Probe(
+        422, {"text": "?", "place": "emulated"}, words="JSON", because=STARTS
+    ),
+    ("POST", "/api/comm-tests/cancel"): Probe(204),
+    ("POST", "/api/scenarios"): Probe(422, {"text": "?"}, words="TOML", because="There would be more."),
+    ("POST", "/api/scenarios/check"): Probe(body={"text": "?"}),
+    ("POST", "/api/scenarios/runs"): Probe(
+        422, {"text": "?", "place": "simulated"}, words="TOML", because=STARTS
+    ),
+    ("POST", "/api/scenarios/cancel"): Probe(204),
+    ("POST", "/api/layouts"): Probe(
+        201, {"name": "pool", "document": {"format": "mucat-layout", "version": 1, "panels": []}}
+    ),
+    ("DELETE", "/api/layouts/{layout}"): absent("layout", "There is no layout 999", GONE),
+    ("POST", "/api/tuning/runs"): Probe(
+        409, STEP, words="The robot is disarmed", because="It is not armed here."
+    ),
+    ("POST", "/api/tuning/stop"): Probe(409, words="No experiment", because="None is running."),
+    ("GET", "/api/tuning/runs/{run}"): absent("run", "There is no run 999", "None has been made."),
+    ("PATCH", "/api/tuning/runs/{run}"): absent(
+        "run", "There is no run 999", "None has been made.", body={"name": "mine"}
+    ),
+    ("DELETE", "/api/tuning/runs/{run}"): absent("run", "There is no run 999", "None has been made."),
+    ("POST", "/api/access/sign-out"): Probe(204),
+}
+"""Of a route that is not here, the answer to an empty request is 200."""
+
+
+def place_things(settings: Settings) -> None:
+    """Put a page, a help page, a panel into their folders."""
+    for folder, name in ((settings.page, "index.html"), (settings.help_pages, "index.html")):
+        folder.mkdir(exist_ok=True)
+        (folder / name).write_text("<!doctype html>")
+    settings.data.panels.mkdir(exist_ok=True)
+    (settings.data.panels / "mine.js").write_text("export default 1")
