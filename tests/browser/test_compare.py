@@ -22,7 +22,8 @@ def record(page: Page, stack: Stack, name: str, *, armed: bool) -> int:
     page.goto(f"{stack.url}/#/operate")
     if armed:
         hold_to_arm(page)
-    wait(lambda: samples(stack, session["id"]) > DRAWN, "something to be drawn")
+    before = samples(stack, session["id"])
+    wait(lambda: samples(stack, session["id"]) > before + DRAWN, "something to be drawn after the arming")
     stack.api.post("/robot/stop").raise_for_status()
     stack.api.post(f"/sessions/{session['id']}/stop").raise_for_status()
     return int(session["id"])
@@ -33,9 +34,14 @@ def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
     one = record(page, stack, "with fins", armed=True)
     other = record(page, stack, "without", armed=False)
-    page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
+    order: list[str] = []
+    page.on("request", lambda request: order.append(f"ask {request.url}"))
+    page.on("response", lambda response: order.append(f"got {response.url}"))
+    with page.expect_request("**/signals"):
+        page.goto(f"{stack.url}/#/sessions/compare/{one},{other}")
     expect(page.get_by_role("link", name="with fins", exact=True)).to_be_visible(timeout=STEP_MS)
     expect(page.locator(LINES)).to_have_count(4, timeout=STEP_MS)
+    check_order(order)
 
     page.get_by_role("button", name="Figures 14 to 16").click()
     expect(page.locator(".ytick").first).to_be_visible()
@@ -64,6 +70,15 @@ def test_two_sessions_over_each_other(page: Page, browser: Browser, stack: Stack
     check_files(page, tmp_path)
     check_report(page, browser, tmp_path / "report.html")
     assert complaints == []
+
+
+def check_order(order: list[str]) -> None:
+    """Plotly is fetched while the server compares; the list of signals waits until that is done."""
+
+    def place(start: str, part: str) -> int:
+        return next(at for at, line in enumerate(order) if line.startswith(start) and part in line)
+
+    assert place("ask", "/assets/plotly-basic") < place("got", "/api/compare") < place("ask", "/signals")
 
 
 def check_files(page: Page, folder: Path) -> None:
