@@ -37,6 +37,9 @@ ANSWER_SECONDS = 2.0
 COMMANDS_AT_ONCE = 4
 BLOCK_BYTES_MAX = 4_000_000
 BACKLOG_SECONDS = 3.0
+BACKLOG_FIRST_SECONDS = 0.3
+"""s to wait for the first answer; four times as long for each next one. The first question to a process
+that has just been started sometimes gets no answer at all."""
 BACKLOG_PAUSE = 0.1
 """s. A process that is heard can be asked after Zenoh's discovery."""
 CONTACT_SECONDS = 10.0
@@ -223,10 +226,13 @@ class Bridge:
         self, name: str, first_numbers: Mapping[str, int], seconds: float = BACKLOG_SECONDS
     ) -> BacklogReply | None:
         end = self._loop.time() + seconds
-        while self._loop.time() < end:
+        patience = min(BACKLOG_FIRST_SECONDS, seconds)
+        while (began := self._loop.time()) < end:
             try:
-                return await asyncio.to_thread(self._fetch, QUESTIONS[name], first_numbers, seconds)
+                return await asyncio.to_thread(self._fetch, QUESTIONS[name], first_numbers, patience)
             except NoAnswerError:
+                if self._loop.time() - began >= patience:
+                    patience = min(4 * patience, seconds)
                 await asyncio.sleep(BACKLOG_PAUSE)
             except (RefusedError, LayoutError) as problem:
                 log.warning("what the %s has kept cannot be had: %s", name, problem)
