@@ -89,7 +89,11 @@ class Outcome:
 
     @property
     def is_slow(self) -> bool:
-        """True if the recovery took too long; that depends on the load of the computer."""
+        """True if the recovery took too long. `make faults` fails for it.
+
+        It is not among the `problems`, for which `make test` fails: other robots run on the same cores
+        there, and most of a recovery is CPU time.
+        """
         return self.again > AGAIN
 
 
