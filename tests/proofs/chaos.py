@@ -199,7 +199,9 @@ class Storm:
                     size += room
                 except OSError:
                     room //= 2
-        # Storing may go on for a while, in the room that the write-ahead log has on the disk already.
+        # Storing may go on for a while, in the room that the write-ahead log has on the disk already: so
+        # `store_failing` need not come. That it comes where the database refuses is in test_alarms.py, and
+        # what a full disk does to a recording in test_full_disk.py.
         wait(lambda: self._is_told("disk_low"), "the alarm of the full disk")
         time.sleep(self._chance.uniform(0.0, 4.0))
         ballast.unlink()

@@ -30,7 +30,8 @@ NEUTRAL, DISARMED = 0.5, 1.015
 HEARTBEAT = 5.0
 """s after which a robot whose server is silent is stopped."""
 AGAIN = 2.0
-"""s within which all is well again after something was killed."""
+"""s within which all is well again after something was killed. Each that is later is counted, and
+`make faults` fails for it; `make test` does not, since other tests run on the same processors meanwhile."""
 ALWAYS = ("state", "depth", "truth")
 STEADY = 1.0
 """s for which at most the next blow is waited for."""

@@ -13,7 +13,7 @@ from robot_runtime.link.framing import OPEN, Decoder, Frame, assemble
 from robot_runtime.link.session import LinkSession, session_key
 from tests.proofs import fuzz
 
-EXECUTIONS = 10_000
+EXECUTIONS = 15_000
 HOST, BOARD = 5, 6
 KEY = session_key(HOST, BOARD)
 

@@ -14,7 +14,7 @@ from tests.board.rig import ROOT
 from tests.proofs.hostile import ENTRANCES, Field, open_field
 from tests.proofs.words import SHELL, Words
 
-TIMES = 10
+TIMES = 15
 SHELLS = {("os", "system"), ("os", "popen"), ("subprocess", "getoutput"), ("subprocess", "getstatusoutput")}
 TESTS_RUN = 3
 

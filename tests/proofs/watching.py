@@ -23,7 +23,8 @@ from tests.shell import shell_headers
 from tests.stack import Stack
 
 MOVING = 1.0
-"""rad/s, over `SPAN`. A stroke reaches 7."""
+"""rad/s, over `SPAN`. A stroke reaches 7. Limits of 0.1 and 0.5, which stood here before, would count a last
+correction as motion: 0.03 rad in 0.05 s are 0.6 rad/s."""
 SPAN = 0.05
 """s. In less, the chip's smallest corrections end: they put a resting fin right by up to 0.03 rad."""
 SILENCE = 0.1

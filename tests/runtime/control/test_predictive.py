@@ -118,7 +118,10 @@ def test_what_it_feels_counts_from_the_second_time_on_after_a_gap() -> None:
 
 @pytest.mark.parametrize(("drift", "within"), [(-0.012, 0.01), (0.0, 0.04), (0.012, 0.01)])
 def test_it_rests_at_the_set_point_in_the_water_of_its_model(drift: float, within: float) -> None:
-    """Also a hull that sinks by itself, whose home is the other side; neutral it rests less near."""
+    """Also a hull that sinks by itself, whose home is the other side.
+
+    Neutral it rests up to 4 cm off, as docs/reference/control.md says: for less the fins do not turn round.
+    """
     water, controller = heave(drift=drift), Predictive()
     motion, depths, turns = Motion(0.2, 0.0), [], 0
     for _ in range(600):
