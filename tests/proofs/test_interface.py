@@ -10,7 +10,7 @@ from server.platform.settings import DataFolder, Settings
 from tests.board.rig import ROOT
 from tests.proofs.interface import Surface, run_surface
 
-EXAMPLES = 8
+EXAMPLES = 12
 
 
 def operations() -> list[str]:
