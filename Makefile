@@ -23,7 +23,7 @@ LONGEST := $(wildcard tests/documents/test_*.py tests/proofs/test_*.py)
 REST = $(LONGEST) $(filter-out $(LONGEST) tests/browser/%,$(shell find tests -name 'test_*.py' | sort))
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-real-time test-browser test-check test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
+.PHONY: help run test test-real-time test-rest check bench figures control screenshots fuzz soak samples kills faults chaos power guards hostile interface generate firmware \
 	host-firmware setup setup-test clean
 
 help: ## list the targets
@@ -32,24 +32,19 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: ## every check and every test; what one of the four lanes says comes when a command of it has ended
+test: ## every check and every test; what one of the two lanes says comes when a command of it has ended
 	@$(MAKE) --no-print-directory --jobs 2 setup-test
 	@$(MAKE) --no-print-directory --jobs 2 host-firmware
-	@$(MAKE) --no-print-directory --jobs 4 --output-sync=line test-real-time test-browser test-check test-rest
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=line test-real-time test-rest
 
-# Robots in real time are served first. One takes less than half a core, so that there are two at a time: that of the
-# browser tests, and those of the other tests one after the other.
+# Robots in real time are served first, one at a time. With two of them beside all else, uploads lose step.
 test-real-time:
 	$(PYTHON) -m pytest -m stack --durations 20 $(REAL_TIME)
-
-test-browser:
 	$(PYTHON) -m pytest --durations 20 tests/browser
 
-test-check:
+test-rest:
 	@nice $(MAKE) --no-print-directory check
 	cd frontend && nice npm test --silent
-
-test-rest:
 	nice $(PYTHON) -m pytest -m "not stack" --numprocesses 2 --dist loadfile --durations 20 --no-loadscope-reorder $(REST)
 
 check: setup-test ## style, types, imports, and whether generated files are current

@@ -27,6 +27,8 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     expect(page.locator("body")).to_have_attribute("data-md-color-scheme", scheme)
     if window == PHONE:
         page.locator("label[for=__search]").first.click()
+    # The index is there; what is typed before is not searched for.
+    expect(page.get_by_text("Type to start searching")).to_be_attached(timeout=20_000)
     page.get_by_role("textbox", name="Search").fill("overshoot")
     found = page.locator(".md-search-result__link").first
     expect(found).to_be_visible()

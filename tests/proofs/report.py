@@ -5,6 +5,7 @@ goes on where it stopped: what has a result on the same commit is not run again,
 """
 
 import json
+import os
 import subprocess
 import sys
 import time
@@ -119,7 +120,9 @@ def _run(proof: Proof, now: str) -> Outcome:
     command = ["make", "--no-print-directory", proof.target, *proof.options]
     with (
         log.open("w") as output,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=_environment()
+        ) as process,
     ):
         assert process.stdout is not None
         for line in process.stdout:
@@ -136,6 +139,13 @@ def _run(proof: Proof, now: str) -> Outcome:
         process.returncode,
         "\n".join(lines).strip(),
     )
+
+
+def _environment() -> dict[str, str]:
+    """The environment without what a make around this one says to its own children."""
+    return {
+        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")
+    }
 
 
 def _verdict(outcome: Outcome | None) -> str:

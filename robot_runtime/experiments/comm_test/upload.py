@@ -19,6 +19,10 @@ LOOK = 0.002
 """s between two looks whether it has ended, or has written something to a board that is paused."""
 LISTEN_TIME = 0.02
 """s of emulated time after a reset until the boot loader listens, for 1 s."""
+ATTEMPTS = 3
+"""Uploads to a paused board before it counts as failed."""
+ANSWER_SECONDS = 20.0
+"""avrdude gives up sooner where it has lost step; where nothing answers, it asks for most of a minute."""
 STEP = 0.002
 """s of emulated time that the boot loader takes for any answer, at most."""
 
@@ -70,9 +74,22 @@ def upload(
 def upload_paused(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
     """The same for a paused board with a boot loader, whose time passes only while there is something to do.
 
-    avrdude waits by its own clock, for about a second in all; here the boot loader's patience, 1 s, does not
-    run out meanwhile, however busy the computer is. Raises BoardError too.
+    The boot loader's patience, 1 s, does not run out, however busy the computer is. avrdude's does: it waits
+    by its own clock, asks again, and loses step over the two answers. It then starts over, a few times.
+    Raises BoardError too.
     """
+    for attempt in range(1, ATTEMPTS + 1):
+        began = time.monotonic()
+        try:
+            _upload_paused_once(program, tty, board, stop)
+        except UploadError:
+            if attempt == ATTEMPTS or time.monotonic() - began > ANSWER_SECONDS:
+                raise
+        else:
+            return
+
+
+def _upload_paused_once(program: Path, tty: Path, board: EmulatorClient, stop: Cancellation) -> None:
     board.reset()
     board.run(LISTEN_TIME)
     known = _traffic(board)

@@ -1,5 +1,7 @@
 """Uploads through the boot loader of a paused board: by the real avrdude, in whatever time it takes."""
 
+import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -62,6 +64,40 @@ def test_a_host_that_thinks_for_long_finds_the_boot_loader_waiting(
     upload_paused(builder.build(TEST, CELL.baud, 0.0).hex, process.tty, board, Cancellation())
     assert board.stats()["time"] < 3.0
     assert run_there(empty).rate == 1.0
+
+
+def test_an_upload_that_loses_step_is_started_over(
+    builder: Builder, empty: Empty, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    product = builder.build(TEST, CELL.baud, 0.0)
+    lost, avrdude = tmp_path / "lost", tmp_path / "bin/avrdude"
+    avrdude.parent.mkdir()
+    # The first one hangs up in the middle, as one that was starved; the next ones are whole.
+    avrdude.write_text(
+        f'#!/bin/sh\n[ -e {lost} ] && exec {shutil.which("avrdude")} "$@"\n'
+        f'touch {lost}\ntimeout 0.5 {shutil.which("avrdude")} "$@"\nexit 1\n'
+    )
+    avrdude.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{avrdude.parent}:{os.environ['PATH']}")
+    process, board = empty
+    upload_paused(product.hex, process.tty, board, Cancellation())
+    assert lost.exists()
+    assert run_there(empty).rate == 1.0
+
+
+def test_an_upload_that_never_succeeds_is_told_after_some_attempts(
+    builder: Builder, empty: Empty, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    product = builder.build(TEST, CELL.baud, 0.0)
+    calls, avrdude = tmp_path / "calls", tmp_path / "bin/avrdude"
+    avrdude.parent.mkdir()
+    avrdude.write_text(f"#!/bin/sh\necho again >> {calls}\necho out of step >&2\nexit 1\n")
+    avrdude.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{avrdude.parent}:{os.environ['PATH']}")
+    process, board = empty
+    with pytest.raises(UploadError, match=r"could not upload comm_test.hex through .*: out of step"):
+        upload_paused(product.hex, process.tty, board, Cancellation())
+    assert len(calls.read_text().splitlines()) == module.ATTEMPTS
 
 
 def test_a_board_without_a_boot_loader_is_told_in_avrdudes_words(
