@@ -31,7 +31,7 @@ def measure() -> dict[str, float]:
         data = Path(folder)
         hour = record_hour(data)
         with Stack(data) as stack:
-            stack.api.post("/robot/commands/arm").raise_for_status()
+            stack.arm()
             idle = _phase()
             with sync_playwright() as playwright:
                 browser = playwright.chromium.launch(executable_path=EXECUTABLE, args=ARGUMENTS)

@@ -22,7 +22,7 @@ def measure() -> dict[str, float]:
     """CPU in percent of one core over half a minute; resident memory in MB at its end."""
     with tempfile.TemporaryDirectory() as folder, Stack(Path(folder)) as stack:
         viewer = _Viewer(stack)
-        stack.api.post("/robot/commands/arm").raise_for_status()
+        stack.arm()
         stack.api.post("/sessions", json={"name": "bench"}).raise_for_status()
         running = running_parts(DataFolder(stack.data).run)
         parts = {name: psutil.Process(running[name].pid) for name in ("runtime", "board", "simulator")}

@@ -49,7 +49,7 @@ def main() -> None:
             wait(lambda: refusals(stack) == [], "the simulator", stack)
             told["simulator"] = health(stack, "simulator")
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
-            stack.api.post("/robot/commands/arm").raise_for_status()
+            stack.arm()
             time.sleep(DIVE_SECONDS)
             told["armed"] = state(stack)["armed"]
             told["camera"] = state(stack)["camera"]

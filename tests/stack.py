@@ -114,6 +114,14 @@ class Stack:
             time.sleep(_POLL)
         raise AssertionError(f"not ready: {health}\n{self.log.read_text(errors='replace')[-4000:]}")
 
+    def arm(self) -> None:
+        """Arm as soon as nothing speaks against it; after a start, a sensor or a value may be awaited."""
+        end = time.monotonic() + READY_SECONDS
+        while (answer := self.api.post("/robot/commands/arm")).status_code == 409:
+            assert time.monotonic() < end, answer.text
+            time.sleep(_POLL)
+        answer.raise_for_status()
+
     def child(self, word: str) -> psutil.Process:
         """The started process whose command line holds `word`."""
         found = [one for one in self.process.children(recursive=True) if word in " ".join(one.cmdline())]

@@ -26,8 +26,7 @@ def test_the_whole_robot_dives_at_9600_baud(tmp_path: Path) -> None:
     config = tmp_path / "robot.toml"
     config.write_text(text.replace("\nbaud = 250000", f"\nbaud = {BAUD}"))
     with Stack(tmp_path / "data", "--config", str(config)) as stack:
-        wait_for(stack, lambda state: state["refusals"] == [])
-        stack.api.post("/robot/commands/arm").raise_for_status()
+        stack.arm()
         frames = wait_for_navigation(stack)
         wait_for_depth(stack)
         state = stack.api.get("/robot").json()
