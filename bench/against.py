@@ -92,7 +92,7 @@ def _measure(tree: Path, part: str) -> dict[str, float]:
 
 
 def verdict(name: str, before: Sequence[float], now: Sequence[float]) -> str:
-    """What the rounds say of a figure; of one without a goal it is not known which direction is better."""
+    """Verdict of the rounds on a figure; without a goal, no direction counts as better."""
     if not before:
         return "new"
     if min(now) > max(before):

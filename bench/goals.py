@@ -109,7 +109,7 @@ GOALS = {
     "link.undetected_corruptions": _most(0),
     "page.heap_growth_mb_per_h": _most(2),
     # The traces are drawn anew at each half pixel that they move, which is 45 times a second over a minute.
-    "page.redraws_per_s": _least(44),
+    "page.redraws_per_s": _least(45),
     "page.redraws_per_s.10s": _least(55),
     "page.redraw_ms": _most(8, "drawing"),
     "physics.speed_x": _least(25, "python"),

@@ -50,7 +50,7 @@ def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
     """Record a dive from the surface."""
     choose(stack, controller)
     session = stack.api.post("/sessions", json={"name": name, "note": "still water"}).json()["id"]
-    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
+    stack.arm()
     wait_for_depth(watcher, DEPTH - 0.1, DEPTH)
     stack.api.post(f"/sessions/{session}/markers", json={"text": "nearly there"}).raise_for_status()
     for _ in range(3):
@@ -64,7 +64,7 @@ def dive(stack: Stack, watcher: Page, name: str, controller: str) -> None:
 
 def tune(stack: Stack) -> None:
     """A step response of two controllers, and a relay experiment."""
-    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
+    stack.arm()
     for controller in TUNED:
         choose(stack, controller)
         experiment(stack, STEP)
@@ -85,7 +85,7 @@ def prepare(stack: Stack, watcher: Page) -> None:
     for name, controller in zip(SESSIONS, CONTROLLERS, strict=True):
         dive(stack, watcher, name, controller)
     stack.api.post("/sessions", json={"name": "Hovering", "note": ""}).raise_for_status()
-    wait(lambda: stack.api.post("/robot/commands/arm").status_code == 204, "the robot to arm")
+    stack.arm()
     tune_parameters(stack, **{"vision.colour": "green"})
     stack.api.post("/robot/commands/card", json={"colour": "green"}).raise_for_status()
     wait_for_depth(watcher, DEPTH - 0.05, 1.0)

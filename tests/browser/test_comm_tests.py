@@ -74,7 +74,7 @@ def test_a_run_of_the_thesis_example_with_fewer_cells(page: Page, tmp_path: Path
 
 
 def test_the_thesis_example_as_it_ships(page: Page, stack: Stack, tmp_path: Path) -> None:
-    """What `tests/server/features/comm_tests/test_thesis_example.py` runs again, cell by cell."""
+    """Sample that `tests/server/features/comm_tests/test_thesis_example.py` runs again, cell by cell."""
     runs = stack.api.get("/comm-tests/runs").json()
     (sample,) = (run["id"] for run in runs if run["sample"] == "grid-thesis")
     page.goto(f"{stack.url}/#/comm-tests/runs/{sample}")

@@ -38,7 +38,7 @@ class Guard:
     without: str
     tests: tuple[str, ...]
     subjects: tuple[str, ...] = ()
-    """What it guards of that which `guarded.list_guarded` finds."""
+    """Entries of `guarded.list_guarded` that it covers."""
 
     def problem(self, root: Path) -> str:
         """Why it cannot be taken away there; empty where it can."""

@@ -20,7 +20,7 @@ CODE = "a new code"
 
 @dataclass(frozen=True)
 class Probe:
-    """What is sent, and the status and words of the answer."""
+    """Request to a route, with the status and words of its answer."""
 
     status: int = 200
     body: Any = field(default_factory=dict)

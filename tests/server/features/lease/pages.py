@@ -25,7 +25,7 @@ class Page:
         return await self.served.api.post(path, json=body, headers=headers)
 
     async def told(self, holder: int | None) -> dict[str, Any]:
-        """What it is told of the control, once this client has it."""
+        """Returns the state of control as the server sends it, once this client has it."""
         while True:
             message = await next_text(self.socket, "control")
             if (message["holder"] or {"client": None})["client"] == holder:

@@ -52,7 +52,7 @@ class RecorderRig:
             ]
 
     def fail(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Let every write from here on end as on a full disk."""
+        """Makes every write from here on end as on a full disk."""
         problem = sqlite3.OperationalError("database or disk is full")
 
         def refuse(*_: object) -> None:
