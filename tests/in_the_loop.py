@@ -12,14 +12,22 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from robot_runtime.contract.packets import Depth
+from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.transport.blocks import read_blocks, read_rows
 from tests.exports import export_session
 from tests.stack import ROOT, Stack
 from tests.two_hosts import HERE, TwoHosts
 
 PATIENCE = 60.0
 PORT = 7447
+DEPTH = BY_NAME["depth"]
 CUT_SECONDS = 3.0
-DIVE_SECONDS = 8.0
+"""Length of the cut, a fact of the test: several times what the robot waits before it stops."""
+SET_POINT = 0.5
+"""m"""
+TURN = 0.01
+"""m above its deepest place, the robot has turned."""
 
 
 def main() -> None:
@@ -50,7 +58,7 @@ def main() -> None:
             told["simulator"] = health(stack, "simulator")
             session = stack.api.post("/sessions", json={"name": "in the loop"}).json()
             stack.arm()
-            time.sleep(DIVE_SECONDS)
+            wait(lambda: has_turned(stack, session["id"]), "the turn below the set point", stack)
             told["armed"] = state(stack)["armed"]
             told["camera"] = state(stack)["camera"]
             hosts.loss = 1.0
@@ -74,6 +82,15 @@ def main() -> None:
 def state(stack: Stack) -> dict[str, Any]:
     found: dict[str, Any] = stack.api.get("/robot").json()
     return found
+
+
+def has_turned(stack: Stack, session: int) -> bool:
+    """The robot has been below its set point, and rises again."""
+    answer = stack.api.get(f"/sessions/{session}/blocks", params={"start": 0.0, "end": PATIENCE})
+    answer.raise_for_status()
+    blocks = [block for block in read_blocks(answer.content) if block.topic is DEPTH]
+    depths = [record.depth for block in blocks for _, record in read_rows(block) if isinstance(record, Depth)]
+    return bool(depths) and depths[-1] < max(depths) - TURN and max(depths) > SET_POINT
 
 
 def refusals(stack: Stack) -> list[str]:

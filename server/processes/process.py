@@ -8,6 +8,7 @@ import asyncio
 import os
 import select
 import subprocess
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from signal import SIGKILL, Signals
@@ -20,7 +21,7 @@ KILL_SECONDS = 1.0
 """The time that the kernel takes at most to end a killed process."""
 
 
-class ProcessGroup:
+class ProcessGroup(ABC):
     """A running process and its group, by the number of both. Call it in the event loop's thread."""
 
     def __init__(self, pid: int) -> None:
@@ -47,8 +48,9 @@ class ProcessGroup:
         if not self._ended.done():
             self._end()
 
+    @abstractmethod
     def _reap(self) -> int | None:
-        raise NotImplementedError
+        """Returns the exit status of the process, which has just ended or been killed."""
 
     def _end(self) -> None:
         # Before the process is reaped its number still belongs to its group alone.
