@@ -2,6 +2,7 @@
 #include "chip.h"
 
 #include <avr_extint.h>
+#include <avr_timer.h>
 #include <elf.h>
 #include <errno.h>
 #include <sim_core.h>
@@ -75,6 +76,21 @@ static void on_run_end(void *owner) {
   (void)owner;  // the timer only stops libsimavr from running or sleeping past this cycle
 }
 
+// libsimavr does not know phase-correct PWM of 8, 9 and 10 bits, which Arduino's core starts in timers 1 and
+// 2, and lets a timer overflow at every one of its clocks instead: most of an idle chip's time. Such a timer
+// counts up and down, so that it overflows once in nearly as many clocks as fast PWM of one bit more.
+static void add_phase_correct_pwm(avr_t *avr) {
+  for (avr_io_t *io = avr->io_port; io; io = io->next) {
+    avr_timer_t *timer = (avr_timer_t *)io;
+    if (strcmp(io->kind, "timer")) {
+      continue;
+    }
+    for (unsigned mode = 1; mode <= (timer->r_tcnth ? 3 : 1); mode++) {
+      timer->wgm_op[mode] = (avr_timer_wgm_t){.kind = avr_timer_wgm_fast_pwm, .size = 8 + mode};
+    }
+  }
+}
+
 bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owner) {
   avr_global_logger_set(log_nothing);
   avr_t *avr = avr_make_mcu_by_name("atmega328p");
@@ -84,6 +100,7 @@ bool chip_create(struct chip *chip, void (*after_reset)(void *owner), void *owne
   avr->frequency = CHIP_FREQUENCY;
   avr->vcc = avr->avcc = avr->aref = 5000;
   avr->sleep = sleep_without_waiting;
+  add_phase_correct_pwm(avr);
   avr->custom.data = chip;
   chip->avr = avr;
   chip->core_reset = avr->reset;

@@ -60,6 +60,10 @@ class Monitor:
         said = self._ask(b"F", 18)
         return int.from_bytes(said[16:], "little") * TICK
 
+    def phase_correct_period(self) -> float:
+        """The duration (s) between two overflows of an 8-bit timer at 2 MHz in phase-correct PWM."""
+        return int.from_bytes(self._ask(b"P", 2), "little") * TICK
+
     def outputs(self, port_c: int) -> None:
         self._ask(b"O" + bytes([port_c]), 0)
 

@@ -87,6 +87,12 @@ def test_the_eeprom_is_kept_even_where_the_board_is_killed(tmp_path: Path) -> No
         assert monitor.read_eeprom(3) == 42
 
 
+def test_a_timer_in_phase_correct_pwm_overflows_when_it_has_counted_up_and_down(make_rig: Make) -> None:
+    monitor = Monitor(make_rig("monitor"))
+    monitor.boot()
+    assert monitor.phase_correct_period() == pytest.approx(510 / 2e6, rel=0.02)
+
+
 def test_another_program_can_be_loaded(make_rig: Make) -> None:
     rig = make_rig("echo")
     rig.board.run(0.01)

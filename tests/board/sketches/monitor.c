@@ -127,6 +127,23 @@ static void do_flood(void) {
   put_word(timer());
 }
 
+// -> ticks between two overflows of timer 2 in phase-correct PWM, at an eighth of the chip's clock
+static void do_overflow(void) {
+  TCCR2A = _BV(WGM20);
+  TCCR2B = _BV(CS21);
+  for (uint8_t overflow = 0; overflow < 2; overflow++) {
+    TIFR2 = _BV(TOV2);
+    while (!(TIFR2 & _BV(TOV2))) {
+    }
+    if (!overflow) {
+      start_timer();
+    }
+  }
+  uint16_t ticks = timer();
+  TCCR2B = 0;
+  put_word(ticks);
+}
+
 static void do_command(uint8_t command) {
   switch (command) {
     case 'T':
@@ -149,6 +166,9 @@ static void do_command(uint8_t command) {
       break;
     case 'F':
       do_flood();
+      break;
+    case 'P':
+      do_overflow();
       break;
     case 'O':
       PORTC = serial_get();
